@@ -1,0 +1,7 @@
+"""``ident compare``."""
+
+from __future__ import annotations
+
+
+def command() -> None:
+    """(in the making)"""

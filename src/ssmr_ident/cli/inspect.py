@@ -1,0 +1,7 @@
+"""``ident inspect``."""
+
+from __future__ import annotations
+
+
+def command() -> None:
+    """(in the making)"""

@@ -1,0 +1,103 @@
+"""Parameters: declared once (Parameter), known with an uncertainty (Estimate), kept together (ParameterSet)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+Value = float | np.ndarray
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """Declaration of a scalar parameter: its key, unit, usual value and physical bounds.
+
+    ``off`` is the value at which an effect of this parameter vanishes; None for what cannot be switched off.
+    """
+
+    name: str
+    unit: str
+    nominal: float
+    lower: float = -math.inf
+    upper: float = math.inf
+    meaning: str = ""
+    off: float | None = None
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """What is known of a parameter.
+
+    Parameters
+    ----------
+    value : float or ndarray
+        In ``unit``.
+    std : float or None
+        Standard deviation, in ``unit``; None means unknown (a wide prior).
+    unit : str
+    source : str
+        Who says so: a test, a data sheet, a fit.
+    fixed : bool
+        True: a fit leaves it alone.
+    at_bound : bool
+        True when a fit ended on a bound, so that ``std`` says little.
+    """
+
+    value: Value
+    std: float | None = None
+    unit: str = "1"
+    source: str = ""
+    fixed: bool = False
+    at_bound: bool = False
+
+    def __str__(self) -> str:
+        spread = "" if self.std is None else f" ± {self.std:.2g}"
+        value = f"{self.value:.6g}" if isinstance(self.value, float) else np.array2string(np.asarray(self.value))
+        return f"{value}{spread} {self.unit}".rstrip()
+
+
+@dataclass(frozen=True)
+class ParameterSet(Mapping[str, Estimate]):
+    """Estimates by dotted path (``tire.stiffness_y_N_m``), as robot.yaml and exported parameters hold them.
+
+    ``effects`` maps an effect's id to its parameters; ``provenance`` is free text and numbers about the origin.
+    """
+
+    name: str
+    estimates: Mapping[str, Estimate]
+    effects: Mapping[str, Mapping[str, Estimate]] = field(default_factory=dict)
+    provenance: Mapping[str, Any] = field(default_factory=dict)
+    file: str = ""
+
+    def __getitem__(self, path: str) -> Estimate:
+        return self.estimates[path]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.estimates)
+
+    def __len__(self) -> int:
+        return len(self.estimates)
+
+    def number(self, path: str, default: float | None = None) -> float:
+        """Value of a scalar; ``default`` where the file has none."""
+        if path in self.estimates:
+            return float(self.estimates[path].value)
+        if default is None:
+            raise KeyError(path)
+        return default
+
+    def updated(self, changes: Mapping[str, Estimate], **fields: Any) -> ParameterSet:
+        """A copy with some estimates replaced or added."""
+        return replace(self, estimates={**self.estimates, **changes}, **fields)
+
+    def __str__(self) -> str:
+        width = max((len(path) for path in self.estimates), default=0)
+        lines = [f"parameters of {self.name}"]
+        lines += [f"  {path:<{width}}  {estimate}" for path, estimate in self.estimates.items()]
+        for effect, parameters in self.effects.items():
+            lines += [f"  {effect}: {key} = {estimate}" for key, estimate in parameters.items()]
+        return "\n".join(lines)
