@@ -1,0 +1,69 @@
+"""YAML read safely, with errors that name the line."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from ssmr_ident.core.errors import InputError
+
+_SIZE_LIMIT = 4_000_000  # bytes; a hand-written file is a thousand times smaller
+
+
+class _Loader(yaml.SafeLoader):
+    """SafeLoader that refuses a key given twice and aliases (the road to exponential files)."""
+
+    def compose_node(self, parent: yaml.Node | None, index: int) -> yaml.Node | None:
+        if self.check_event(yaml.AliasEvent):
+            mark = self.peek_event().start_mark
+            raise yaml.MarkedYAMLError(problem="aliases (*name) are not accepted", problem_mark=mark)
+        return super().compose_node(parent, index)
+
+    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
+        seen: set[Any] = set()
+        for key_node, _ in node.value:
+            key = self.construct_object(key_node, deep=True)
+            if not isinstance(key, str | int | float | bool):
+                raise yaml.MarkedYAMLError(problem="a key must be a plain word", problem_mark=key_node.start_mark)
+            if key in seen:
+                raise yaml.MarkedYAMLError(problem=f"key {key!r} stands twice", problem_mark=key_node.start_mark)
+            seen.add(key)
+        return super().construct_mapping(node, deep)
+
+
+# 1e6 is a number here: YAML 1.1 wants 1.0e+6, which nobody writes.
+_Loader.add_implicit_resolver(
+    "tag:yaml.org,2002:float",
+    re.compile(r"^[-+]?([0-9][0-9_]*)(\.[0-9_]*)?([eE][-+]?[0-9]+)$|^[-+]?\.[0-9]+([eE][-+]?[0-9]+)?$"),
+    list("-+0123456789."),
+)
+
+
+def load_mapping(path: Path) -> dict[str, Any]:
+    """Read a YAML file that holds a mapping.
+
+    Raises
+    ------
+    InputError
+        The file is absent, too large, not YAML, or not a mapping.
+    """
+    if not path.is_file():
+        raise InputError(str(path), "no such file", "Give the path of an existing YAML file")
+    if path.stat().st_size > _SIZE_LIMIT:
+        raise InputError(str(path), f"{path.stat().st_size} bytes is too large for a parameter or session file")
+    try:
+        content = yaml.load(path.read_text(encoding="utf-8-sig"), Loader=_Loader)
+    except UnicodeDecodeError as error:
+        raise InputError(str(path), "is not UTF-8 text", "Save it as UTF-8") from error
+    except yaml.MarkedYAMLError as error:
+        mark = error.problem_mark
+        place = f"{path}:{mark.line + 1}" if mark else str(path)
+        raise InputError(place, f"is not valid YAML: {error.problem}", "Mend this line") from error
+    except (yaml.YAMLError, RecursionError, ValueError) as error:
+        raise InputError(str(path), f"is not valid YAML: {error}") from error
+    if not isinstance(content, dict):
+        raise InputError(str(path), f"holds a {type(content).__name__}, expected a mapping of keys")
+    return content
