@@ -1,0 +1,77 @@
+"""Small motions about rest in closed form: mass, damping and stiffness matrices and their modes.
+
+Valid while every contact sticks. Independent of the integrator, which it checks; exact and fast, which fits use.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ssmr_ident.physics.robot import Robot
+from ssmr_ident.physics.statics import rest_loads, rest_pose, tilt
+
+COORDINATES = ("x", "y", "z", "roll", "pitch", "yaw")
+
+
+@dataclass(frozen=True, eq=False)
+class LinearRobot:
+    """M q'' + C q' + K q = 0 with q = (x, y, z, roll, pitch, yaw) from rest.
+
+    Parameters
+    ----------
+    mass, damping, stiffness : (6, 6) float
+        SI; rows of force [N], then of moment [N m].
+    """
+
+    mass: np.ndarray
+    damping: np.ndarray
+    stiffness: np.ndarray
+
+    @property
+    def state_matrix(self) -> np.ndarray:
+        """A of d(q, q')/dt = A (q, q'), (12, 12)."""
+        inverse = np.linalg.inv(self.mass)
+        return np.block([[np.zeros((6, 6)), np.eye(6)], [-inverse @ self.stiffness, -inverse @ self.damping]])
+
+    def modes(self) -> np.ndarray:
+        """Natural frequency [rad/s], damping ratio, and the share of each coordinate, rows by rising frequency.
+
+        Returns
+        -------
+        (6, 8) float
+            omega_n, xi, then |shape| of the six coordinates, scaled to 1 at the largest.
+        """
+        values, vectors = np.linalg.eig(self.state_matrix)
+        upper = values.imag > 0
+        values, vectors = values[upper], np.abs(vectors[:6, upper])
+        order = np.argsort(np.abs(values))
+        shapes = (vectors / vectors.max(axis=0))[:, order].T
+        omega = np.abs(values[order])
+        return np.column_stack([omega, -values.real[order] / omega, shapes])
+
+
+def linear_robot(robot: Robot) -> LinearRobot:
+    """Linearise the robot at rest on sticking tires (the coupled form of eq 5.11, thesis.md section 5)."""
+    _, roll, pitch = rest_pose(robot)
+    rotation = tilt(roll, pitch)
+    arms = robot.contact_points @ rotation.T
+    loads = rest_loads(robot)
+    mass = np.zeros((6, 6))
+    mass[:3, :3] = robot.mass * np.eye(3)
+    mass[3:, 3:] = rotation @ robot.inertia @ rotation.T
+    damping, stiffness = np.zeros((6, 6)), np.zeros((6, 6))
+    for arm, load in zip(arms, loads, strict=True):
+        jacobian = np.hstack([np.eye(3), -_cross(arm)])
+        damping += jacobian.T @ np.diag(robot.damping) @ jacobian
+        stiffness += jacobian.T @ np.diag(robot.stiffness) @ jacobian
+        # the load moves sideways against the CoM: minus m g h in roll and pitch
+        stiffness[3, 3] += load * arm[2]
+        stiffness[4, 4] += load * arm[2]
+    return LinearRobot(mass, damping, stiffness)
+
+
+def _cross(arm: np.ndarray) -> np.ndarray:
+    """Matrix of the cross product: _cross(a) @ b = a × b."""
+    return np.array([[0.0, -arm[2], arm[1]], [arm[2], 0.0, -arm[0]], [-arm[1], arm[0], 0.0]])

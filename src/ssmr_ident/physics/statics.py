@@ -1,0 +1,50 @@
+"""The robot at rest: wheel loads and how far the tires sink in."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ssmr_ident.physics.robot import GRAVITY, Robot
+
+
+def rest_pose(robot: Robot) -> np.ndarray:
+    """Sinking and tilt at which the tires carry the weight.
+
+    The four vertical springs are loaded by the weight alone; small angles make the problem linear, and two
+    further passes with the exact geometry remove the rest.
+
+    Returns
+    -------
+    (3,) float [m, rad, rad]
+        Height of the CoM above the floor, roll and pitch.
+    """
+    stiffness = robot.stiffness[2]
+    pose = np.array([robot.height, 0.0, 0.0])
+    for _ in range(12):
+        arms, depth = _arms_and_depth(robot, pose)
+        load = stiffness * depth
+        residual = np.array([load.sum() - robot.mass * GRAVITY, load @ arms[:, 1], -load @ arms[:, 0]])
+        rows = np.column_stack([-np.ones(4), -arms[:, 1], arms[:, 0]])
+        jacobian = stiffness * np.vstack([rows.sum(0), arms[:, 1] @ rows, -arms[:, 0] @ rows])
+        change = np.linalg.solve(jacobian, residual)
+        pose = pose - change
+        if np.abs(change).max() < 1e-15:
+            break
+    return pose
+
+
+def rest_loads(robot: Robot) -> np.ndarray:
+    """Load on each wheel at rest, (4,) float [N]; equals the split of eq (2.24) for a symmetric robot."""
+    return robot.stiffness[2] * _arms_and_depth(robot, rest_pose(robot))[1]
+
+
+def _arms_and_depth(robot: Robot, pose: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    height, roll, pitch = pose
+    arms = robot.contact_points @ tilt(roll, pitch).T
+    return arms, -(height + arms[:, 2])
+
+
+def tilt(roll: float, pitch: float) -> np.ndarray:
+    """Rotation from body to heading axes, (3, 3): Ry(pitch)·Rx(roll), eq (2.37) without the heading."""
+    cr, sr, cp, sp = np.cos(roll), np.sin(roll), np.cos(pitch), np.sin(pitch)
+    return np.array([[cp, sp * sr, sp * cr], [0.0, cr, -sr], [-sp, cp * sr, cp * cr]])

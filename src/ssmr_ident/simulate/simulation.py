@@ -1,0 +1,172 @@
+"""Run a scenario on a robot."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ssmr_ident.core.errors import SimulationError
+from ssmr_ident.core.recording import Channel, Provenance, Recording
+from ssmr_ident.physics.robot import GRAVITY, Robot
+from ssmr_ident.physics.sensor import low_pass_coefficients
+from ssmr_ident.physics.statics import rest_pose, tilt
+from ssmr_ident.simulate import robot_kernel as k
+from ssmr_ident.simulate.scenarios import Scenario
+
+UNITS = dict(
+    zip(
+        k.OUTPUTS,
+        ("m/s^2",) * 3 + ("rad/s",) * 3 + ("m",) * 3 + ("rad",) * 3 + ("m/s",) * 2 + ("N", "m", "rad/s", "rad/s", "1")
+        + ("N",) * 4,
+        strict=True,
+    )
+)  # fmt: skip
+
+
+@dataclass(frozen=True, eq=False)
+class Simulation:
+    """What the simulator gave: true quantities, before noise, clipping and volts.
+
+    Parameters
+    ----------
+    time : (n,) float [s]
+    values : (n, len(names)) float
+        SI; ``ax``, ``ay``, ``az`` are specific forces at the accelerometer behind its low-pass.
+    names : tuple of str
+    scenario : Scenario
+    step : float [s]
+        Of the integration.
+    """
+
+    time: np.ndarray
+    values: np.ndarray
+    names: tuple[str, ...]
+    scenario: Scenario
+    step: float
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        return self.values[:, self.names.index(name)]
+
+    def recording(self, *names: str) -> Recording:
+        """Chosen channels as a Recording, in SI units."""
+        channels = tuple(Channel(name, self[name].copy(), UNITS[name], name) for name in names)
+        return Recording(self.time, channels, Provenance(f"simulated {self.scenario.experiment}", "", "simulator"))
+
+    def __str__(self) -> str:
+        lines = [
+            f"{self.scenario.experiment}: {len(self.time)} samples, {self.time[-1]:g} s, step {self.step:g} s"
+        ]
+        for name in ("ax", "ay", "az", "force"):
+            lines.append(f"  {name:<6} {self[name].min():>10.4g} … {self[name].max():.4g} {UNITS[name]}")
+        return "\n".join(lines)
+
+
+def simulate(
+    robot: Robot,
+    scenario: Scenario,
+    sample_rate: float = 1000.0,
+    step: float = 1e-4,
+    release_drag: float = 0.0,
+    wheel_lift: bool = False,
+    coriolis: float = 0.0,
+) -> Simulation:
+    """Integrate a scenario.
+
+    Parameters
+    ----------
+    robot : Robot
+    scenario : Scenario
+    sample_rate : float [Hz]
+        Of the stored output.
+    step : float [s]
+        Upper limit of the integration step; it is shortened so that a sample is a whole number of steps.
+    release_drag : float
+        Share of the kinetic friction that acts while a contact slides: 0 is the thesis' (6.4), 1 is (6.4) with the
+        term that the thesis drops.
+    wheel_lift : bool
+        Wheels cannot pull on the floor, eq (4.15).
+    coriolis : float
+        Share of the term M·V̂·V of (2.65): 0 as in section 6.1, 1 in full.
+
+    Raises
+    ------
+    SimulationError
+        A state was no longer finite; says when.
+    """
+    stride = max(1, math.ceil(1.0 / (sample_rate * step) - 1e-9))
+    step = 1.0 / (sample_rate * stride)
+    samples = round(scenario.duration * sample_rate)
+    p = pack_robot(robot, scenario, release_drag, wheel_lift, coriolis)
+    out = np.empty((samples, len(k.OUTPUTS)))
+    failed = k.run(
+        p,
+        _pulling(robot, scenario),
+        scenario.head if len(scenario.head) else np.zeros(1),
+        scenario.head_step,
+        scenario.wheel_rates,
+        scenario.wheel_rate_step,
+        _start(robot, scenario),
+        step,
+        (samples - 1) * stride,
+        stride,
+        low_pass_coefficients(robot.accelerometer.bandwidth_hz, step),
+        out,
+    )
+    if failed >= 0:
+        raise SimulationError(
+            f"{scenario.experiment} left the finite numbers at t = {failed * step:.4g} s (step {step:g} s); "
+            f"mass {robot.mass:g} kg, tire stiffness {robot.stiffness.tolist()}, damping {robot.damping.tolist()}"
+        )
+    return Simulation(np.arange(samples) / sample_rate, out, k.OUTPUTS, scenario, step)
+
+
+def pack_robot(
+    robot: Robot, scenario: Scenario, release_drag: float, wheel_lift: bool, coriolis: float
+) -> np.ndarray:
+    """The kernel's parameter vector."""
+    p = np.zeros(k.PARAMETERS)
+    p[k.MASS], p[k.PATCH_MASS], p[k.RADIUS] = robot.mass, robot.effective_mass, robot.radius
+    p[k.KX : k.KZ + 1], p[k.DX : k.DZ + 1] = robot.stiffness, robot.damping
+    p[k.MU_STATIC], p[k.MU_KINETIC], p[k.LAMBDA_MAX] = robot.mu_static, robot.mu_kinetic, robot.lambda_max
+    p[k.MOTOR_GAIN], p[k.GRAVITY_G] = robot.motor_gain, GRAVITY
+    p[k.RELEASE_DRAG], p[k.WHEEL_LIFT], p[k.CORIOLIS] = release_drag, float(wheel_lift), coriolis
+    p[k.SENSOR : k.SENSOR + 3] = robot.accelerometer.position
+    p[k.POINTS : k.POINTS + 12] = robot.contact_points.ravel()
+    p[k.INVERSE_INERTIA : k.INVERSE_INERTIA + 9] = np.linalg.inv(robot.inertia).ravel()
+    p[k.INERTIA : k.INERTIA + 9] = robot.inertia.ravel()
+    p[k.GRIPPING : k.GRIPPING + 4] = [float(i in scenario.wheels_gripping) for i in (1, 2, 3, 4)]
+    return p
+
+
+def _pulling(robot: Robot, scenario: Scenario) -> np.ndarray:
+    q = np.zeros(k.PULLING)
+    if scenario.experiment != "pull":
+        return q
+    stiffness = scenario.cable_stiffness or robot.cable_stiffness
+    damping = scenario.cable_damping
+    if damping is None:  # thesis section 4: 4 sqrt(m K)
+        own = scenario.cable_stiffness is None
+        damping = robot.cable_damping if own else 4.0 * math.sqrt(robot.mass * stiffness)
+    q[k.PULLED], q[k.CABLE_K], q[k.CABLE_D], q[k.HELD] = 1.0, stiffness, damping, float(scenario.held)
+    q[k.PULL_X], q[k.PULL_Y] = (0.0, 1.0) if scenario.direction == "lateral" else (-1.0, 0.0)
+    # the hook sits above the contact points, on the side that is pulled; its height counts from the unloaded floor
+    q[k.HOOK_X] = 0.0 if scenario.direction == "lateral" else float(robot.contact_points[:, 0].min())
+    q[k.HOOK_Y] = robot.half_track if scenario.direction == "lateral" else 0.0
+    q[k.HOOK_Z] = scenario.height - robot.height
+    return q
+
+
+def _start(robot: Robot, scenario: Scenario) -> np.ndarray:
+    """Rest, displaced and pushed as the scenario says; the tires were set down unstressed at rest."""
+    height, roll, pitch = rest_pose(robot)
+    offset, velocity = scenario.offset, scenario.velocity
+    pose = np.array([0.0, 0.0, height, roll, pitch, 0.0])
+    pose += [offset.get(name, 0.0) for name in ("x", "y", "z", "roll", "pitch", "yaw")]
+    rates = [velocity.get(name, 0.0) for name in ("x", "y", "z", "roll", "pitch", "yaw")]
+    set_down = robot.contact_points @ tilt(roll, pitch).T
+    heading = np.array([[math.cos(pose[5]), -math.sin(pose[5])], [math.sin(pose[5]), math.cos(pose[5])]])
+    now = (robot.contact_points @ tilt(pose[3], pose[4]).T)[:, :2] @ heading.T + pose[:2]
+    deflection = (now - set_down[:, :2]) @ heading
+    return np.concatenate([pose, rates, np.zeros(2), deflection.ravel()])
