@@ -87,7 +87,7 @@ class Noise:
     quantum: float = 0.0
 
     def add(self, signal: np.ndarray, time: np.ndarray, random: np.random.Generator) -> np.ndarray:
-        """The signal with white noise and hum of random phase; (n,) to (n,). Quantisation comes last, on the volts."""
+        """The signal with white noise and hum of random phase; (n,) to (n,). Quantise last."""
         phase = random.uniform(0.0, 2.0 * np.pi)
         hum = self.hum * np.sin(2.0 * np.pi * self.hum_hz * time + phase)
         return signal + hum + self.white * random.standard_normal(signal.shape)

@@ -15,14 +15,9 @@ from ssmr_ident.physics.statics import rest_pose, tilt
 from ssmr_ident.simulate import robot_kernel as k
 from ssmr_ident.simulate.scenarios import Scenario
 
-UNITS = dict(
-    zip(
-        k.OUTPUTS,
-        ("m/s^2",) * 3 + ("rad/s",) * 3 + ("m",) * 3 + ("rad",) * 3 + ("m/s",) * 2 + ("N", "m", "rad/s", "rad/s", "1")
-        + ("N",) * 4,
-        strict=True,
-    )
-)  # fmt: skip
+_UNITS = ["m/s^2"] * 3 + ["rad/s"] * 3 + ["m"] * 3 + ["rad"] * 3 + ["m/s"] * 2
+_UNITS += ["N", "m", "rad/s", "rad/s", "1"] + ["N"] * 4
+UNITS = dict(zip(k.OUTPUTS, _UNITS, strict=True))
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,0 +1,199 @@
+"""A session with its logs read: every recording in SI and in this package's words, beside how it was made."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from ssmr_ident.core.errors import InputError, did_you_mean
+from ssmr_ident.core.parameter import ParameterSet
+from ssmr_ident.core.recording import Channel, Note, Recording
+from ssmr_ident.physics.robot import accelerometer_from_parameters
+from ssmr_ident.physics.sensor import Accelerometer
+from ssmr_ident.readers import ReadOptions, read_one
+from ssmr_ident.session import Entry, Session, read_parameters, read_session
+
+UNITS = {
+    **{"force": "N", "torque": "N m", "position": "m", "position_reference": "m", "velocity": "m/s"},
+    **dict.fromkeys(("acceleration", "acceleration_2", "ax", "ay", "az"), "m/s^2"),
+    **{"angle": "rad", "angular_rate": "rad/s", "wx": "rad/s", "wy": "rad/s", "wz": "rad/s"},
+    **{"v_left": "m/s", "v_right": "m/s"},
+}
+MOTIONS = ("acceleration", "velocity", "position", "angle", "angular_rate")
+_NEEDS: dict[str, tuple[tuple[str, ...], ...]] = {
+    # of each group at least one channel
+    "swivel": (("ax", "ay", "az"),),
+    "straight": (("ax", "ay", "az"),),
+    "pull": (("force",),),
+    "wheel_drag": (("force",),),
+    "vertical_compression": (("force",), ("position",)),
+    "forced": (("force", "torque"), MOTIONS),
+    "free_response": (("ax", "ay", "az", *MOTIONS),),
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Measurement:
+    """One recording of a campaign: how it was made, and what was measured (SI)."""
+
+    entry: Entry
+    recording: Recording
+    wheels: Recording | None = None
+
+    @property
+    def name(self) -> str:
+        return self.entry.file if self.entry.sample is None else f"{self.entry.file}#{self.entry.sample}"
+
+
+@dataclass(frozen=True, eq=False)
+class Campaign:
+    """A session with its parameters and recordings read."""
+
+    session: Session
+    parameters: ParameterSet
+    measurements: tuple[Measurement, ...]
+
+    def of(self, experiment: str, **fields: object) -> tuple[Measurement, ...]:
+        """Measurements of one experiment whose entry has the given field values."""
+        return tuple(
+            m
+            for m in self.measurements
+            if m.entry.experiment == experiment and all(getattr(m.entry, k) == v for k, v in fields.items())
+        )
+
+    def __str__(self) -> str:
+        lines = [f"campaign {self.session.name}: {len(self.measurements)} recordings"]
+        for m in self.measurements:
+            r = m.recording
+            lines.append(f"  {m.name:<36} {m.entry.experiment:<20} {r.duration:8.3f} s  {', '.join(r.names)}")
+        return "\n".join(lines)
+
+
+def load(path: str | Path, progress: Callable[[int, int], None] | None = None) -> Campaign:
+    """Read a session folder and all its logs.
+
+    Parameters
+    ----------
+    path : path of the folder or of its session.yaml
+    progress : callable, optional
+        Called with the number of logs read and their total.
+
+    Raises
+    ------
+    InputError
+        Names the file and key, or the log and the place in it.
+    """
+    session = read_session(path)
+    parameters = read_parameters(session.robot)
+    accelerometer = accelerometer_from_parameters(parameters)
+    measurements = []
+    for index, entry in enumerate(session.entries):
+        measurements.append(_measure(session, entry, accelerometer))
+        if progress:
+            progress(index + 1, len(session.entries))
+    return Campaign(session, parameters, tuple(measurements))
+
+
+def _measure(session: Session, entry: Entry, accelerometer: Accelerometer) -> Measurement:
+    options = ReadOptions(
+        reader=entry.reader,
+        columns=dict(entry.columns),
+        units=dict(entry.units),
+        fs=entry.sample_rate_hz,
+        sample=entry.sample,
+    )
+    recording = to_quantities(read_one(session.path(entry), options), entry, accelerometer)
+    for group in _NEEDS[entry.experiment]:
+        if not any(name in recording for name in group):
+            raise InputError(
+                str(session.path(entry)),
+                f"a {entry.experiment} needs {' or '.join(group)}; found {', '.join(recording.names) or 'nothing'}",
+                f"Map the header in session.yaml: channels: {{{group[0]}: HEADER}}",
+            )
+    wheels = None
+    if entry.wheel_log:
+        wheels = read_one(session.folder / entry.wheel_log, ReadOptions())
+    return Measurement(entry, recording, wheels)
+
+
+def to_quantities(recording: Recording, entry: Entry, accelerometer: Accelerometer) -> Recording:
+    """Rename channels as the entry says, and turn volts into the quantity they stand for.
+
+    Raises
+    ------
+    InputError
+        A header that is not in the log, volts that nothing calibrates, a unit of another quantity.
+    """
+    named = _renamed(recording, entry)
+    notes: list[Note] = []
+    channels = []
+    for channel in named:
+        if channel.unit == "V":
+            channel, note = _from_volts(channel, recording, entry, accelerometer)
+            notes += [note] if note else []
+        expected = UNITS.get(channel.name)
+        if expected and channel.unit == "" and channel.name in entry.channels:
+            channel = replace(channel, unit=expected)
+            notes.append(Note("warning", f"{channel.label}: no unit in the file, taken as {expected}"))
+        elif expected and channel.unit != expected and channel.name in entry.channels:
+            raise InputError(
+                f"{recording.provenance.file}: {channel.label or channel.name}",
+                f"has unit {channel.unit!r}, but {channel.name} is in {expected}",
+                f"Give the right unit in session.yaml: units: {{{channel.label}: …}}",
+            )
+        channels.append(channel)
+    return recording.with_channels(channels, *notes)
+
+
+def _renamed(recording: Recording, entry: Entry) -> list[Channel]:
+    wanted: dict[str, str] = {}
+    for quantity, header in entry.channels.items():
+        matches = [c for c in recording.channels if header in (c.label, c.name)]
+        if not matches:
+            labels = [c.label or c.name for c in recording.channels]
+            raise InputError(
+                f"{recording.provenance.file}",
+                f"has no column {header!r} for {quantity}",
+                did_you_mean(header, labels),
+            )
+        wanted[matches[0].name] = quantity
+    taken = set(wanted.values())
+    result = []
+    for channel in recording.channels:
+        if channel.name in wanted:
+            result.append(replace(channel, name=wanted[channel.name]))
+        elif channel.name not in taken:
+            result.append(channel)
+    return result
+
+
+def _from_volts(
+    channel: Channel, recording: Recording, entry: Entry, accelerometer: Accelerometer
+) -> tuple[Channel, Note | None]:
+    unit = UNITS.get(channel.name)
+    if channel.name in entry.per_volt:
+        if unit is None:
+            raise InputError(f"session entry {entry.file}: per_volt", f"{channel.name} is no known quantity")
+        samples = channel.samples * entry.per_volt[channel.name]
+        return replace(channel, samples=samples, unit=unit), None
+    if channel.name in ("ax", "ay", "az", "acceleration"):
+        axis = max("xyz".find(channel.name[-1]), 0) if channel.name != "acceleration" else 0
+        samples = accelerometer.to_acceleration(channel.samples, axis)
+        scale = f"{accelerometer.volts_zero:g} V + {accelerometer.volts_per_m_s2:.6g} V s^2/m · a"
+        note = Note("info", f"{channel.label or channel.name}: volts to m/s^2 by {scale}")
+        # counted here, where the volts are still at hand
+        clipped = np.abs(samples) >= accelerometer.range_m_s2 * (1.0 - 1e-3)
+        if clipped.any():
+            text = f"{channel.name}: {int(clipped.sum())} samples at the sensor's range of ±{accelerometer.range_m_s2:g} m/s^2"
+            note = Note("warning", text)
+        return replace(channel, samples=samples, unit="m/s^2"), note
+    if channel.name in entry.channels:
+        raise InputError(
+            f"{recording.provenance.file}: {channel.label}",
+            f"is in volts, {channel.name} is wanted in {unit}",
+            f"Say in session.yaml what a volt stands for: per_volt: {{{channel.name}: …}}",
+        )
+    return channel, None
