@@ -1,1 +1,1 @@
-"""signals."""
+"""Laundry: pure functions on samples (filters, spectra, peaks, mains hum, distances). Arrays in, values out."""
