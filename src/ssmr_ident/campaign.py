@@ -110,7 +110,7 @@ def _measure(session: Session, entry: Entry, accelerometer: Accelerometer) -> Me
         if not any(name in recording for name in group):
             raise InputError(
                 str(session.path(entry)),
-                f"a {entry.experiment} needs {' or '.join(group)}; found {', '.join(recording.names) or 'nothing'}",
+                f"{entry.experiment} needs {' or '.join(group)}; found {', '.join(recording.names) or 'nothing'}",
                 f"Map the header in session.yaml: channels: {{{group[0]}: HEADER}}",
             )
     wheels = None
@@ -187,8 +187,10 @@ def _from_volts(
         # counted here, where the volts are still at hand
         clipped = np.abs(samples) >= accelerometer.range_m_s2 * (1.0 - 1e-3)
         if clipped.any():
-            text = f"{channel.name}: {int(clipped.sum())} samples at the sensor's range of ±{accelerometer.range_m_s2:g} m/s^2"
-            note = Note("warning", text)
+            limit = f"±{accelerometer.range_m_s2:g} m/s^2"
+            note = Note(
+                "warning", f"{channel.name}: {int(clipped.sum())} samples at the sensor's range of {limit}"
+            )
         return replace(channel, samples=samples, unit="m/s^2"), note
     if channel.name in entry.channels:
         raise InputError(
