@@ -1,0 +1,1 @@
+"""Corridor: the main jobs in order, each a short readable function."""
