@@ -1,0 +1,140 @@
+"""Units that logs are written in, and their way to SI. Conversion happens in the readers and nowhere else."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+
+from ssmr_ident.core.errors import did_you_mean
+
+
+@dataclass(frozen=True)
+class Conversion:
+    """SI value = ``factor`` * value + ``offset``.
+
+    Parameters
+    ----------
+    unit : str
+        The SI unit reached; ``V`` stays ``V``: a sensor's calibration is not a change of unit.
+    factor : float
+    offset : float
+    """
+
+    unit: str
+    factor: float = 1.0
+    offset: float = 0.0
+
+    @property
+    def changes(self) -> bool:
+        """False when the numbers stay as they are."""
+        return self.factor != 1.0 or self.offset != 0.0
+
+
+STANDARD_GRAVITY = 9.80665  # m/s^2, exact by definition (CGPM 1901)
+POUND_FORCE = 4.4482216152605  # N, exact: 0.45359237 kg x 9.80665 m/s^2
+INCH = 0.0254  # m, exact (1959)
+
+# unit as written -> (SI unit, factor). Upper and lower case matter only where they tell units apart (mN, MN).
+_TABLE: dict[str, tuple[str, float]] = {
+    # force
+    "N": ("N", 1.0), "kN": ("N", 1e3), "mN": ("N", 1e-3), "MN": ("N", 1e6), "uN": ("N", 1e-6), "daN": ("N", 10.0),
+    "Newton": ("N", 1.0), "Newtons": ("N", 1.0),
+    "lb": ("N", POUND_FORCE), "lbf": ("N", POUND_FORCE), "lbs": ("N", POUND_FORCE), "klbf": ("N", 1e3 * POUND_FORCE),
+    "kip": ("N", 1e3 * POUND_FORCE), "ozf": ("N", POUND_FORCE / 16.0),
+    "kgf": ("N", STANDARD_GRAVITY), "kp": ("N", STANDARD_GRAVITY), "gf": ("N", STANDARD_GRAVITY / 1e3),
+    # length
+    "m": ("m", 1.0), "mm": ("m", 1e-3), "cm": ("m", 1e-2), "um": ("m", 1e-6), "nm": ("m", 1e-9), "km": ("m", 1e3),
+    "in": ("m", INCH), "inch": ("m", INCH), "inches": ("m", INCH), "ft": ("m", 12 * INCH), "mil": ("m", INCH / 1e3),
+    # time
+    "s": ("s", 1.0), "sec": ("s", 1.0), "secs": ("s", 1.0), "second": ("s", 1.0), "seconds": ("s", 1.0),
+    "ms": ("s", 1e-3), "msec": ("s", 1e-3), "us": ("s", 1e-6), "usec": ("s", 1e-6), "ns": ("s", 1e-9),
+    "min": ("s", 60.0), "minutes": ("s", 60.0), "h": ("s", 3600.0), "hour": ("s", 3600.0), "hours": ("s", 3600.0),
+    # speed
+    "m/s": ("m/s", 1.0), "mm/s": ("m/s", 1e-3), "cm/s": ("m/s", 1e-2), "um/s": ("m/s", 1e-6),
+    "mm/min": ("m/s", 1e-3 / 60), "m/min": ("m/s", 1 / 60), "km/h": ("m/s", 1 / 3.6),
+    "in/s": ("m/s", INCH), "in/min": ("m/s", INCH / 60),
+    # acceleration; "g" alone is the unit of acceleration, a mass or a force in grams is written out
+    "m/s^2": ("m/s^2", 1.0), "mm/s^2": ("m/s^2", 1e-3), "cm/s^2": ("m/s^2", 1e-2), "in/s^2": ("m/s^2", INCH),
+    "g": ("m/s^2", STANDARD_GRAVITY), "mg": ("m/s^2", STANDARD_GRAVITY / 1e3), "g0": ("m/s^2", STANDARD_GRAVITY),
+    # angle and its rate
+    "rad": ("rad", 1.0), "mrad": ("rad", 1e-3), "deg": ("rad", math.pi / 180), "rad/s": ("rad/s", 1.0),
+    "mrad/s": ("rad/s", 1e-3), "deg/s": ("rad/s", math.pi / 180), "dps": ("rad/s", math.pi / 180),
+    "rpm": ("rad/s", 2 * math.pi / 60), "1/min": ("rad/s", 2 * math.pi / 60),
+    "rad/s^2": ("rad/s^2", 1.0), "deg/s^2": ("rad/s^2", math.pi / 180),
+    # stress, strain, moment
+    "Pa": ("Pa", 1.0), "kPa": ("Pa", 1e3), "MPa": ("Pa", 1e6), "GPa": ("Pa", 1e9), "N/mm^2": ("Pa", 1e6),
+    "bar": ("Pa", 1e5), "psi": ("Pa", POUND_FORCE / INCH**2), "ksi": ("Pa", 1e3 * POUND_FORCE / INCH**2),
+    "1": ("1", 1.0), "-": ("1", 1.0), "%": ("1", 1e-2), "mm/mm": ("1", 1.0), "m/m": ("1", 1.0), "in/in": ("1", 1.0),
+    "ustrain": ("1", 1e-6), "um/m": ("1", 1e-6),
+    "N m": ("N m", 1.0), "Nm": ("N m", 1.0), "N*m": ("N m", 1.0), "kNm": ("N m", 1e3), "Nmm": ("N m", 1e-3),
+    "mNm": ("N m", 1e-3),
+    # electrical and others that pass through
+    "V": ("V", 1.0), "Volt": ("V", 1.0), "Volts": ("V", 1.0), "mV": ("V", 1e-3), "uV": ("V", 1e-6),
+    "A": ("A", 1.0), "Amps": ("A", 1.0), "mA": ("A", 1e-3), "Hz": ("Hz", 1.0), "kHz": ("Hz", 1e3), "kg": ("kg", 1.0),
+    "K": ("K", 1.0), "W": ("W", 1.0),
+}  # fmt: skip
+_OFFSETS = {"degC": Conversion("K", 1.0, 273.15), "C": Conversion("K", 1.0, 273.15),
+            "degF": Conversion("K", 5 / 9, 273.15 - 32 * 5 / 9)}  # fmt: skip
+
+_EXACT = {name: Conversion(unit, factor) for name, (unit, factor) in _TABLE.items()} | _OFFSETS
+_FOLDED: dict[str, Conversion | None] = {}
+for _name, _conversion in _EXACT.items():
+    _key = _name.lower()
+    # two units that differ by case only (mN, MN) are never guessed from a misspelt one
+    _FOLDED[_key] = _conversion if _FOLDED.get(_key, _conversion) == _conversion else None
+
+QUANTITY_OF_UNIT = {
+    "N": "force", "m": "position", "s": "time", "m/s": "velocity", "m/s^2": "acceleration", "rad": "angle",
+    "rad/s": "angular_rate", "Pa": "stress", "1": "strain", "N m": "torque", "V": "voltage",
+}  # fmt: skip
+
+
+def _plain(text: str) -> str:
+    """The unit in plain letters: µ, ², ·, ** and the signs for degrees and seconds are written many ways."""
+    text = text.strip().strip("\"'").strip()
+    for old, new in (("µ", "u"), ("μ", "u"), ("°/s", "deg/s"), ("²", "^2"), ("**", "^"), ("·", " "), ("⋅", " "),
+                     ("−", "-")):  # fmt: skip
+        text = text.replace(old, new)
+    text = re.sub(r"°\s*([CF])\b", r"deg\1", text).replace("°", "deg")
+    text = re.sub(r"^(deg(?:rees)?|Grad)\b", "deg", text)
+    text = re.sub(r"/\s*(?:sec|s)\s*(?:\^2|2)$|/s/s$", "/s^2", text)
+    text = re.sub(r"/sec$", "/s", text)
+    text = re.sub(r"mm2$", "mm^2", text)
+    return re.sub(r"\s+", " ", text)
+
+
+def find_unit(unit: str) -> Conversion | None:
+    """The way to SI of a unit as a log writes it, or None when it is not known.
+
+    >>> find_unit("kN")
+    Conversion(unit='N', factor=1000.0, offset=0.0)
+    >>> find_unit("furlong") is None
+    True
+    """
+    plain = _plain(unit)
+    if plain in _EXACT:
+        return _EXACT[plain]
+    return _FOLDED.get(plain.lower())
+
+
+def to_si(unit: str) -> Conversion:
+    """The way to SI of a unit.
+
+    Parameters
+    ----------
+    unit : str
+        As a log or a user writes it: ``lbf``, ``mm``, ``(sec)`` without its brackets, ``m/s²``.
+
+    Raises
+    ------
+    ValueError
+        For a unit that is not in the table, with the nearest known one.
+
+    >>> to_si("lbf").factor
+    4.4482216152605
+    """
+    found = find_unit(unit)
+    if found is None:
+        raise ValueError(f"unit {unit!r} is not known. {did_you_mean(unit, _EXACT)}")
+    return found

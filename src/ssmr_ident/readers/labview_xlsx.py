@@ -1,0 +1,289 @@
+"""Workbooks from LabVIEW: three sheets z, y, x of time and volts (the thesis), or one sheet with all columns."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ssmr_ident.core.errors import did_you_mean
+from ssmr_ident.core.recording import Channel, Note, Recording
+from ssmr_ident.core.units import find_unit
+from ssmr_ident.readers import time_axis
+from ssmr_ident.readers.assemble import Column, Table, recordings_of
+from ssmr_ident.readers.headings import split_header
+from ssmr_ident.readers.options import ReadOptions
+from ssmr_ident.readers.sheet_numbers import SheetNumbers, numbers_of
+from ssmr_ident.readers.source import Source
+from ssmr_ident.readers.workbook import Sheet, open_sheets
+
+NAMES = ("labview-xlsx",)
+# xlsread(file, 4 - i): Excel puts a new sheet before the active one, so x, written first, ends up last
+_BY_POSITION = ("z", "y", "x")
+_SUPPLY = (0.0, 5.0)  # V, the sensor's supply; it cannot leave it
+_DAQ_RANGE = 10.0  # V
+_SLOWEST = 0.02  # s: 50 Hz; the band of interest ends there, so no axis was sampled more slowly
+
+
+def recognises(source: Source) -> bool:
+    return source.kind == "workbook"
+
+
+def read(source: Source, options: ReadOptions) -> list[Recording]:
+    """Recordings of a workbook.
+
+    Raises
+    ------
+    InputError
+        Sheets that do not say which axis they are, axes that do not fit together, cells that are no numbers.
+    """
+    sheets = open_sheets(source)
+    single = _single_table(sheets, options)
+    if single is not None:
+        return _one_sheet(source, single, options)
+    axes = _axes(source, sheets, options)
+    numbers = {axis: _axis_numbers(source, sheet, axis, options) for axis, sheet in axes.items()}
+    return [_recording(source, axes, numbers, options)]
+
+
+def _filled(sheet: Sheet) -> bool:
+    return any(cell != "" for row in sheet.rows for cell in row)
+
+
+def _single_table(sheets: list[Sheet], options: ReadOptions) -> Sheet | None:
+    """The sheet of a workbook in which one sheet holds everything, or None."""
+    if options.sheets and set(options.sheets) != {"data"}:
+        return None
+    filled = [sheet for sheet in sheets if _filled(sheet)]
+    if len(filled) != 1:
+        return None
+    widths = [sum(isinstance(cell, float) for cell in row) for row in filled[0].rows[-3:]]
+    headers = [split_header(cell) for row in filled[0].rows[:60] for cell in row if isinstance(cell, str) and cell]
+    united = any(unit and find_unit(unit) for _, unit in headers)
+    return filled[0] if widths and (max(widths) > 2 or (united and max(widths) == 2)) else None
+
+
+def _one_sheet(source: Source, sheet: Sheet, options: ReadOptions) -> list[Recording]:
+    found = numbers_of(source, sheet, "data", options)
+    columns = []
+    for index, header in enumerate(found.labels):
+        label, unit = split_header(header)
+        columns.append(
+            Column(label, unit, np.ascontiguousarray(found.values[:, index]), found.dated and index == 0)
+        )
+    columns[0].quantity = "time" if found.dated or columns[0].label == "X_Value" else None
+    table = Table(columns, lambda row: f"{sheet.name}, row {found.rows[row]}", f"sheet {sheet.name}",
+                  notes=found.notes, assumed_unit="V", axes_in_volts=True)  # fmt: skip
+    return recordings_of(source, "labview-xlsx", table, options)
+
+
+def _axes(source: Source, sheets: list[Sheet], options: ReadOptions) -> dict[str, Sheet]:
+    """Sheet of each axis: as the user says, by their names, or by position."""
+    if options.sheets:
+        return {axis: _wanted(source, sheets, axis, which) for axis, which in options.sheets.items()}
+    named = {sheet.name.strip().lower().removeprefix("a"): sheet for sheet in reversed(sheets)}
+    hidden = [sheet for sheet in sheets if sheet.hidden]
+    if {"x", "y", "z"} <= named.keys():
+        axes = {axis: named[axis] for axis in ("x", "y", "z")}
+        used = {id(sheet) for sheet in axes.values()}
+        for sheet in sheets:
+            if id(sheet) not in used:
+                level = source.warn if sheet.hidden else source.inform
+                level(f"sheet {sheet.name} is {'hidden and was ' if sheet.hidden else ''}ignored; the sheets named "
+                      "x, y, z are the axes", sheet.name)  # fmt: skip
+        order = [sheet.name.strip().lower().removeprefix("a") for sheet in sheets if id(sheet) in used]
+        if tuple(order) != _BY_POSITION:
+            source.warn(f"sheets are named in the order {', '.join(order)}, not z, y, x as by position; the names "
+                        "were followed")  # fmt: skip
+        return axes
+    names = ", ".join(sheet.name for sheet in sheets)
+    if len(sheets) < 3:
+        raise source.error(f"3 worksheets needed (z,y,x), found {len(sheets)}: {names}",
+                           "Export the missing axes, or name sheets with --sheets x=1.")  # fmt: skip
+    if len(sheets) > 3:
+        visible = [sheet for sheet in sheets if not sheet.hidden and _filled(sheet)]
+        if len(visible) != 3:
+            raise source.error(f"3 worksheets needed (z,y,x), found {len(sheets)}: {names}",
+                               "Say which is which: --sheets x=4,y=3,z=2.")  # fmt: skip
+        left = [sheet.name for sheet in sheets if sheet not in visible]
+        source.warn(f"hidden or empty sheets ignored: {', '.join(left)}")
+        sheets, hidden = visible, []
+    for sheet in hidden:
+        source.warn(f"sheet {sheet.name} is hidden and was counted", sheet.name)
+    for position, sheet in enumerate(sheets):
+        name = sheet.name.strip().lower().removeprefix("a")
+        if name in ("x", "y", "z") and name != _BY_POSITION[position]:
+            raise source.error(f"sheet {position + 1} is named {sheet.name}, by position it would be "
+                               f"{_BY_POSITION[position]}", "Say which is which: --sheets x=3,y=2,z=1.")  # fmt: skip
+    source.inform("axes by position: " + ", ".join(f"sheet {i} {s.name} = {a}" for i, (a, s) in
+                                                   enumerate(zip(_BY_POSITION, sheets, strict=True), start=1)))  # fmt: skip
+    return dict(zip(_BY_POSITION, sheets, strict=True))
+
+
+def _wanted(source: Source, sheets: list[Sheet], axis: str, which: int | str) -> Sheet:
+    if axis.removeprefix("a") not in ("x", "y", "z"):
+        raise source.error(f"--sheets names axis {axis!r}; axes are x, y, z", "Write --sheets x=3,y=2,z=1.")
+    if isinstance(which, int) or which.isdigit():
+        if 1 <= int(which) <= len(sheets):
+            return sheets[int(which) - 1]
+        raise source.error(
+            f"has {len(sheets)} worksheets; sheet {which} for {axis} is not there", "They count from 1."
+        )
+    found = [sheet for sheet in sheets if sheet.name == which]
+    if not found:
+        raise source.error(
+            f"has no sheet {which!r} for {axis}", did_you_mean(which, [sheet.name for sheet in sheets])
+        )
+    return found[0]
+
+
+def _axis_numbers(source: Source, sheet: Sheet, axis: str, options: ReadOptions) -> SheetNumbers:
+    found = numbers_of(source, sheet, f"axis {axis}", options)
+    width = found.values.shape[1]
+    if width == 1:
+        if options.fs is None:
+            raise source.error(f"time column missing in sheet {sheet.name} (axis {axis})",
+                               "Give --fs 1000 to accept volts only.")  # fmt: skip
+        found.values = np.column_stack([np.arange(len(found.values)) / options.fs, found.values[:, 0]])
+        found.notes.append(Note("info", f"time from --fs {options.fs:g} Hz", sheet.name))
+        return found
+    if width > 2:
+        raise source.error(f"sheet {sheet.name} (axis {axis}) has {width} columns of numbers; time and volts are "
+                           "expected", "Delete the others, or split the sheet.")  # fmt: skip
+    stamps = found.values[:, 0]
+    if options.fs is not None:
+        stamps = np.arange(len(stamps)) / options.fs
+        found.notes.append(
+            Note("info", f"time from --fs {options.fs:g} Hz; the sheet's column is not used", sheet.name)
+        )
+    elif options.time_unit is not None:
+        conversion = find_unit(options.time_unit)
+        if conversion is None or conversion.unit != "s":
+            raise source.error(f"--time-unit {options.time_unit} is no unit of time", "Give s, ms or us.")
+        stamps = stamps * conversion.factor
+    found.values[:, 0], notes = time_axis.elapsed(stamps, clock=found.dated)
+    found.notes += notes
+    if found.dated and options.fs is None:
+        _check_date_resolution(source, sheet, found)
+    return found
+
+
+def _check_date_resolution(source: Source, sheet: Sheet, found: SheetNumbers) -> None:
+    """Date cells are read to the millisecond: steps must be longer than twice what the rounding moves them."""
+    stamps = found.values[:, 0]
+    if len(stamps) < 3:
+        return
+    grid = np.linspace(stamps[0], stamps[-1], len(stamps))
+    step = (stamps[-1] - stamps[0]) / (len(stamps) - 1)
+    if step <= 0 or (np.abs(stamps - grid).max() > step / 4 and np.median(np.diff(stamps)) < 0.004):
+        raise source.error(f"sheet {sheet.name}: date-time cells resolve 1 ms, too coarse for steps of {step:.3g} s",
+                           "Give --fs, or export relative time.")  # fmt: skip
+
+
+def _recording(source: Source, axes: dict[str, Sheet], numbers: dict[str, SheetNumbers],
+               options: ReadOptions) -> Recording:  # fmt: skip
+    notes: list[Note] = []
+    steps = {}
+    for axis, found in numbers.items():
+        notes += found.notes
+        steps[axis] = float(np.median(np.diff(found.values[:, 0]))) if len(found.values) > 1 else 0.0
+    for axis, found in numbers.items():
+        _check_axis(source, axes[axis], found, steps[axis], min(steps.values()), options, notes)
+    order = [axis for axis in ("x", "y", "z", "ax", "ay", "az") if axis in numbers]
+    time, values = _on_one_grid(source, axes, numbers, order, options, notes)
+    _check_volts(source, axes, order, values, options, notes)
+    _refuse_equal_sheets(source, axes, order, values, notes)
+    channels = []
+    for axis in order:
+        label, _ = split_header(numbers[axis].labels[-1])
+        name = "a" + axis.removeprefix("a")
+        channels.append(Channel(name, np.ascontiguousarray(values[axis]), "V", label or axes[axis].name))
+    part = ", ".join(f"{c.name} = sheet {axes[a].name}" for a, c in zip(order, channels, strict=True))
+    return Recording(np.ascontiguousarray(time), tuple(channels), source.provenance("labview-xlsx", part),
+                     (*source.notes, *notes), {})  # fmt: skip
+
+
+def _check_axis(source: Source, sheet: Sheet, found: SheetNumbers, step: float, finest: float, options: ReadOptions,
+                notes: list[Note]) -> None:  # fmt: skip
+    def place(row: int) -> str:
+        return f"{sheet.name}, row {found.rows[row]}"
+
+    stamps = found.values[:, 0]
+    try:
+        axis = time_axis.check(stamps, place, split=False)
+    except time_axis.TimeProblem as error:
+        raise source.error(error.problem, error.mend, place(error.row)) from error
+    if len(axis.rows) < len(stamps):
+        found.values, found.rows = found.values[axis.rows], found.rows[axis.rows]
+    notes += axis.notes
+    if options.fs is None and options.time_unit is None and step > _SLOWEST:
+        expected = f"{finest:g} s as in the other sheets" if finest < step else "0.001 s or so"
+        raise source.error(f"sheet {sheet.name}: dt = {step:g} s, expected {expected}",
+                           "Is the column in ms (--time-unit ms) or a sample count (--fs 1000)?")  # fmt: skip
+    notes += time_axis.gaps(found.values[:, 0], place)
+
+
+def _on_one_grid(source: Source, axes: dict[str, Sheet], numbers: dict[str, SheetNumbers], order: list[str],
+                 options: ReadOptions, notes: list[Note]) -> tuple[np.ndarray, dict[str, np.ndarray]]:  # fmt: skip
+    lengths = {axis: len(numbers[axis].values) for axis in order}
+    first = numbers[order[0]].values[:, 0]
+    tolerance = 0.25 * float(np.median(np.diff(first)))
+    same = len(set(lengths.values())) == 1 and all(
+        np.abs(numbers[axis].values[:, 0] - first).max() <= tolerance for axis in order[1:]
+    )
+    if same:
+        return first, {axis: numbers[axis].values[:, 1] for axis in order}
+    counts = ", ".join(f"{axis} {count}" for axis, count in lengths.items())
+    reason = "; ".join(note.text for note in notes if "missing after" in note.text)
+    if not options.trim:
+        what = (
+            f"{counts} samples"
+            if len(set(lengths.values())) > 1
+            else "the same count of samples at different times"
+        )
+        raise source.error(f"axes differ: {what}" + (f" ({reason})" if reason else ""),
+                           "Keep what all have with --trim, or export the axes again.")  # fmt: skip
+    ticks = {axis: np.round(numbers[axis].values[:, 0] / (4 * tolerance)).astype(np.int64) for axis in order}
+    common = ticks[order[0]]
+    for axis in order[1:]:
+        common = np.intersect1d(common, ticks[axis])
+    if len(common) < 2:
+        raise source.error("axes have no samples at the same times", "Export the axes of one recording.")
+    rows = {axis: np.searchsorted(ticks[axis], common) for axis in order}
+    notes.append(Note("warning", f"axes differ ({counts} samples); trimmed to the {len(common)} that all have"))
+    return numbers[order[0]].values[rows[order[0]], 0], {a: numbers[a].values[rows[a], 1] for a in order}
+
+
+def _check_volts(source: Source, axes: dict[str, Sheet], order: list[str], values: dict[str, np.ndarray],
+                 options: ReadOptions, notes: list[Note]) -> None:  # fmt: skip
+    for axis in order:
+        given = next(
+            (unit for key, unit in options.units.items() if key.lower().removeprefix("a") == axis[-1]), None
+        )
+        if given is not None:
+            conversion = find_unit(given)
+            if conversion is None or conversion.unit != "V":
+                raise source.error(f"unit {given!r} for axis {axis} is no voltage", "Give V or mV.")
+            values[axis] = values[axis] * conversion.factor
+            notes.append(Note("info", f"a{axis[-1]}: {given} × {conversion.factor:g} = V"))
+        low, high = float(np.nanmin(values[axis])), float(np.nanmax(values[axis]))
+        extreme = high if abs(high) >= abs(low) else low
+        if abs(extreme) > _DAQ_RANGE:
+            raise source.error(f"volts outside 0…5 V (extreme {extreme:g}): mV?",
+                               f"If so: --units a{axis[-1]}=mV.", f"sheet {axes[axis].name}")  # fmt: skip
+        if low < _SUPPLY[0] or high > _SUPPLY[1]:
+            notes.append(
+                Note("warning", f"volts outside the sensor's 0…5 V ({low:g} to {high:g})", axes[axis].name)
+            )
+
+
+def _refuse_equal_sheets(source: Source, axes: dict[str, Sheet], order: list[str], values: dict[str, np.ndarray],
+                         notes: list[Note]) -> None:  # fmt: skip
+    """Two measured axes never agree in every sample; a straight line holds no noise that could tell."""
+    for i, first in enumerate(order):
+        for second in order[i + 1 :]:
+            if not np.array_equal(values[first], values[second]):
+                continue
+            bend = np.abs(np.diff(values[first], 2)).max(initial=0.0)
+            text = f"sheets {axes[first].name} and {axes[second].name} are identical"
+            if bend > 1e-9 * max(1.0, float(np.abs(values[first]).max())):
+                raise source.error(text, "The same axis was pasted twice; export the other one.")
+            notes.append(Note("warning", f"{text} (a straight line: no sensor, or no noise?)"))

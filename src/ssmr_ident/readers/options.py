@@ -1,0 +1,64 @@
+"""What a user can tell a reader: nothing is needed when the file speaks for itself."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+
+@dataclass(frozen=True)
+class ReadOptions:
+    """Choices for reading a log.
+
+    Parameters
+    ----------
+    reader : str or None
+        ``labview-xlsx``, ``lvm``, ``tdms``, ``mtestquattro`` or ``csv``; None lets the content decide.
+    fs : float or None [Hz]
+        Sampling rate that replaces the file's time column, or stands in for a missing one.
+    units : mapping of str to str
+        Unit by column: header, canonical name or start of either (``{"load": "lbf"}``). Wins over the file.
+    columns : mapping of str to int or str
+        Column by quantity, as number from 0 or as header (``{"time": 0, "force": 2}``); only these are read.
+    skip : int or "auto"
+        Rows of the numeric block of a workbook's sheet to pass over; 10 is the thesis' ``11:end``.
+    sheets : mapping of str to int or str
+        Worksheet by axis, as number from 1 or as name (``{"x": 4, "y": 3, "z": 2}``).
+    time_unit : str or None
+        Unit of the time column when the file does not say (``ms``, ``us``).
+    on_bad : {"error", "nan"}
+        What a cell that is no number does inside the data: stop, or become NaN (a row without time is dropped).
+    trim : bool
+        Cut axes or channels of different length to the samples that all of them have.
+    load_scale : float or None
+        Newton per unit of LOAD in ``.mtwData`` files; None takes 10 with a warning.
+    sample : int or None
+        Which recording (from 1) of a file that holds several.
+    decimal : {".", ","} or None
+        Decimal sign of a text log, where its numbers could be read either way.
+    """
+
+    reader: str | None = None
+    fs: float | None = None
+    units: Mapping[str, str] = field(default_factory=dict)
+    columns: Mapping[str, int | str] = field(default_factory=dict)
+    skip: int | str = "auto"
+    sheets: Mapping[str, int | str] = field(default_factory=dict)
+    time_unit: str | None = None
+    on_bad: str = "error"
+    trim: bool = False
+    load_scale: float | None = None
+    sample: int | None = None
+    decimal: str | None = None
+
+    def __post_init__(self) -> None:
+        if self.fs is not None and not (0 < self.fs < float("inf")):
+            raise ValueError(f"fs must be a positive number of Hz. Got {self.fs!r} instead.")
+        if self.on_bad not in ("error", "nan"):
+            raise ValueError(f"on_bad must be 'error' or 'nan'. Got {self.on_bad!r} instead.")
+        if self.skip != "auto" and not (isinstance(self.skip, int) and self.skip >= 0):
+            raise ValueError(f"skip must be 'auto' or a number of rows from 0. Got {self.skip!r} instead.")
+        if self.decimal not in (None, ".", ","):
+            raise ValueError(f"decimal must be '.' or ','. Got {self.decimal!r} instead.")
+        if self.sample is not None and self.sample < 1:
+            raise ValueError(f"sample counts from 1. Got {self.sample!r} instead.")

@@ -1,0 +1,117 @@
+"""A file as bytes: its SHA-256, what kind of content it holds, and what is refused at the door."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from ssmr_ident.core.errors import InputError
+from ssmr_ident.core.recording import Note, Provenance
+
+MAX_BYTES = 2**30  # a log of 20 s is 1 MB; an hour of three axes at 1 kHz as text is 150 MB
+
+_OLE2 = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"
+_LFS = b"version https://git-lfs"
+
+
+@dataclass(frozen=True)
+class Source:
+    """The bytes of one file.
+
+    Parameters
+    ----------
+    path : Path
+    data : bytes
+    kind : str
+        ``workbook``, ``tdms``, ``xml`` or ``text``.
+    notes : list of Note
+        Collected while the file is opened, passed on to its recordings.
+    """
+
+    path: Path
+    data: bytes
+    kind: str
+    notes: list[Note] = field(default_factory=list)
+
+    @property
+    def name(self) -> str:
+        return str(self.path)
+
+    def provenance(self, reader: str, part: str = "") -> Provenance:
+        return Provenance(self.name, hashlib.sha256(self.data).hexdigest(), reader, part)
+
+    def error(self, problem: str, mend: str = "", place: str = "") -> InputError:
+        """An error at a place in this file."""
+        return InputError(f"{self.name}:{place}" if place else self.name, problem, mend)
+
+    def warn(self, text: str, where: str = "") -> None:
+        self.notes.append(Note("warning", text, where))
+
+    def inform(self, text: str, where: str = "") -> None:
+        self.notes.append(Note("info", text, where))
+
+
+def open_source(path: str | Path) -> Source:
+    """Read a file and say what its bytes are.
+
+    Raises
+    ------
+    InputError
+        Not there, a folder, empty, too large, or a content that is no log.
+    """
+    path = Path(path)
+    try:
+        if path.is_dir():
+            raise InputError(str(path), "is a folder, not a log", "Name a file in it.")
+        size = path.stat().st_size
+        if size > MAX_BYTES:
+            raise InputError(str(path), f"holds {size / 2**20:.0f} MB, more than {MAX_BYTES // 2**20} MB",
+                             "Split the recording.")  # fmt: skip
+        data = path.read_bytes()
+    except (OSError, ValueError) as error:  # ValueError: a NUL in the name
+        reason = getattr(error, "strerror", None) or str(error)
+        raise InputError(str(path), f"cannot be read ({reason})", "Check the name and the permissions.") from error
+    kind = _kind(path, data)
+    source = Source(path, data, kind)
+    _compare_with_extension(source)
+    return source
+
+
+def _kind(path: Path, data: bytes) -> str:
+    where = str(path)
+    if not data:
+        raise InputError(where, "file is empty (0 bytes): no channels, no data", "Copy it again.")
+    if path.name.startswith("~$"):
+        raise InputError(where, "is Excel's lock file, not the workbook", "Name the file without '~$'.")
+    head = data[:1024]
+    if head.startswith(b"PK"):
+        return "workbook"
+    if head.startswith(_OLE2):
+        raise InputError(where, "is a password-protected workbook or an old .xls", "Save it as unprotected .xlsx.")
+    if head.startswith(_LFS):
+        raise InputError(where, "is a git-lfs pointer, not the data", "Run: git lfs pull")
+    if head.startswith(b"TDSm"):
+        return "tdms"
+    if head.startswith(b"TDSh"):
+        raise InputError(where, "is a TDMS index, not the data", "Open the .tdms file beside it.")
+    text = head.lstrip(b"\xef\xbb\xbf \t\r\n")
+    if text[:1] == b"<":
+        lowered = text.lower()
+        if lowered.startswith((b"<!doctype html", b"<html", b"<table", b"<head", b"<body", b"<meta", b"<script")):
+            raise InputError(where, "is an HTML page, not a log", "Export the data itself, as .xlsx or text.")
+        return "xml"
+    if head.startswith((b"\x01\x00\x00\x00", b"\xd7\xcd\xc6\x9a", b"BM", b"\x89PNG", b"\xff\xd8\xff", b"%PDF")):
+        raise InputError(where, "is a picture, not data",
+                         "In LabVIEW use 'Export Data To Excel', not 'Export Simplified Image'.")  # fmt: skip
+    return "text"
+
+
+def _compare_with_extension(source: Source) -> None:
+    extension = source.path.suffix.lower()
+    if source.kind == "workbook" and extension not in (".xlsx", ".xlsm"):
+        source.warn(f"content is an .xlsx workbook, the name says {extension or 'nothing'}")
+    if source.kind == "text" and extension in (".xlsx", ".xls", ".xlsm"):
+        source.warn("content is text, not a workbook")
+    if source.kind == "text" and extension == ".tdms":
+        raise source.error("is not a TDMS file (it does not begin with TDSm)", "Copy the .tdms again.")

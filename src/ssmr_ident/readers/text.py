@@ -1,0 +1,104 @@
+"""From bytes to text whose numbers are plain ASCII: byte-order marks, UTF-16, Windows code pages, NULs."""
+
+from __future__ import annotations
+
+import codecs
+from dataclasses import dataclass
+
+from ssmr_ident.readers.source import Source
+
+# Letters that only Central European logs hold at these bytes (cp1250): ą ś ź ł Ł ż ę ć ń
+_CENTRAL_EUROPEAN = (
+    "obciążenie",
+    "odkształcenie",
+    "siła",
+    "naprężenie",
+    "próbki",
+    "długość",
+    "prędkość",
+    "síla",
+    "čas",
+)
+
+
+@dataclass(frozen=True)
+class Text:
+    """A log as bytes of an ASCII-compatible encoding.
+
+    Parameters
+    ----------
+    data : bytes
+        Lines end with ``\\n`` or ``\\r\\n``.
+    encoding : str
+        To decode header lines with.
+    """
+
+    data: bytes
+    encoding: str
+
+    def decode(self, line: bytes) -> str:
+        return line.decode(self.encoding, errors="replace").rstrip("\r")
+
+
+def text_of(source: Source) -> Text:
+    """The text of a file.
+
+    Notes
+    -----
+    UTF-8 with or without mark, then UTF-16 by its mark or its NULs, then the Windows code page: cp1250 when
+    words of a Central European language appear in it, cp1252 otherwise.
+    """
+    data = source.data
+    encoding = "utf-8"
+    if data.startswith(codecs.BOM_UTF8):
+        data = data[3:]
+    elif data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        data, encoding = _from_utf16(source, data, "utf-16"), "utf-8"
+        source.inform("text is UTF-16")
+    elif _looks_like_utf16(data):
+        order = "utf-16-le" if data[1] == 0 else "utf-16-be"
+        data = _from_utf16(source, data, order)
+        source.inform("text is UTF-16 without a byte-order mark")
+    if b"\0" in data:
+        data = _without_nuls(source, data)
+    if b"\r" in data and b"\n" not in data:
+        data = data.replace(b"\r", b"\n")
+    if not data.isascii():
+        try:
+            data.decode("utf-8")
+        except UnicodeDecodeError:
+            central = data[:65536].decode("cp1250", errors="replace").lower()
+            encoding = "cp1250" if any(word in central for word in _CENTRAL_EUROPEAN) else "cp1252"
+            source.inform(f"text is not UTF-8; read as {encoding}")
+    return Text(data, encoding)
+
+
+def _looks_like_utf16(data: bytes) -> bool:
+    """ASCII text in UTF-16 has a NUL in every second byte."""
+    head = data[:256]
+    if len(head) < 8:
+        return False
+    return head[0::2].count(0) > 0.8 * len(head) / 2 or head[1::2].count(0) > 0.8 * len(head) / 2
+
+
+def _from_utf16(source: Source, data: bytes, encoding: str) -> bytes:
+    if len(data) % 2:
+        source.warn("the last character is cut in half; dropped")
+        data = data[:-1]
+    return data.decode(encoding, errors="replace").lstrip("\ufeff").encode("utf-8", errors="replace")
+
+
+def _without_nuls(source: Source, data: bytes) -> bytes:
+    kept = data.rstrip(b"\0")
+    tail = len(data) - len(kept)
+    if tail:
+        source.warn(
+            f"{tail} NUL bytes at the end dropped (power lost while writing?); last samples may be missing"
+        )
+    inside = kept.count(b"\0")
+    if inside > 0.1 * max(len(kept), 1) or not kept:
+        raise source.error("is binary, not a text log", "Export the log as text, .lvm, .tdms or .xlsx.")
+    if inside:
+        source.warn(f"{inside} NUL bytes inside the text dropped")
+        kept = kept.replace(b"\0", b"")
+    return kept
