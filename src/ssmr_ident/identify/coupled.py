@@ -10,7 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-GRAVITY = 9.81
+from ssmr_ident.physics.linear import linear_robot
+from ssmr_ident.physics.robot import GRAVITY, Robot
 
 
 @dataclass(frozen=True)
@@ -82,56 +83,23 @@ def plane_modes(
     return vibration_modes(np.diag([mass, inertia]), matrix(d_h, d_v), stiffness)
 
 
-@dataclass(frozen=True)
-class Body:
-    """Rigid body on linear tires.
-
-    Parameters
-    ----------
-    mass : float [kg]
-    inertia : (3, 3) float [kg m^2]
-    contacts : (w, 3) float [m]
-        Contact points from the centre of mass.
-    stiffness, damping : (3,) float [N/m], [N s/m]
-        Per tire along x, y, z.
-    """
-
-    mass: float
-    inertia: np.ndarray
-    contacts: np.ndarray
-    stiffness: np.ndarray
-    damping: np.ndarray
-
-    def matrices(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Mass, damping and stiffness matrices for (x, y, z, roll, pitch, yaw), each (6, 6).
-
-        The stiffness holds −m g h on roll and pitch: at rest the loads carry the weight, and their arms turn
-        with the body.
-        """
-        mass = np.zeros((6, 6))
-        mass[:3, :3], mass[3:, 3:] = self.mass * np.eye(3), self.inertia
-        stiffness, damping = np.zeros((6, 6)), np.zeros((6, 6))
-        for x, y, z in np.asarray(self.contacts, float):
-            motion = np.array([[1, 0, 0, 0, z, -y], [0, 1, 0, -z, 0, x], [0, 0, 1, y, -x, 0]], float)
-            stiffness += motion.T @ (self.stiffness[:, None] * motion)
-            damping += motion.T @ (self.damping[:, None] * motion)
-        height = -float(np.mean(np.asarray(self.contacts)[:, 2]))
-        stiffness[3, 3] -= self.mass * GRAVITY * height
-        stiffness[4, 4] -= self.mass * GRAVITY * height
-        return mass, damping, stiffness
-
-
 AXES_OF = {"roll": (1, 3), "pitch": (0, 4), "yaw": (5,)}
 """Axes of (x, y, z, roll, pitch, yaw) that a motion lives in."""
 
 
-def body_modes(body: Body) -> dict[str, tuple[float, float]]:
+def body_modes(robot: Robot) -> dict[str, tuple[float, float]]:
     """ω_n [rad/s] and ξ of the main mode of each motion: what a decay log of that motion shows.
+
+    Parameters
+    ----------
+    robot : Robot
+        Linearised at rest on sticking tires.
 
     Yaw is the mode with the largest share of energy in yaw; roll and pitch are the slowest modes with most of
     their energy in roll and y, or pitch and x.
     """
-    modes = vibration_modes(*body.matrices())
+    linear = linear_robot(robot)
+    modes = vibration_modes(linear.mass, linear.damping, linear.stiffness)
     found: dict[str, tuple[float, float]] = {}
     yaw = int(np.argmax(modes.shapes[:, 5])) if len(modes.natural) else -1
     for motion, axes in AXES_OF.items():
