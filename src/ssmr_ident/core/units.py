@@ -40,12 +40,14 @@ _TABLE: dict[str, tuple[str, float]] = {
     # force
     "N": ("N", 1.0), "kN": ("N", 1e3), "mN": ("N", 1e-3), "MN": ("N", 1e6), "uN": ("N", 1e-6), "daN": ("N", 10.0),
     "Newton": ("N", 1.0), "Newtons": ("N", 1.0),
-    "lb": ("N", POUND_FORCE), "lbf": ("N", POUND_FORCE), "lbs": ("N", POUND_FORCE), "klbf": ("N", 1e3 * POUND_FORCE),
+    "lb": ("N", POUND_FORCE), "lbf": ("N", POUND_FORCE), "lbs": ("N", POUND_FORCE),
+    "klbf": ("N", 1e3 * POUND_FORCE),
     "kip": ("N", 1e3 * POUND_FORCE), "ozf": ("N", POUND_FORCE / 16.0),
     "kgf": ("N", STANDARD_GRAVITY), "kp": ("N", STANDARD_GRAVITY), "gf": ("N", STANDARD_GRAVITY / 1e3),
     # length
     "m": ("m", 1.0), "mm": ("m", 1e-3), "cm": ("m", 1e-2), "um": ("m", 1e-6), "nm": ("m", 1e-9), "km": ("m", 1e3),
-    "in": ("m", INCH), "inch": ("m", INCH), "inches": ("m", INCH), "ft": ("m", 12 * INCH), "mil": ("m", INCH / 1e3),
+    "in": ("m", INCH), "inch": ("m", INCH), "inches": ("m", INCH), "ft": ("m", 12 * INCH),
+    "mil": ("m", INCH / 1e3),
     # time
     "s": ("s", 1.0), "sec": ("s", 1.0), "secs": ("s", 1.0), "second": ("s", 1.0), "seconds": ("s", 1.0),
     "ms": ("s", 1e-3), "msec": ("s", 1e-3), "us": ("s", 1e-6), "usec": ("s", 1e-6), "ns": ("s", 1e-9),
@@ -65,13 +67,15 @@ _TABLE: dict[str, tuple[str, float]] = {
     # stress, strain, moment
     "Pa": ("Pa", 1.0), "kPa": ("Pa", 1e3), "MPa": ("Pa", 1e6), "GPa": ("Pa", 1e9), "N/mm^2": ("Pa", 1e6),
     "bar": ("Pa", 1e5), "psi": ("Pa", POUND_FORCE / INCH**2), "ksi": ("Pa", 1e3 * POUND_FORCE / INCH**2),
-    "1": ("1", 1.0), "-": ("1", 1.0), "%": ("1", 1e-2), "mm/mm": ("1", 1.0), "m/m": ("1", 1.0), "in/in": ("1", 1.0),
+    "1": ("1", 1.0), "-": ("1", 1.0), "%": ("1", 1e-2), "mm/mm": ("1", 1.0), "m/m": ("1", 1.0),
+    "in/in": ("1", 1.0),
     "ustrain": ("1", 1e-6), "um/m": ("1", 1e-6),
     "N m": ("N m", 1.0), "Nm": ("N m", 1.0), "N*m": ("N m", 1.0), "kNm": ("N m", 1e3), "Nmm": ("N m", 1e-3),
     "mNm": ("N m", 1e-3),
     # electrical and others that pass through
     "V": ("V", 1.0), "Volt": ("V", 1.0), "Volts": ("V", 1.0), "mV": ("V", 1e-3), "uV": ("V", 1e-6),
-    "A": ("A", 1.0), "Amps": ("A", 1.0), "mA": ("A", 1e-3), "Hz": ("Hz", 1.0), "kHz": ("Hz", 1e3), "kg": ("kg", 1.0),
+    "A": ("A", 1.0), "Amps": ("A", 1.0), "mA": ("A", 1e-3), "Hz": ("Hz", 1.0), "kHz": ("Hz", 1e3),
+    "kg": ("kg", 1.0),
     "K": ("K", 1.0), "W": ("W", 1.0),
 }  # fmt: skip
 _OFFSETS = {"degC": Conversion("K", 1.0, 273.15), "C": Conversion("K", 1.0, 273.15),

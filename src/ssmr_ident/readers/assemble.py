@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+import itertools
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -11,51 +11,11 @@ from ssmr_ident.core.errors import did_you_mean
 from ssmr_ident.core.recording import Channel, Note, Recording
 from ssmr_ident.core.units import find_unit
 from ssmr_ident.readers import time_axis
+from ssmr_ident.readers.channels import channels_of
 from ssmr_ident.readers.headings import quantity_of
 from ssmr_ident.readers.options import ReadOptions
 from ssmr_ident.readers.source import Source
-
-
-@dataclass
-class Column:
-    """A column as the file has it: label without unit, unit as written (None: not stated), values (n,)."""
-
-    label: str
-    unit: str | None
-    values: np.ndarray
-    clock: bool = False
-    quantity: str | None = None
-
-
-@dataclass
-class Table:
-    """Columns of one length with what is known about them.
-
-    Parameters
-    ----------
-    columns : list of Column
-    place : function of int to str
-        Names a row for the user.
-    part : str
-        Part of the file, for the provenance.
-    header : dict
-    notes : list of Note
-    assumed_unit : str or None
-        Unit of columns that state none (``V`` where LabVIEW wrote the log), with a warning.
-    axes_in_volts : bool
-        Three voltage columns are x, y, z (logs of a data-acquisition card).
-    split : bool
-        A restart of time begins another sample.
-    """
-
-    columns: list[Column]
-    place: Callable[[int], str]
-    part: str = ""
-    header: dict[str, str] = field(default_factory=dict)
-    notes: list[Note] = field(default_factory=list)
-    assumed_unit: str | None = None
-    axes_in_volts: bool = False
-    split: bool = False
+from ssmr_ident.readers.table import Column, Table
 
 
 def recordings_of(source: Source, reader: str, table: Table, options: ReadOptions) -> list[Recording]:
@@ -77,8 +37,13 @@ def recordings_of(source: Source, reader: str, table: Table, options: ReadOption
     if time_column is None or options.fs is not None:
         assert options.fs is not None
         stamps = np.arange(count) / options.fs
-        notes.append(Note("info", f"time from --fs {options.fs:g} Hz"
-                          + ("" if time_column is None else f"; column {time_column.label!r} not used")))  # fmt: skip
+        notes.append(
+            Note(
+                "info",
+                f"time from --fs {options.fs:g} Hz"
+                + ("" if time_column is None else f"; column {time_column.label!r} not used"),
+            )
+        )
     else:
         stamps = _seconds(source, time_column, options, table, notes)
     kept = np.isfinite(stamps)
@@ -94,21 +59,41 @@ def recordings_of(source: Source, reader: str, table: Table, options: ReadOption
         raise source.error(error.problem, error.mend, table.place(int(first[error.row]))) from error
     notes += axis.notes
     rows = first[axis.rows]
-    channels = _channels(source, data, rows, table, notes)
+    channels = channels_of(source, data, rows, table, notes)
     edges = [0, *axis.restarts, len(axis.time)]
     return [
-        _recording(source, reader, table, axis.time[a:b], rows[a:b], [c.samples[a:b] for c in channels], channels,
-                   notes, (number, len(edges) - 1))
-        for number, (a, b) in enumerate(zip(edges[:-1], edges[1:], strict=True), start=1)
-    ]  # fmt: skip
+        _recording(
+            source,
+            reader,
+            table,
+            axis.time[a:b],
+            rows[a:b],
+            [c.samples[a:b] for c in channels],
+            channels,
+            notes,
+            (number, len(edges) - 1),
+        )
+        for number, (a, b) in enumerate(itertools.pairwise(edges), start=1)
+    ]
 
 
-def _recording(source: Source, reader: str, table: Table, time: np.ndarray, rows: np.ndarray,
-               samples: Sequence[np.ndarray], channels: Sequence[Channel], notes: list[Note],
-               of: tuple[int, int]) -> Recording:  # fmt: skip
+def _recording(
+    source: Source,
+    reader: str,
+    table: Table,
+    time: np.ndarray,
+    rows: np.ndarray,
+    samples: Sequence[np.ndarray],
+    channels: Sequence[Channel],
+    notes: list[Note],
+    of: tuple[int, int],
+) -> Recording:
     if len(time) < 2:
-        raise source.error(f"has {len(time)} row(s) of data", "A recording needs two samples at least.",
-                           table.place(int(rows[0])) if len(rows) else table.part)  # fmt: skip
+        raise source.error(
+            f"has {len(time)} row(s) of data",
+            "A recording needs two samples at least.",
+            table.place(int(rows[0])) if len(rows) else table.part,
+        )
     part = table.part
     if of[1] > 1:
         part = f"{part}, sample {of[0]} of {of[1]}".lstrip(", ")
@@ -116,12 +101,20 @@ def _recording(source: Source, reader: str, table: Table, time: np.ndarray, rows
     for channel, values in zip(channels, samples, strict=True):
         missing = np.flatnonzero(~np.isfinite(values))
         if len(missing):
-            mine.append(Note("warning", f"{len(missing)} value(s) of {channel.label or channel.name} are no number, "
-                             f"kept as NaN; the first at t = {time[missing[0]]:.6g} s",
-                             table.place(int(rows[missing[0]]))))  # fmt: skip
+            mine.append(
+                Note(
+                    "warning",
+                    f"{len(missing)} value(s) of {channel.label or channel.name} are no number, "
+                    f"kept as NaN; the first at t = {time[missing[0]]:.6g} s",
+                    table.place(int(rows[missing[0]])),
+                )
+            )
             if len(missing) == len(values):
-                raise source.error(f"column {channel.label or channel.name} has no numbers",
-                                   "Export it again, or leave it out with --columns.", part)  # fmt: skip
+                raise source.error(
+                    f"column {channel.label or channel.name} has no numbers",
+                    "Export it again, or leave it out with --columns.",
+                    part,
+                )
     return Recording(
         np.ascontiguousarray(time),
         tuple(
@@ -144,8 +137,11 @@ def _chosen(source: Source, table: Table, options: ReadOptions) -> list[Column]:
         index = _index(source, labels, which, quantity)
         column = table.columns[index]
         chosen.append(Column(column.label, column.unit, column.values, column.clock, quantity))
-    left = [label for label, column in zip(labels, table.columns, strict=True)
-            if not any(column.values is one.values for one in chosen)]  # fmt: skip
+    left = [
+        label
+        for label, column in zip(labels, table.columns, strict=True)
+        if not any(column.values is one.values for one in chosen)
+    ]
     if left:
         table.notes.append(Note("info", f"columns not read, as --columns says: {', '.join(left)}"))
     return chosen
@@ -159,8 +155,10 @@ def _index(source: Source, labels: list[str], which: int | str, quantity: str) -
         raise source.error(f"has no column {which!r} for {quantity}", did_you_mean(which, labels))
     number = int(which)
     if not 0 <= number < len(labels):
-        raise source.error(f"has {len(labels)} columns, numbered from 0; column {number} for {quantity} is not there",
-                           f"They are: {', '.join(f'{i}={label}' for i, label in enumerate(labels))}.")  # fmt: skip
+        raise source.error(
+            f"has {len(labels)} columns, numbered from 0; column {number} for {quantity} is not there",
+            f"They are: {', '.join(f'{i}={label}' for i, label in enumerate(labels))}.",
+        )
     return number
 
 
@@ -176,13 +174,16 @@ def _apply_units(source: Source, columns: list[Column], options: ReadOptions) ->
         known[id(column)] = names
     for wanted, unit in options.units.items():
         if find_unit(unit) is None:
-            raise source.error(f"unit {unit!r} of --units {wanted}={unit} is not known",
-                               "Units are written as in N, lbf, mm, in, s, ms, V, m/s^2, g.")  # fmt: skip
+            raise source.error(
+                f"unit {unit!r} of --units {wanted}={unit} is not known",
+                "Units are written as in N, lbf, mm, in, s, ms, V, m/s^2, g.",
+            )
         matches = [c for c in columns if wanted.lower() in known[id(c)]]
         matches = matches or [c for c in columns if any(n.startswith(wanted.lower()) for n in known[id(c)] if n)]
         if not matches:
-            raise source.error(f"has no column {wanted!r} for --units",
-                               did_you_mean(wanted, [column.label for column in columns]))  # fmt: skip
+            raise source.error(
+                f"has no column {wanted!r} for --units", did_you_mean(wanted, [column.label for column in columns])
+            )
         for column in matches:
             column.unit = unit
 
@@ -207,8 +208,11 @@ def _time_column(source: Source, columns: list[Column], options: ReadOptions, ta
             )
             return columns[0]
     labels = ", ".join(f"{i}={c.label or 'no header'}" for i, c in enumerate(columns))
-    raise source.error(f"time column missing; columns: {labels}",
-                       "Give --fs 1000 for samples at a known rate, or --columns time=0.", table.part)  # fmt: skip
+    raise source.error(
+        f"time column missing; columns: {labels}",
+        "Give --fs 1000 for samples at a known rate, or --columns time=0.",
+        table.part,
+    )
 
 
 def _seconds(source: Source, column: Column, options: ReadOptions, table: Table, notes: list[Note]) -> np.ndarray:
@@ -219,83 +223,24 @@ def _seconds(source: Source, column: Column, options: ReadOptions, table: Table,
         step = float(np.median(np.diff(finite))) if len(finite) > 1 else 0.0
         whole = len(finite) > 2 and bool((finite == np.round(finite)).all())
         if whole and step >= 1 and np.nanmin(values) < time_axis.SECONDS_1904:
-            raise source.error(f"unit of time column {column.label!r} unknown: whole numbers in steps of {step:g}",
-                               "Give --time-unit s, ms or us, or --fs for a sample count.", table.part)  # fmt: skip
+            raise source.error(
+                f"unit of time column {column.label!r} unknown: whole numbers in steps of {step:g}",
+                "Give --time-unit s, ms or us, or --fs for a sample count.",
+                table.part,
+            )
         notes.append(Note("info", f"time column {column.label or '(no header)'} states no unit; taken as s"))
         unit = "s"
     if unit is not None:
         conversion = find_unit(unit)
         if conversion is None or conversion.unit != "s":
-            raise source.error(f"unit {unit!r} of time column {column.label!r} is no time",
-                               "Give --time-unit s, ms or us.", table.part)  # fmt: skip
+            raise source.error(
+                f"unit {unit!r} of time column {column.label!r} is no time",
+                "Give --time-unit s, ms or us.",
+                table.part,
+            )
         if conversion.changes:
             notes.append(Note("info", f"{column.label or 'time'}: {unit} × {conversion.factor:g} = s"))
             values = values * conversion.factor
     values, more = time_axis.elapsed(values, clock=column.clock)
     notes += more
     return values
-
-
-def _channels(
-    source: Source, data: list[Column], rows: np.ndarray, table: Table, notes: list[Note]
-) -> list[Channel]:
-    channels = []
-    assumed = []
-    for column in data:
-        quantity = column.quantity or quantity_of(column.label, column.unit)
-        conversion = find_unit(column.unit) if column.unit else None
-        label = column.label
-        values = column.values[rows]
-        if column.unit is None and table.assumed_unit is not None and quantity is None:
-            assumed.append(label or f"column {len(channels) + 2}")
-            unit = table.assumed_unit
-        elif column.unit is None and quantity is not None:
-            raise source.error(
-                f"unit of {label} unknown", f"Give --units {label}=…, such as N, mm, V or g.", table.part
-            )
-        elif conversion is None:
-            unit = column.unit or ""
-            why = f"unit {unit!r} is not known" if unit else "states no unit"
-            if quantity is not None:
-                raise source.error(f"unit {unit!r} of {label} is not known", f"Give --units {label}=N, mm, V, …",
-                                   table.part)  # fmt: skip
-            notes.append(Note("warning", f"{label or 'a column'}: {why}; numbers kept as they are"))
-        else:
-            unit = conversion.unit
-            if conversion.changes:
-                values = values * conversion.factor + conversion.offset
-                shift = f" + {conversion.offset:g}" if conversion.offset else ""
-                level = "warning" if column.unit in ("lb", "lbs", "in", "kgf", "psi", "ksi") else "info"
-                notes.append(Note(level, f"{label}: {column.unit} × {conversion.factor:.8g}{shift} = {unit}"))
-        channels.append(Channel(quantity or label or f"column {len(channels) + 2}", values, unit, label))
-    if assumed:
-        notes.append(Note("warning", f"{', '.join(assumed)}: no unit in the file, taken as {table.assumed_unit}; "
-                          "--units changes that"))  # fmt: skip
-    return _named(channels, table, notes)
-
-
-def _named(channels: list[Channel], table: Table, notes: list[Note]) -> list[Channel]:
-    """Names that differ; three voltages of a data-acquisition log are the axes x, y, z."""
-    volts = [channel for channel in channels if channel.unit == "V"]
-    if (
-        table.axes_in_volts
-        and len(channels) == len(volts) == 3
-        and not {"ax", "ay", "az"} & {c.name for c in channels}
-    ):
-        notes.append(Note("info", "three voltage channels: "
-                          + ", ".join(f"{a} = {c.label}" for a, c in zip(("ax", "ay", "az"), volts, strict=True))))  # fmt: skip
-        channels = [
-            Channel(axis, c.samples, c.unit, c.label) for axis, c in zip(("ax", "ay", "az"), volts, strict=True)
-        ]
-    seen: dict[str, int] = {}
-    result = []
-    for channel in channels:
-        seen[channel.name] = seen.get(channel.name, 0) + 1
-        name = channel.name if seen[channel.name] == 1 else f"{channel.name}_{seen[channel.name]}"
-        result.append(Channel(name, channel.samples, channel.unit, channel.label))
-    return result
-
-
-def facts(pairs: Mapping[str, str]) -> dict[str, str]:
-    """Header facts without empty ones, cut to a sane length."""
-    return {key[:80]: value[:400] for key, value in list(pairs.items())[:200] if key and value}

@@ -10,8 +10,21 @@ from ssmr_ident.readers.headings import bare_unit, is_units_row, quantity_of, sp
 from ssmr_ident.readers.numeric_run import NumberRun, TextRow
 from ssmr_ident.readers.source import Source
 
-_RESULT_WORDS = ("mean", "std dev", "stddev", "standard deviation", "minimum", "maximum", "median", "average",
-                 "results", "mittelwert", "średnia", "variance", "coefficient")  # fmt: skip
+_RESULT_WORDS = (
+    "mean",
+    "std dev",
+    "stddev",
+    "standard deviation",
+    "minimum",
+    "maximum",
+    "median",
+    "average",
+    "results",
+    "mittelwert",
+    "średnia",
+    "variance",
+    "coefficient",
+)
 
 
 @dataclass
@@ -69,10 +82,15 @@ def blocks_of(source: Source, items: list[NumberRun | TextRow], on_bad: str) -> 
             if filled and not _restarts(previous, item) and not previous.results:
                 bad = filled[0]
                 if on_bad != "nan":
-                    raise source.error(f"text {bad.raw.strip()[:60]!r} inside the data",
-                                       "Drop such rows with --on-bad nan, or mend the line.", f"line {bad.line}")  # fmt: skip
-                source.warn(f"{len(filled)} line(s) of text inside the data dropped: {bad.raw.strip()[:60]!r}",
-                            f"line {bad.line}")  # fmt: skip
+                    raise source.error(
+                        f"text {bad.raw.strip()[:60]!r} inside the data",
+                        "Drop such rows with --on-bad nan, or mend the line.",
+                        f"line {bad.line}",
+                    )
+                source.warn(
+                    f"{len(filled)} line(s) of text inside the data dropped: {bad.raw.strip()[:60]!r}",
+                    f"line {bad.line}",
+                )
                 _join(previous, item)
                 pending = []
                 continue
@@ -98,8 +116,14 @@ def _tail(source: Source, rows: list[TextRow]) -> None:
 
 
 def _restarts(previous: Block, item: NumberRun) -> bool:
-    index = next((i for i, (label, unit) in enumerate(zip(previous.labels, previous.units, strict=True))
-                  if quantity_of(label, unit) == "time"), 0)  # fmt: skip
+    index = next(
+        (
+            i
+            for i, (label, unit) in enumerate(zip(previous.labels, previous.units, strict=True))
+            if quantity_of(label, unit) == "time"
+        ),
+        0,
+    )
     if not len(previous.values) or index >= item.values.shape[1]:
         return False
     return bool(item.values[0, index] <= previous.values[0, index] + 1e-12)
@@ -132,8 +156,10 @@ def _header(rows: list[TextRow], width: int) -> tuple[list[str], list[str | None
     labels = [label for label, _ in split]
     units = [unit for _, unit in split]
     if unit_cells is not None:
-        units = [bare_unit(cell) if cell else unit
-                 for cell, unit in zip([*unit_cells, *[""] * (width - len(unit_cells))], units, strict=True)]  # fmt: skip
+        units = [
+            bare_unit(cell) if cell else unit
+            for cell, unit in zip([*unit_cells, *[""] * (width - len(unit_cells))], units, strict=True)
+        ]
     return labels, units, used + 1
 
 

@@ -6,10 +6,10 @@ import numpy as np
 
 from ssmr_ident.core.recording import Note
 from ssmr_ident.core.units import find_unit
-from ssmr_ident.readers.assemble import Column, Table
 from ssmr_ident.readers.headings import quantity_of
 from ssmr_ident.readers.options import ReadOptions
 from ssmr_ident.readers.source import Source
+from ssmr_ident.readers.table import Column, Table
 
 
 def onto_one_clock(source: Source, table: Table, options: ReadOptions) -> None:
@@ -33,8 +33,9 @@ def onto_one_clock(source: Source, table: Table, options: ReadOptions) -> None:
         return
     owner = _owners(table.columns, times)
     if options.fs is not None or owner is None:
-        raise source.error(f"has {len(times)} time columns that differ",
-                           "Choose one with --columns time=0,…", table.part)  # fmt: skip
+        raise source.error(
+            f"has {len(times)} time columns that differ", "Choose one with --columns time=0,…", table.part
+        )
     _merge(source, table, times, owner)
 
 
@@ -72,8 +73,9 @@ def _merge(source: Source, table: Table, times: list[int], owner: dict[int, int]
         ticked[index] = np.flatnonzero(fresh)
         chosen = stamps[ticked[index]]
         if len(chosen) < 2 or (np.diff(chosen) < 0).any():
-            raise source.error(f"clock {table.columns[index].label!r} runs backwards",
-                               "Keep one recording per file.", table.part)  # fmt: skip
+            raise source.error(
+                f"clock {table.columns[index].label!r} runs backwards", "Keep one recording per file.", table.part
+            )
     slowest = min(times, key=lambda index: (len(ticked[index]), index))
     rows = ticked[slowest]
     origin = min(float(table.columns[i].values[ticked[i][0]]) for i in times)
@@ -81,8 +83,9 @@ def _merge(source: Source, table: Table, times: list[int], owner: dict[int, int]
     begin = max(float(table.columns[i].values[ticked[i][0]]) for i in times)
     finish = min(float(table.columns[i].values[ticked[i][-1]]) for i in times)
     inside = (time >= begin) & (time <= finish)
-    merged = [Column(table.columns[slowest].label, table.columns[slowest].unit, time[inside] - origin,
-                     quantity="time")]  # fmt: skip
+    merged = [
+        Column(table.columns[slowest].label, table.columns[slowest].unit, time[inside] - origin, quantity="time")
+    ]
     for index, clock in owner.items():
         column = table.columns[index]
         if clock == slowest:
@@ -91,14 +94,26 @@ def _merge(source: Source, table: Table, times: list[int], owner: dict[int, int]
             own_rows = ticked[clock]
             own_time, own = table.columns[clock].values[own_rows], column.values[own_rows]
             values = np.interp(time[inside], own_time, own)
-            step = float(np.median(np.abs(np.diff(own)))) if len(own) > 1 else 0.0
-            table.notes.append(Note("warning", f"{column.label} has a clock of its own ({table.columns[clock].label}); "
-                                    f"interpolated onto {table.columns[slowest].label} (it moves {step:.3g} "
-                                    f"{column.unit or 'units'} per sample in the median)", table.part))  # fmt: skip
+            step = float(np.abs(np.diff(own)).max()) if len(own) > 1 else 0.0
+            table.notes.append(
+                Note(
+                    "warning",
+                    f"{column.label} has a clock of its own ({table.columns[clock].label}); "
+                    f"interpolated onto {table.columns[slowest].label} (it moves {step:.3g} "
+                    f"{column.unit or 'units'} between two of its samples at most)",
+                    table.part,
+                )
+            )
         merged.append(Column(column.label, column.unit, values))
     repeated = len(table.columns[slowest].values) - len(rows)
-    table.notes.append(Note("warning", f"{len(times)} clocks: {table.columns[slowest].label} is the slowest with "
-                            f"{len(rows)} ticks; {repeated} rows that repeat its value dropped", table.part))  # fmt: skip
+    table.notes.append(
+        Note(
+            "warning",
+            f"{len(times)} clocks: {table.columns[slowest].label} is the slowest with "
+            f"{len(rows)} ticks; {repeated} rows that repeat its value dropped",
+            table.part,
+        )
+    )
     kept = rows[inside]
     place = table.place
     table.columns = merged

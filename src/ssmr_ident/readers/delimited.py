@@ -1,7 +1,8 @@
 """Delimited text: MTESTQuattro and other testing machines, LabVIEW graph exports, plain CSV.
 
 No public MTESTQuattro text export fixes a layout, and operators choose columns and units; so nothing here counts
-lines or columns. The longest run of number rows gives delimiter and decimal sign, the text above it labels and units.
+lines or columns. The longest run of number rows gives delimiter and decimal sign, the text above it labels and
+units.
 """
 
 from __future__ import annotations
@@ -10,13 +11,14 @@ import numpy as np
 
 from ssmr_ident.core.recording import Note, Recording
 from ssmr_ident.readers import clocks
-from ssmr_ident.readers.assemble import Column, Table, facts, recordings_of
+from ssmr_ident.readers.assemble import recordings_of
 from ssmr_ident.readers.blocks import Block, blocks_of
 from ssmr_ident.readers.dialect import sniff
 from ssmr_ident.readers.headings import quantity_of, split_header
 from ssmr_ident.readers.numeric_run import TextRow, walk
 from ssmr_ident.readers.options import ReadOptions
 from ssmr_ident.readers.source import Source
+from ssmr_ident.readers.table import Column, Table, facts
 from ssmr_ident.readers.text import text_of
 
 NAMES = ("csv", "mtestquattro")
@@ -63,8 +65,10 @@ def _data_blocks(source: Source, blocks: list[Block]) -> list[Block]:
         dropped += short
         kept = [block for block in kept if len(block.values) >= 0.1 * longest]
     for block in dropped:
-        source.inform(f"{len(block.values)} row(s) of numbers without a time column (results, not data) left out",
-                      f"line {block.lines[0]}")  # fmt: skip
+        source.inform(
+            f"{len(block.values)} row(s) of numbers without a time column (results, not data) left out",
+            f"line {block.lines[0]}",
+        )
     if not kept:
         raise source.error("holds no rows of numbers", "Export the data, not a report.")
     return kept
@@ -78,13 +82,17 @@ def _refuse_split_decimals(source: Source, items: list, blocks: list[Block]) -> 
         width = block.values.shape[1]
         above = [item for item in items if isinstance(item, TextRow) and item.line < block.lines[0] and item.cells]
         if above and len(above[-1].cells) * 2 == width and not any(v.isdigit() for v in above[-1].cells):
-            raise source.error(f"rows have {width} cells below {len(above[-1].cells)} names: comma as separator and "
-                               "as decimal sign?", "Export with ; or tab as the separator.",
-                               f"line {block.lines[0]}")  # fmt: skip
+            raise source.error(
+                f"rows have {width} cells below {len(above[-1].cells)} names: comma as separator and "
+                "as decimal sign?",
+                "Export with ; or tab as the separator.",
+                f"line {block.lines[0]}",
+            )
 
 
-def _recordings_of_block(source: Source, block: Block, part: str, dialect: str,
-                         options: ReadOptions) -> list[Recording]:  # fmt: skip
+def _recordings_of_block(
+    source: Source, block: Block, part: str, dialect: str, options: ReadOptions
+) -> list[Recording]:
     notes = [Note("info", f"{len(block.values)} rows, {dialect}", part)]
     if block.short:
         block = _without_cut_row(block, notes)
@@ -98,11 +106,22 @@ def _recordings_of_block(source: Source, block: Block, part: str, dialect: str,
             column.quantity = "time"  # its label may be edited or in any language
     headerless = not any(block.labels)
     assumed = "V" if graph or (headerless and _within_daq_range(columns, options)) else None
-    table = Table(columns, lambda row: f"line {block.lines[row]}", part, facts(block.facts), notes, assumed,
-                  axes_in_volts=graph or headerless, split=True)  # fmt: skip
+    table = Table(
+        columns,
+        lambda row: f"line {block.lines[row]}",
+        part,
+        facts(block.facts),
+        notes,
+        assumed,
+        axes_in_volts=graph or headerless,
+        split=True,
+    )
     if headerless and assumed is None and not options.columns and not options.units:
-        raise source.error("columns have no header and are not within ±10 V: units unknown",
-                           "Give --columns time=0,force=1 --units force=N.", part)  # fmt: skip
+        raise source.error(
+            "columns have no header and are not within ±10 V: units unknown",
+            "Give --columns time=0,force=1 --units force=N.",
+            part,
+        )
     clocks.onto_one_clock(source, table, options)
     reader = "mtestquattro" if _is_testing_machine(columns) else "csv"
     return recordings_of(source, reader, table, options)
@@ -117,7 +136,7 @@ def _without_cut_row(block: Block, notes: list[Note]) -> Block:
 
 
 def _is_graph_export(labels: list[str]) -> bool:
-    """LabVIEW's 'Export Data To …': pairs of ``{x label} - {plot}`` and ``{y label} - {plot}``; or ``time[0]  Y[0]``."""
+    """LabVIEW's exports: pairs of ``{x label} - {plot}`` and ``{y label} - {plot}``, or of ``time[0]`` and ``Y[0]``."""
     if len(labels) % 2 or not labels:
         return False
     for first, second in zip(labels[::2], labels[1::2], strict=True):

@@ -8,8 +8,10 @@ from ssmr_ident.readers.source import Source
 from ssmr_ident.readers.text import Text
 
 # In the order of preference among equals: a tab or a semicolon is never part of a number
-_CANDIDATES = [Dialect(d, m) for d, m in (("\t", "."), ("\t", ","), (";", "."), (";", ","), (",", "."), (" ", "."),
-                                          (" ", ","))]  # fmt: skip
+_CANDIDATES = [
+    Dialect(d, m)
+    for d, m in (("\t", "."), ("\t", ","), (";", "."), (";", ","), (",", "."), (" ", "."), (" ", ","))
+]
 _HEAD_LINES = (300, 5000)  # first look, second look when the first found no numbers
 
 

@@ -39,8 +39,9 @@ def read(path: str | Path, options: ReadOptions = ReadOptions()) -> tuple[Record
     recordings = tuple(module.read(source, options))
     if options.sample is not None:
         if options.sample > len(recordings):
-            raise source.error(f"holds {len(recordings)} recording(s); number {options.sample} is not there",
-                               "They count from 1.")  # fmt: skip
+            raise source.error(
+                f"holds {len(recordings)} recording(s); number {options.sample} is not there", "They count from 1."
+            )
         return (recordings[options.sample - 1],)
     return recordings
 
@@ -55,11 +56,16 @@ def read_one(path: str | Path, options: ReadOptions = ReadOptions()) -> Recordin
     """
     recordings = read(path, options)
     if len(recordings) != 1:
-        parts = "; ".join(f"{i}: {r.provenance.part or 'whole file'}, {len(r.time)} samples"
-                          for i, r in enumerate(recordings[:4], start=1))  # fmt: skip
+        parts = "; ".join(
+            f"{i}: {r.provenance.part or 'whole file'}, {len(r.time)} samples"
+            for i, r in enumerate(recordings[:4], start=1)
+        )
         more = f" and {len(recordings) - 4} more" if len(recordings) > 4 else ""
-        raise InputError(str(path), f"holds {len(recordings)} recordings ({parts}{more}), one is expected",
-                         "Choose with sample: 1 (or --sample 1), or put them in files of their own.")  # fmt: skip
+        raise InputError(
+            str(path),
+            f"holds {len(recordings)} recordings ({parts}{more}), one is expected",
+            "Choose with sample: 1 (or --sample 1), or put them in files of their own.",
+        )
     return recordings[0]
 
 

@@ -8,22 +8,29 @@ from ssmr_ident.core.units import QUANTITY_OF_UNIT, find_unit
 
 _WORDS = {
     "time": "time zeit prüfzeit godzina czas tiempo temps elapsed timestamp x_value tempo t",
-    "force": "load force kraft standardkraft prüfkraft obciążenie siła charge carga fuerza last lateralforce",
+    "force": "load force kraft standardkraft prüfkraft obciążenie siła charge carga fuerza",
     "position": "position posn pos extension displacement crosshead stroke travel weg standardweg traverse "
-    "traversenweg przemieszczenie déplacement deplacement desplazamiento verformung encoder",
+    "traversenweg przemieszczenie déplacement deplacement desplazamiento verformung",
     "strain": "strain dehnung odkształcenie",
     "stress": "stress spannung naprężenie",
     "torque": "torque moment drehmoment",
     "acceleration": "acceleration accel beschleunigung",
     "velocity": "velocity speed geschwindigkeit",
     "angle": "angle winkel",
-    "angular_rate": "angular_rate gyro rate",
+    "angular_rate": "angular_rate gyro",
 }
 _QUANTITY = {word: quantity for quantity, words in _WORDS.items() for word in words.split()}
 _AXES = {"ax", "ay", "az", "wx", "wy", "wz"}
 # A letter names a quantity only when the unit agrees
-_SYMBOLS = {"f": "force", "x": "position", "s": "position", "a": "acceleration", "v": "velocity", "t": "time",
-            "p": "force"}  # fmt: skip
+_SYMBOLS = {
+    "f": "force",
+    "x": "position",
+    "s": "position",
+    "a": "acceleration",
+    "v": "velocity",
+    "t": "time",
+    "p": "force",
+}
 _MODIFIERS = {
     "axial",
     "running",

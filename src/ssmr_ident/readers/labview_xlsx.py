@@ -4,20 +4,19 @@ from __future__ import annotations
 
 import numpy as np
 
-from ssmr_ident.core.errors import did_you_mean
 from ssmr_ident.core.recording import Channel, Note, Recording
 from ssmr_ident.core.units import find_unit
 from ssmr_ident.readers import time_axis
-from ssmr_ident.readers.assemble import Column, Table, recordings_of
+from ssmr_ident.readers.assemble import recordings_of
 from ssmr_ident.readers.headings import split_header
 from ssmr_ident.readers.options import ReadOptions
+from ssmr_ident.readers.sheet_axes import axes_of, is_filled
 from ssmr_ident.readers.sheet_numbers import SheetNumbers, numbers_of
 from ssmr_ident.readers.source import Source
-from ssmr_ident.readers.workbook import Sheet, open_sheets
+from ssmr_ident.readers.table import Column, Table
+from ssmr_ident.readers.workbook import Sheet, open_sheets, what_is_in
 
 NAMES = ("labview-xlsx",)
-# xlsread(file, 4 - i): Excel puts a new sheet before the active one, so x, written first, ends up last
-_BY_POSITION = ("z", "y", "x")
 _SUPPLY = (0.0, 5.0)  # V, the sensor's supply; it cannot leave it
 _DAQ_RANGE = 10.0  # V
 _SLOWEST = 0.02  # s: 50 Hz; the band of interest ends there, so no axis was sampled more slowly
@@ -39,20 +38,16 @@ def read(source: Source, options: ReadOptions) -> list[Recording]:
     single = _single_table(sheets, options)
     if single is not None:
         return _one_sheet(source, single, options)
-    axes = _axes(source, sheets, options)
+    axes = axes_of(source, sheets, options)
     numbers = {axis: _axis_numbers(source, sheet, axis, options) for axis, sheet in axes.items()}
     return [_recording(source, axes, numbers, options)]
-
-
-def _filled(sheet: Sheet) -> bool:
-    return any(cell != "" for row in sheet.rows for cell in row)
 
 
 def _single_table(sheets: list[Sheet], options: ReadOptions) -> Sheet | None:
     """The sheet of a workbook in which one sheet holds everything, or None."""
     if options.sheets and set(options.sheets) != {"data"}:
         return None
-    filled = [sheet for sheet in sheets if _filled(sheet)]
+    filled = [sheet for sheet in sheets if is_filled(sheet)]
     if len(filled) != 1:
         return None
     widths = [sum(isinstance(cell, float) for cell in row) for row in filled[0].rows[-3:]]
@@ -70,69 +65,15 @@ def _one_sheet(source: Source, sheet: Sheet, options: ReadOptions) -> list[Recor
             Column(label, unit, np.ascontiguousarray(found.values[:, index]), found.dated and index == 0)
         )
     columns[0].quantity = "time" if found.dated or columns[0].label == "X_Value" else None
-    table = Table(columns, lambda row: f"{sheet.name}, row {found.rows[row]}", f"sheet {sheet.name}",
-                  notes=found.notes, assumed_unit="V", axes_in_volts=True)  # fmt: skip
+    table = Table(
+        columns,
+        lambda row: f"{sheet.name}, row {found.rows[row]}",
+        f"sheet {sheet.name}",
+        notes=found.notes,
+        assumed_unit="V",
+        axes_in_volts=True,
+    )
     return recordings_of(source, "labview-xlsx", table, options)
-
-
-def _axes(source: Source, sheets: list[Sheet], options: ReadOptions) -> dict[str, Sheet]:
-    """Sheet of each axis: as the user says, by their names, or by position."""
-    if options.sheets:
-        return {axis: _wanted(source, sheets, axis, which) for axis, which in options.sheets.items()}
-    named = {sheet.name.strip().lower().removeprefix("a"): sheet for sheet in reversed(sheets)}
-    hidden = [sheet for sheet in sheets if sheet.hidden]
-    if {"x", "y", "z"} <= named.keys():
-        axes = {axis: named[axis] for axis in ("x", "y", "z")}
-        used = {id(sheet) for sheet in axes.values()}
-        for sheet in sheets:
-            if id(sheet) not in used:
-                level = source.warn if sheet.hidden else source.inform
-                level(f"sheet {sheet.name} is {'hidden and was ' if sheet.hidden else ''}ignored; the sheets named "
-                      "x, y, z are the axes", sheet.name)  # fmt: skip
-        order = [sheet.name.strip().lower().removeprefix("a") for sheet in sheets if id(sheet) in used]
-        if tuple(order) != _BY_POSITION:
-            source.warn(f"sheets are named in the order {', '.join(order)}, not z, y, x as by position; the names "
-                        "were followed")  # fmt: skip
-        return axes
-    names = ", ".join(sheet.name for sheet in sheets)
-    if len(sheets) < 3:
-        raise source.error(f"3 worksheets needed (z,y,x), found {len(sheets)}: {names}",
-                           "Export the missing axes, or name sheets with --sheets x=1.")  # fmt: skip
-    if len(sheets) > 3:
-        visible = [sheet for sheet in sheets if not sheet.hidden and _filled(sheet)]
-        if len(visible) != 3:
-            raise source.error(f"3 worksheets needed (z,y,x), found {len(sheets)}: {names}",
-                               "Say which is which: --sheets x=4,y=3,z=2.")  # fmt: skip
-        left = [sheet.name for sheet in sheets if sheet not in visible]
-        source.warn(f"hidden or empty sheets ignored: {', '.join(left)}")
-        sheets, hidden = visible, []
-    for sheet in hidden:
-        source.warn(f"sheet {sheet.name} is hidden and was counted", sheet.name)
-    for position, sheet in enumerate(sheets):
-        name = sheet.name.strip().lower().removeprefix("a")
-        if name in ("x", "y", "z") and name != _BY_POSITION[position]:
-            raise source.error(f"sheet {position + 1} is named {sheet.name}, by position it would be "
-                               f"{_BY_POSITION[position]}", "Say which is which: --sheets x=3,y=2,z=1.")  # fmt: skip
-    source.inform("axes by position: " + ", ".join(f"sheet {i} {s.name} = {a}" for i, (a, s) in
-                                                   enumerate(zip(_BY_POSITION, sheets, strict=True), start=1)))  # fmt: skip
-    return dict(zip(_BY_POSITION, sheets, strict=True))
-
-
-def _wanted(source: Source, sheets: list[Sheet], axis: str, which: int | str) -> Sheet:
-    if axis.removeprefix("a") not in ("x", "y", "z"):
-        raise source.error(f"--sheets names axis {axis!r}; axes are x, y, z", "Write --sheets x=3,y=2,z=1.")
-    if isinstance(which, int) or which.isdigit():
-        if 1 <= int(which) <= len(sheets):
-            return sheets[int(which) - 1]
-        raise source.error(
-            f"has {len(sheets)} worksheets; sheet {which} for {axis} is not there", "They count from 1."
-        )
-    found = [sheet for sheet in sheets if sheet.name == which]
-    if not found:
-        raise source.error(
-            f"has no sheet {which!r} for {axis}", did_you_mean(which, [sheet.name for sheet in sheets])
-        )
-    return found[0]
 
 
 def _axis_numbers(source: Source, sheet: Sheet, axis: str, options: ReadOptions) -> SheetNumbers:
@@ -140,14 +81,25 @@ def _axis_numbers(source: Source, sheet: Sheet, axis: str, options: ReadOptions)
     width = found.values.shape[1]
     if width == 1:
         if options.fs is None:
-            raise source.error(f"time column missing in sheet {sheet.name} (axis {axis})",
-                               "Give --fs 1000 to accept volts only.")  # fmt: skip
+            below = int(found.rows[0]) - 1
+            beside = what_is_in(source, sheet.name, below, found.first_column + 1)
+            if "never calculated" in beside:
+                raise source.error(
+                    f"formulas were never calculated ({beside})",
+                    "Open the workbook in Excel and save it.",
+                    sheet.name,
+                )
+            raise source.error(
+                f"time column missing in sheet {sheet.name} (axis {axis})", "Give --fs 1000 to accept volts only."
+            )
         found.values = np.column_stack([np.arange(len(found.values)) / options.fs, found.values[:, 0]])
         found.notes.append(Note("info", f"time from --fs {options.fs:g} Hz", sheet.name))
         return found
     if width > 2:
-        raise source.error(f"sheet {sheet.name} (axis {axis}) has {width} columns of numbers; time and volts are "
-                           "expected", "Delete the others, or split the sheet.")  # fmt: skip
+        raise source.error(
+            f"sheet {sheet.name} (axis {axis}) has {width} columns of numbers; time and volts are expected",
+            "Delete the others, or split the sheet.",
+        )
     stamps = found.values[:, 0]
     if options.fs is not None:
         stamps = np.arange(len(stamps)) / options.fs
@@ -174,12 +126,15 @@ def _check_date_resolution(source: Source, sheet: Sheet, found: SheetNumbers) ->
     grid = np.linspace(stamps[0], stamps[-1], len(stamps))
     step = (stamps[-1] - stamps[0]) / (len(stamps) - 1)
     if step <= 0 or (np.abs(stamps - grid).max() > step / 4 and np.median(np.diff(stamps)) < 0.004):
-        raise source.error(f"sheet {sheet.name}: date-time cells resolve 1 ms, too coarse for steps of {step:.3g} s",
-                           "Give --fs, or export relative time.")  # fmt: skip
+        raise source.error(
+            f"sheet {sheet.name}: date-time cells resolve 1 ms, too coarse for steps of {step:.3g} s",
+            "Give --fs, or export relative time.",
+        )
 
 
-def _recording(source: Source, axes: dict[str, Sheet], numbers: dict[str, SheetNumbers],
-               options: ReadOptions) -> Recording:  # fmt: skip
+def _recording(
+    source: Source, axes: dict[str, Sheet], numbers: dict[str, SheetNumbers], options: ReadOptions
+) -> Recording:
     notes: list[Note] = []
     steps = {}
     for axis, found in numbers.items():
@@ -187,7 +142,7 @@ def _recording(source: Source, axes: dict[str, Sheet], numbers: dict[str, SheetN
         steps[axis] = float(np.median(np.diff(found.values[:, 0]))) if len(found.values) > 1 else 0.0
     for axis, found in numbers.items():
         _check_axis(source, axes[axis], found, steps[axis], min(steps.values()), options, notes)
-    order = [axis for axis in ("x", "y", "z", "ax", "ay", "az") if axis in numbers]
+    order: list[str] = [axis for axis in ("x", "y", "z", "ax", "ay", "az") if axis in numbers]
     time, values = _on_one_grid(source, axes, numbers, order, options, notes)
     _check_volts(source, axes, order, values, options, notes)
     _refuse_equal_sheets(source, axes, order, values, notes)
@@ -197,12 +152,24 @@ def _recording(source: Source, axes: dict[str, Sheet], numbers: dict[str, SheetN
         name = "a" + axis.removeprefix("a")
         channels.append(Channel(name, np.ascontiguousarray(values[axis]), "V", label or axes[axis].name))
     part = ", ".join(f"{c.name} = sheet {axes[a].name}" for a, c in zip(order, channels, strict=True))
-    return Recording(np.ascontiguousarray(time), tuple(channels), source.provenance("labview-xlsx", part),
-                     (*source.notes, *notes), {})  # fmt: skip
+    return Recording(
+        np.ascontiguousarray(time),
+        tuple(channels),
+        source.provenance("labview-xlsx", part),
+        (*source.notes, *notes),
+        {},
+    )
 
 
-def _check_axis(source: Source, sheet: Sheet, found: SheetNumbers, step: float, finest: float, options: ReadOptions,
-                notes: list[Note]) -> None:  # fmt: skip
+def _check_axis(
+    source: Source,
+    sheet: Sheet,
+    found: SheetNumbers,
+    step: float,
+    finest: float,
+    options: ReadOptions,
+    notes: list[Note],
+) -> None:
     def place(row: int) -> str:
         return f"{sheet.name}, row {found.rows[row]}"
 
@@ -216,13 +183,21 @@ def _check_axis(source: Source, sheet: Sheet, found: SheetNumbers, step: float, 
     notes += axis.notes
     if options.fs is None and options.time_unit is None and step > _SLOWEST:
         expected = f"{finest:g} s as in the other sheets" if finest < step else "0.001 s or so"
-        raise source.error(f"sheet {sheet.name}: dt = {step:g} s, expected {expected}",
-                           "Is the column in ms (--time-unit ms) or a sample count (--fs 1000)?")  # fmt: skip
+        raise source.error(
+            f"sheet {sheet.name}: dt = {step:g} s, expected {expected}",
+            "Is the column in ms (--time-unit ms) or a sample count (--fs 1000)?",
+        )
     notes += time_axis.gaps(found.values[:, 0], place)
 
 
-def _on_one_grid(source: Source, axes: dict[str, Sheet], numbers: dict[str, SheetNumbers], order: list[str],
-                 options: ReadOptions, notes: list[Note]) -> tuple[np.ndarray, dict[str, np.ndarray]]:  # fmt: skip
+def _on_one_grid(
+    source: Source,
+    axes: dict[str, Sheet],
+    numbers: dict[str, SheetNumbers],
+    order: list[str],
+    options: ReadOptions,
+    notes: list[Note],
+) -> tuple[np.ndarray, dict[str, np.ndarray]]:
     lengths = {axis: len(numbers[axis].values) for axis in order}
     first = numbers[order[0]].values[:, 0]
     tolerance = 0.25 * float(np.median(np.diff(first)))
@@ -239,8 +214,10 @@ def _on_one_grid(source: Source, axes: dict[str, Sheet], numbers: dict[str, Shee
             if len(set(lengths.values())) > 1
             else "the same count of samples at different times"
         )
-        raise source.error(f"axes differ: {what}" + (f" ({reason})" if reason else ""),
-                           "Keep what all have with --trim, or export the axes again.")  # fmt: skip
+        raise source.error(
+            f"axes differ: {what}" + (f" ({reason})" if reason else ""),
+            "Keep what all have with --trim, or export the axes again.",
+        )
     ticks = {axis: np.round(numbers[axis].values[:, 0] / (4 * tolerance)).astype(np.int64) for axis in order}
     common = ticks[order[0]]
     for axis in order[1:]:
@@ -252,8 +229,14 @@ def _on_one_grid(source: Source, axes: dict[str, Sheet], numbers: dict[str, Shee
     return numbers[order[0]].values[rows[order[0]], 0], {a: numbers[a].values[rows[a], 1] for a in order}
 
 
-def _check_volts(source: Source, axes: dict[str, Sheet], order: list[str], values: dict[str, np.ndarray],
-                 options: ReadOptions, notes: list[Note]) -> None:  # fmt: skip
+def _check_volts(
+    source: Source,
+    axes: dict[str, Sheet],
+    order: list[str],
+    values: dict[str, np.ndarray],
+    options: ReadOptions,
+    notes: list[Note],
+) -> None:
     for axis in order:
         given = next(
             (unit for key, unit in options.units.items() if key.lower().removeprefix("a") == axis[-1]), None
@@ -267,16 +250,20 @@ def _check_volts(source: Source, axes: dict[str, Sheet], order: list[str], value
         low, high = float(np.nanmin(values[axis])), float(np.nanmax(values[axis]))
         extreme = high if abs(high) >= abs(low) else low
         if abs(extreme) > _DAQ_RANGE:
-            raise source.error(f"volts outside 0…5 V (extreme {extreme:g}): mV?",
-                               f"If so: --units a{axis[-1]}=mV.", f"sheet {axes[axis].name}")  # fmt: skip
+            raise source.error(
+                f"volts outside 0…5 V (extreme {extreme:g}), as if in mV",
+                f"If so: --units a{axis[-1]}=mV.",
+                f"sheet {axes[axis].name}",
+            )
         if low < _SUPPLY[0] or high > _SUPPLY[1]:
             notes.append(
                 Note("warning", f"volts outside the sensor's 0…5 V ({low:g} to {high:g})", axes[axis].name)
             )
 
 
-def _refuse_equal_sheets(source: Source, axes: dict[str, Sheet], order: list[str], values: dict[str, np.ndarray],
-                         notes: list[Note]) -> None:  # fmt: skip
+def _refuse_equal_sheets(
+    source: Source, axes: dict[str, Sheet], order: list[str], values: dict[str, np.ndarray], notes: list[Note]
+) -> None:
     """Two measured axes never agree in every sample; a straight line holds no noise that could tell."""
     for i, first in enumerate(order):
         for second in order[i + 1 :]:

@@ -6,13 +6,14 @@ import numpy as np
 
 from ssmr_ident.core.recording import Note, Recording
 from ssmr_ident.readers import clocks, lvm_packets
-from ssmr_ident.readers.assemble import Column, Table, facts, recordings_of
+from ssmr_ident.readers.assemble import recordings_of
 from ssmr_ident.readers.headings import split_header
 from ssmr_ident.readers.lvm_data import Rows, read_rows
 from ssmr_ident.readers.lvm_header import MAGIC, Header, Lines, is_segment_start, read_header, separator_of
 from ssmr_ident.readers.numbers import Dialect, evidence_for_decimal, number
 from ssmr_ident.readers.options import ReadOptions
 from ssmr_ident.readers.source import Source
+from ssmr_ident.readers.table import Column, Table, at_lines, facts
 from ssmr_ident.readers.text import Text, text_of
 
 NAMES = ("lvm",)
@@ -63,12 +64,16 @@ def read(source: Source, options: ReadOptions) -> list[Recording]:
 def _refuse_double_comma(source: Source, head: list[str], separator: str) -> None:
     for number_of_line, line in enumerate(head, start=1):
         if separator == "," and line.rstrip("\r").startswith("Decimal_Separator,,"):
-            raise source.error("is ambiguous: comma as separator and as decimal sign",
-                               "Export with tab or semicolon as the separator.", f"line {number_of_line}")  # fmt: skip
+            raise source.error(
+                "is ambiguous: comma as separator and as decimal sign",
+                "Export with tab or semicolon as the separator.",
+                f"line {number_of_line}",
+            )
 
 
-def _segment(source: Source, text: Text, lines: Lines, file_header: Header, number_of_segment: int,
-             options: ReadOptions) -> list[Recording]:  # fmt: skip
+def _segment(
+    source: Source, text: Text, lines: Lines, file_header: Header, number_of_segment: int, options: ReadOptions
+) -> list[Recording]:
     header = Header()
     first = lines.number
     if is_segment_start(lines.dialect.cells(lines.peek()[0])):
@@ -103,12 +108,13 @@ def _check_counts(source: Source, header: Header) -> None:
     for tag in ("Channels", "Samples"):
         for cell in header.tags.get(tag, []):
             if (cell and not cell.isascii()) or (cell and not cell.isdigit()):
-                raise source.error(f"{tag} is not an integer: {cell[:40]!r}", "Mend the header row.",
-                                   f"line {header.lines[tag]}")  # fmt: skip
+                raise source.error(
+                    f"{tag} is not an integer: {cell[:40]!r}", "Mend the header row.", f"line {header.lines[tag]}"
+                )
 
 
 def _decimal(source: Source, text: Text, lines: Lines, file_header: Header, named: bool) -> str:
-    """Decimal sign of the data: as declared, unless the data say otherwise. The header's Time says nothing about it."""
+    """Decimal sign of the data: as declared, unless the data say otherwise; the header's Time does not count."""
     declared = file_header.first("Decimal_Separator")
     votes = set()
     chunk = text.data[lines.position : lines.position + 20_000].split(b"\n")[:200]
@@ -118,8 +124,11 @@ def _decimal(source: Source, text: Text, lines: Lines, file_header: Header, name
                 votes.add(evidence_for_decimal(cell))
     votes.discard("")
     if len(votes) > 1:
-        raise source.error("has numbers with decimal points and with decimal commas", "Give --decimal . or ,",
-                           f"line {lines.number}")  # fmt: skip
+        raise source.error(
+            "has numbers with decimal points and with decimal commas",
+            "Give --decimal . or ,",
+            f"line {lines.number}",
+        )
     seen = votes.pop() if votes else ""
     if seen and declared in (".", ",") and seen != declared:
         source.warn(f"Decimal_Separator says {declared!r}, the data have {seen!r}; that is used", "header")
@@ -128,14 +137,26 @@ def _decimal(source: Source, text: Text, lines: Lines, file_header: Header, name
     return seen or (declared if declared in (".", ",") else ".")
 
 
-def _recordings_of_segment(source: Source, header: Header, file_header: Header, labels: list[str], rows: Rows,
-                           step: int, decimal: str, segment: int, options: ReadOptions) -> list[Recording]:  # fmt: skip
+def _recordings_of_segment(
+    source: Source,
+    header: Header,
+    file_header: Header,
+    labels: list[str],
+    rows: Rows,
+    step: int,
+    decimal: str,
+    segment: int,
+    options: ReadOptions,
+) -> list[Recording]:
     data = [index for index, label in enumerate(labels) if label != "X_Value"]
     units = header.per_channel("Y_Unit_Label", len(data), step)
     dimension = header.first("X_Dimension", "Time")
     if dimension.lower() not in ("time", ""):
-        raise source.error(f"X_Dimension is {dimension}: not a log over time", "Export the time signal.",
-                           f"line {header.lines['X_Dimension']}")  # fmt: skip
+        raise source.error(
+            f"X_Dimension is {dimension}: not a log over time",
+            "Export the time signal.",
+            f"line {header.lines['X_Dimension']}",
+        )
     columns = []
     for index, label in enumerate(labels):
         values = np.ascontiguousarray(rows.values[:, index])
@@ -151,8 +172,9 @@ def _recordings_of_segment(source: Source, header: Header, file_header: Header, 
             )
     columns = _without_empty(source, columns)
     notes = [
-        Note("info", f"{len(rows.values)} rows, decimal {'point' if decimal == '.' else 'comma'}")
-    ] + rows.notes
+        Note("info", f"{len(rows.values)} rows, decimal {'point' if decimal == '.' else 'comma'}"),
+        *rows.notes,
+    ]
     part = f"segment {segment}, lines {rows.lines[0]}-{rows.lines[-1]}"
     times = [column for column in columns if column.quantity == "time"]
     declared = [int(cell) for cell in header.per_channel("Samples", len(data), step) if cell]
@@ -162,13 +184,23 @@ def _recordings_of_segment(source: Source, header: Header, file_header: Header, 
         pieces, more = lvm_packets.split(columns, samples, options.fs or _rate(source, header, decimal))
         notes += more
     if samples and samples != len(rows.values) and len(pieces) == 1:
-        notes.append(Note("warning", f"Samples says {samples}, the file holds {len(rows.values)} rows; the rows count",
-                          part))  # fmt: skip
-    keep = {k: v for k, v in (("Operator", file_header.first("Operator")), ("Project", file_header.first("Project")),
-                              ("Description", file_header.first("Description")),
-                              ("Date", header.first("Date") or file_header.first("Date")),
-                              ("Time", header.first("Time") or file_header.first("Time")),
-                              ("Notes", header.first("Notes"))) if v}  # fmt: skip
+        notes.append(
+            Note(
+                "warning", f"Samples says {samples}, the file holds {len(rows.values)} rows; the rows count", part
+            )
+        )
+    keep = {
+        k: v
+        for k, v in (
+            ("Operator", file_header.first("Operator")),
+            ("Project", file_header.first("Project")),
+            ("Description", file_header.first("Description")),
+            ("Date", header.first("Date") or file_header.first("Date")),
+            ("Time", header.first("Time") or file_header.first("Time")),
+            ("Notes", header.first("Notes")),
+        )
+        if v
+    }
     recordings = []
     for count, piece in enumerate(pieces, start=1):
         mine = [Column(c.label, c.unit, c.values[piece], c.clock, c.quantity) for c in columns]
@@ -177,8 +209,16 @@ def _recordings_of_segment(source: Source, header: Header, file_header: Header, 
         piece_notes = list(notes)
         if not times:
             mine.insert(0, _computed_time(source, header, decimal, len(here), options, piece_notes))
-        table = Table(mine, lambda row, here=here: f"line {here[row]}", label, facts(keep), piece_notes, "V",
-                      axes_in_volts=True, split=True)  # type: ignore[misc]  # fmt: skip
+        table = Table(
+            mine,
+            at_lines(here),
+            label,
+            facts(keep),
+            piece_notes,
+            "V",
+            axes_in_volts=True,
+            split=True,
+        )
         clocks.onto_one_clock(source, table, options)
         recordings += recordings_of(source, "lvm", table, options)
     return recordings
@@ -212,12 +252,16 @@ def _number(source: Source, header: Header, tag: str, decimal: str) -> float:
             return value
     if not cell:
         return 0.0
-    raise source.error(f"{tag} is no number: {cell[:40]!r}", "Mend the header row, or give --fs.",
-                       f"line {header.lines.get(tag, 1)}")  # fmt: skip
+    raise source.error(
+        f"{tag} is no number: {cell[:40]!r}",
+        "Mend the header row, or give --fs.",
+        f"line {header.lines.get(tag, 1)}",
+    )
 
 
-def _computed_time(source: Source, header: Header, decimal: str, count: int, options: ReadOptions,
-                   notes: list[Note]) -> Column:  # fmt: skip
+def _computed_time(
+    source: Source, header: Header, decimal: str, count: int, options: ReadOptions, notes: list[Note]
+) -> Column:
     begin = _number(source, header, "X0", decimal)
     if options.fs is not None:
         return Column("X_Value", "s", begin + np.arange(count) / options.fs, quantity="time")

@@ -75,12 +75,14 @@ def read_rows(source: Source, lines: Lines, decimal: str, width: int | None, opt
         lines.take()
         width = width or len(cells)
         if len(cells) > width + 1:
-            raise source.error(f"row has {len(cells)} cells, {width} are expected", "Mend the row.",
-                               f"line {number_of_line}")  # fmt: skip
+            raise source.error(
+                f"row has {len(cells)} cells, {width} are expected", "Mend the row.", f"line {number_of_line}"
+            )
         if len(cells) == width + 1:
             comments += 1
-            notes.append(Note("info", f"comment: {cells[-1].replace(chr(92) + '09', ' ')[:100]}",
-                              f"line {number_of_line}"))  # fmt: skip
+            notes.append(
+                Note("info", f"comment: {cells[-1].replace(chr(92) + '09', ' ')[:100]}", f"line {number_of_line}")
+            )
         values = _values(source, cells, width, decimal, number_of_line, options, notes)
         if values is None:
             continue
@@ -105,8 +107,9 @@ def _segment_follows(lines: Lines) -> bool:
     return starts
 
 
-def _values(source: Source, cells: list[str], width: int, decimal: str, line: int, options: ReadOptions,
-            notes: list[Note]) -> list[float] | None:  # fmt: skip
+def _values(
+    source: Source, cells: list[str], width: int, decimal: str, line: int, options: ReadOptions, notes: list[Note]
+) -> list[float] | None:
     values = [np.nan] * width
     for index, cell in enumerate(cells[:width]):
         if not cell:
@@ -114,8 +117,11 @@ def _values(source: Source, cells: list[str], width: int, decimal: str, line: in
         value = value_of(cell, decimal)
         if value is None:
             if options.on_bad != "nan":
-                raise source.error(f"{cell[:40]!r} where a number belongs", "Take it as missing with --on-bad nan.",
-                                   f"line {line}")  # fmt: skip
+                raise source.error(
+                    f"{cell[:40]!r} where a number belongs",
+                    "Take it as missing with --on-bad nan.",
+                    f"line {line}",
+                )
             notes.append(Note("warning", f"{cell[:40]!r} taken as missing", f"line {line}"))
             continue
         values[index] = value

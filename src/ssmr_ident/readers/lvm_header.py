@@ -11,11 +11,37 @@ from ssmr_ident.readers.text import Text
 
 MAGIC = "LabVIEW Measurement"
 END = "***End_of_Header***"
-_SEGMENT_TAGS = {"Channels", "Samples", "Y_Unit_Label", "X_Dimension", "X0", "Delta_X", "Y_Dimension", "X_Unit_Label",
-                 "Test_Name", "Test_Numbers", "Test_Series", "UUT_Name", "UUT_S/N", "UUT_M/N", "Notes", "Date",
-                 "Time"}  # fmt: skip
-_FILE_TAGS = {"Writer_Version", "Reader_Version", "Separator", "Decimal_Separator", "Multi_Headings", "X_Columns",
-              "Time_Pref", "Operator", "Project", "Description"}  # fmt: skip
+_SEGMENT_TAGS = {
+    "Channels",
+    "Samples",
+    "Y_Unit_Label",
+    "X_Dimension",
+    "X0",
+    "Delta_X",
+    "Y_Dimension",
+    "X_Unit_Label",
+    "Test_Name",
+    "Test_Numbers",
+    "Test_Series",
+    "UUT_Name",
+    "UUT_S/N",
+    "UUT_M/N",
+    "Notes",
+    "Date",
+    "Time",
+}
+_FILE_TAGS = {
+    "Writer_Version",
+    "Reader_Version",
+    "Separator",
+    "Decimal_Separator",
+    "Multi_Headings",
+    "X_Columns",
+    "Time_Pref",
+    "Operator",
+    "Project",
+    "Description",
+}
 _LONGEST_HEADER = 2000  # lines
 
 
@@ -113,8 +139,9 @@ def read_header(source: Source, lines: Lines) -> Header:
             break
         header.tags[cells[0]] = cells[1:]
         header.lines[cells[0]] = number
-    raise source.error(f"header end not found: no {END} after line {begin}", "Export the .lvm again.",
-                       f"line {lines.number - 1}")  # fmt: skip
+    raise source.error(
+        f"header end not found: no {END} after line {begin}", "Export the .lvm again.", f"line {lines.number - 1}"
+    )
 
 
 def _special(source: Source, lines: Lines, begin: int) -> None:

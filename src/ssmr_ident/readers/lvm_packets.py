@@ -1,9 +1,9 @@
 """Rows beyond ``Samples`` in a log without X column: one long record, or several records below one header?
 
 ``Multi_Headings No`` lets LabVIEW write one header and append packet after packet of ``Samples`` rows. A running
-acquisition makes them one record; a triggered one makes each packet a record of its own, and without an X column no
-stamp tells. The rows tell: in one record the step over a packet's end is one step among its neighbours, so its rank
-among n of them is uniform, p = 1/(n + 1) for the largest. Steps over the ends of all packets and channels are put
+acquisition makes them one record; a triggered one makes each packet a record of its own, and without an X column
+no stamp tells. The rows tell: in one record the step over a packet's end is one step among its neighbours, so its
+rank among n of them is uniform, p = 1/(n + 1) for the largest. Steps over the ends of all packets and channels are put
 together (Bonferroni over channels, Fisher 1925 over packet ends); below p = 0.01 the packets are records.
 With an X column nothing is split here: a restart of X says it, and rows count, whatever ``Samples`` says.
 """
@@ -16,7 +16,7 @@ import numpy as np
 from scipy.stats import chi2
 
 from ssmr_ident.core.recording import Note
-from ssmr_ident.readers.assemble import Column
+from ssmr_ident.readers.table import Column
 
 _NEIGHBOURS = 500  # steps on each side; p of the largest is 1/1001 then
 _LEVEL = 0.01
@@ -49,8 +49,13 @@ def split(columns: list[Column], samples: int, rate: float) -> tuple[list[slice]
     if pieces[-1].stop - pieces[-1].start < 2:
         pieces.pop()
     seconds = f", {samples / rate:.4g} s each" if rate else ""
-    return pieces, [Note("warning", f"{count} rows below one header that says Samples {samples}: read as "
-                         f"{len(pieces)} records{seconds} ({evidence}); time begins anew in each")]  # fmt: skip
+    return pieces, [
+        Note(
+            "warning",
+            f"{count} rows below one header that says Samples {samples}: read as "
+            f"{len(pieces)} records{seconds} ({evidence}); time begins anew in each",
+        )
+    ]
 
 
 def _chance(columns: list[Column], end: int, samples: int) -> float:
@@ -83,8 +88,11 @@ def rounded_step(printed: str, step: float) -> Note | None:
     rounder = _roundest(low, high)
     if rounder is None:
         return None
-    return Note("warning", f"Delta_X {printed.strip()} is rounded: 1/Delta_X = {1 / step:.6g} Hz is used, {rounder:g} Hz "
-                f"prints the same (anything from {low:.6g} to {high:.6g} Hz does); --fs {rounder:g} takes that")  # fmt: skip
+    return Note(
+        "warning",
+        f"Delta_X {printed.strip()} is rounded: 1/Delta_X = {1 / step:.6g} Hz is used, {rounder:g} Hz "
+        f"prints the same (anything from {low:.6g} to {high:.6g} Hz does); --fs {rounder:g} takes that",
+    )
 
 
 def _roundest(low: float, high: float) -> float | None:

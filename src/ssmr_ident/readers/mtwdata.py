@@ -1,7 +1,7 @@
 """ADMET's native XML (.mtwData, .mtxData): ``<Sample TIME= POSN= LOAD=>``.
 
-The only hard evidence is a public reader at a synchrotron: TIME in ms, POSN in m, LOAD in units of 10 N. The factor 10
-may be that rig's own, so it is an option and its default is a warning.
+The only hard evidence is a public reader at a synchrotron: TIME in ms, POSN in m, LOAD in units of 10 N. The factor
+10 may be that rig's own, so it is an option and its default is a warning.
 """
 
 from __future__ import annotations
@@ -11,10 +11,11 @@ from xml.parsers import expat
 import numpy as np
 
 from ssmr_ident.core.recording import Note, Recording
-from ssmr_ident.readers.assemble import Column, Table, recordings_of
+from ssmr_ident.readers.assemble import recordings_of
 from ssmr_ident.readers.numbers import number
 from ssmr_ident.readers.options import ReadOptions
 from ssmr_ident.readers.source import Source
+from ssmr_ident.readers.table import Column, Table
 
 NAMES = ("mtestquattro",)
 MAX_XML = 100 * 2**20  # bytes
@@ -69,8 +70,11 @@ def read(source: Source, options: ReadOptions) -> list[Recording]:
     try:
         samples.parser.Parse(source.data, True)
     except _Refused as error:
-        raise source.error("holds a document type definition or entities, which a log never needs",
-                           "Export the file again.", f"line {samples.parser.CurrentLineNumber}") from error  # fmt: skip
+        raise source.error(
+            "holds a document type definition or entities, which a log never needs",
+            "Export the file again.",
+            f"line {samples.parser.CurrentLineNumber}",
+        ) from error
     except (expat.ExpatError, ValueError, LookupError) as error:
         line = getattr(error, "lineno", samples.parser.CurrentLineNumber)
         raise source.error(f"XML is damaged ({str(error)[:80]})", "Copy it again.", f"line {line}") from error
@@ -81,13 +85,15 @@ def read(source: Source, options: ReadOptions) -> list[Recording]:
     for count, group in enumerate(numbers, start=1):
         chosen = [i for i, g in enumerate(samples.groups) if g == group]
         part = f"sample group {count} of {len(numbers)}" if len(numbers) > 1 else ""
-        recordings += _recording(source, [samples.rows[i] for i in chosen], [samples.lines[i] for i in chosen], part,
-                                 options)  # fmt: skip
+        recordings += _recording(
+            source, [samples.rows[i] for i in chosen], [samples.lines[i] for i in chosen], part, options
+        )
     return recordings
 
 
-def _recording(source: Source, rows: list[dict[str, str]], lines: list[int], part: str,
-               options: ReadOptions) -> list[Recording]:  # fmt: skip
+def _recording(
+    source: Source, rows: list[dict[str, str]], lines: list[int], part: str, options: ReadOptions
+) -> list[Recording]:
     keys = list(rows[0])
     for key in ("TIME", "LOAD"):
         missing = next((i for i, row in enumerate(rows) if key not in row), None)
@@ -104,9 +110,17 @@ def _recording(source: Source, rows: list[dict[str, str]], lines: list[int], par
             level = "info"
             if scale is None:
                 scale, level = _LOAD_SCALE, "warning"
-            notes.append(Note(level, f"LOAD × {scale:g} = N"
-                              + ("" if level == "info" else " (of one known rig; check against a known load, "
-                                 "--load-scale changes it)")))  # fmt: skip
+            notes.append(
+                Note(
+                    level,
+                    f"LOAD × {scale:g} = N"
+                    + (
+                        ""
+                        if level == "info"
+                        else " (of one known rig; check against a known load, --load-scale changes it)"
+                    ),
+                )
+            )
             values = values * scale
         columns.append(Column(key, _UNITS.get(key), values))
     table = Table(columns, lambda row: f"line {lines[row]}", part, {}, notes, split=True)

@@ -1,4 +1,4 @@
-"""Numbers as logs print them: decimal comma, thousands separators, marks for 'no number', clock times and dates."""
+"""Numbers as logs print them: decimal comma, thousands separators, marks for 'no number', times, dates."""
 
 from __future__ import annotations
 
@@ -17,10 +17,32 @@ _GROUPED_POINT = re.compile(
 _GROUPED_COMMA = re.compile(
     r"[+-]?[1-9]\d{0,2}(?:(?:\.\d{3})+|(?:'\d{3})+|(?:[ \u00a0\u202f]\d{3})+)(?:,\d*)?\Z", re.ASCII
 )
-_NO_NUMBER = {"nan", "-nan", "+nan", "1.#qnan", "-1.#qnan", "1.#ind", "-1.#ind", "1.#snan", "n/a", "#n/a", "1.#nan",
-              "-nan(ind)", "1,#qnan", "-1,#ind", "---"}  # fmt: skip
-_INFINITE = {"inf": math.inf, "+inf": math.inf, "-inf": -math.inf, "1.#inf": math.inf, "-1.#inf": -math.inf,
-             "infinity": math.inf, "-infinity": -math.inf}  # fmt: skip
+_NO_NUMBER = {
+    "nan",
+    "-nan",
+    "+nan",
+    "1.#qnan",
+    "-1.#qnan",
+    "1.#ind",
+    "-1.#ind",
+    "1.#snan",
+    "n/a",
+    "#n/a",
+    "1.#nan",
+    "-nan(ind)",
+    "1,#qnan",
+    "-1,#ind",
+    "---",
+}
+_INFINITE = {
+    "inf": math.inf,
+    "+inf": math.inf,
+    "-inf": -math.inf,
+    "1.#inf": math.inf,
+    "-1.#inf": -math.inf,
+    "infinity": math.inf,
+    "-infinity": -math.inf,
+}
 _CLOCK = re.compile(r"(\d{1,2}):(\d{2}):(\d{2}(?:[.,]\d+)?)\s*([AaPp][Mm])?\Z", re.ASCII)
 _DATED = re.compile(r"(\S+?)[T\s]+(\d{1,2}:\d{2}:\d{2}(?:[.,]\d+)?(?:\s*[AaPp][Mm])?)Z?\Z", re.ASCII)
 

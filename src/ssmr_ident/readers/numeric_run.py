@@ -1,8 +1,8 @@
 """Walking a text log: rows of numbers become arrays, everything else stays text with its line number.
 
 Long runs go through a compiled loop that takes only rows it can read exactly: a mantissa below 2**53 times a power
-of ten up to 22, where one division rounds correctly (Clinger 1990, "How to read floating point numbers accurately").
-Any other row goes through Python, so both ways give the same numbers bit for bit.
+of ten up to 22, where one division rounds correctly (Clinger 1990, "How to read floating point numbers
+accurately"). Any other row goes through Python, so both ways give the same numbers bit for bit.
 """
 
 from __future__ import annotations
@@ -51,8 +51,9 @@ class TextRow:
     raw: str
 
 
-def walk(text: Text, dialect: Dialect, *, start: int = 0, first_line: int = 1,
-         width: int | None = None) -> Iterator[NumberRun | TextRow]:  # fmt: skip
+def walk(
+    text: Text, dialect: Dialect, *, start: int = 0, first_line: int = 1, width: int | None = None
+) -> Iterator[NumberRun | TextRow]:
     """Runs of numbers and lines of text, in the order of the file.
 
     Parameters

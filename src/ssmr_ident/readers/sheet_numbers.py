@@ -1,13 +1,14 @@
 """The numbers of one worksheet: where the data begin, what stands above them, and what is wrong among them.
 
-``xlsread`` (the thesis) takes the bounding box of the numeric cells and keeps its rows ``11:end``. Two headers give a
-box of which ten rows are passed over: an LVM segment header, whose ten rows begin at ``Channels 1`` (H1: nothing is
-lost), or none at all, so that ten samples are lost (H2). With ``skip="auto"`` the rows tell: rows of numbers that
+``xlsread`` (the thesis) takes the bounding box of the numeric cells and keeps its rows ``11:end``. Two headers give
+a box of which ten rows are passed over: an LVM segment header, whose ten rows begin at ``Channels 1`` (H1: nothing
+is lost), or none at all, so that ten samples are lost (H2). With ``skip="auto"`` the rows tell: rows of numbers that
 lie on the time grid of the rest are samples.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from datetime import UTC, datetime, time, timedelta
 from itertools import chain
@@ -27,12 +28,13 @@ _THESIS_SKIP = 10
 
 @dataclass
 class SheetNumbers:
-    """Values (n, m) float of one sheet; ``rows`` (n,) are Excel's row numbers, ``labels`` the headers as written."""
+    """Values (n, m) float of one sheet; ``rows`` (n,) are Excel's row numbers, ``labels`` the headers."""
 
     values: np.ndarray
     rows: np.ndarray
     labels: list[str]
     dated: bool = False
+    first_column: int = 0
     notes: list[Note] = field(default_factory=list)
 
 
@@ -72,7 +74,7 @@ def numbers_of(source: Source, sheet: Sheet, what: str, options: ReadOptions) ->
     begin = _skip(source, sheet, rows, block, begin, columns, options, notes)
     labels = _labels(rows, begin, columns)
     values, kept, dated = _values(source, sheet, rows, begin, columns, options, notes)
-    return SheetNumbers(values, kept, labels, dated, notes)
+    return SheetNumbers(values, kept, labels, dated, columns[0], notes)
 
 
 def _first_data_row(rows: list[list[Any]]) -> int | None:
@@ -92,22 +94,37 @@ def _block_begin(rows: list[list[Any]], begin: int) -> int:
     return next((i for i, row in enumerate(rows[:begin]) if any(map(_is_number, row))), begin)
 
 
-def _skip(source: Source, sheet: Sheet, rows: list[list[Any]], block: int, begin: int, columns: list[int],
-          options: ReadOptions, notes: list[Note]) -> int:  # fmt: skip
+def _skip(
+    source: Source,
+    sheet: Sheet,
+    rows: list[list[Any]],
+    block: int,
+    begin: int,
+    columns: list[int],
+    options: ReadOptions,
+    notes: list[Note],
+) -> int:
     above = begin - block
     box = len(rows) - block
     if box <= _THESIS_SKIP and options.skip == "auto":
-        raise source.error(f"only {box} numeric rows; 11:end would be empty", "Export the whole recording, or give "
-                           "--skip 0.", sheet.name)  # fmt: skip
+        raise source.error(
+            f"only {box} numeric rows; 11:end would be empty",
+            "Export the whole recording, or give --skip 0.",
+            sheet.name,
+        )
     if options.skip == "auto":
-        how = (f"{above} header rows in the block of numbers passed over (LVM segment header)" if above
-               else "block of numbers holds samples from its first row on, none passed over")  # fmt: skip
+        how = (
+            f"{above} header rows in the block of numbers passed over (LVM segment header)"
+            if above
+            else "block of numbers holds samples from its first row on, none passed over"
+        )
     else:
         begin = max(block + int(options.skip), begin)
         how = f"{options.skip} rows of the block of numbers passed over, as --skip says"
         if begin >= len(rows):
-            raise source.error(f"only {box} numeric rows; --skip {options.skip} leaves none", "Give a smaller --skip.",
-                               sheet.name)  # fmt: skip
+            raise source.error(
+                f"only {box} numeric rows; --skip {options.skip} leaves none", "Give a smaller --skip.", sheet.name
+            )
     first = rows[begin][columns[0]]
     shown = f"t = {first:g} s" if _is_number(first) and len(columns) > 1 else f"{first}"
     notes.append(Note("info", f"{how}; first sample is row {begin + 1}, {shown}", sheet.name))
@@ -126,8 +143,15 @@ def _labels(rows: list[list[Any]], begin: int, columns: list[int]) -> list[str]:
     return [""] * len(columns)
 
 
-def _values(source: Source, sheet: Sheet, rows: list[list[Any]], begin: int, columns: list[int], options: ReadOptions,
-            notes: list[Note]) -> tuple[np.ndarray, np.ndarray, bool]:  # fmt: skip
+def _values(
+    source: Source,
+    sheet: Sheet,
+    rows: list[list[Any]],
+    begin: int,
+    columns: list[int],
+    options: ReadOptions,
+    notes: list[Note],
+) -> tuple[np.ndarray, np.ndarray, bool]:
     body = rows[begin:]
     if len(columns) != len(body[0]):
         low, high = columns[0], columns[-1] + 1
@@ -139,18 +163,32 @@ def _values(source: Source, sheet: Sheet, rows: list[list[Any]], begin: int, col
     types = set(map(type, chain.from_iterable(body)))
     if types <= {float, int}:
         values = np.array(body, dtype=float)
+        if not np.isfinite(values).all():  # a literal NaN in a numeric cell, which Excel never writes
+            return _mixed(source, sheet, body, begin, columns, options, notes)
         return values, np.arange(begin + 1, begin + 1 + len(body)), False
     return _mixed(source, sheet, body, begin, columns, options, notes)
 
 
-def _mixed(source: Source, sheet: Sheet, body: list[list[Any]], begin: int, columns: list[int], options: ReadOptions,
-           notes: list[Note]) -> tuple[np.ndarray, np.ndarray, bool]:  # fmt: skip
+def _mixed(
+    source: Source,
+    sheet: Sheet,
+    body: list[list[Any]],
+    begin: int,
+    columns: list[int],
+    options: ReadOptions,
+    notes: list[Note],
+) -> tuple[np.ndarray, np.ndarray, bool]:
     """Rows with cells that are no plain numbers: dates, blanks, text, Excel errors."""
     while body and not any(map(_is_stamp, body[-1])):
         last = body.pop()
         if any(cell != "" for cell in last):
-            notes.append(Note("warning", f"text below the data not read: {_shown(last)}",
-                              f"{sheet.name}, row {begin + len(body) + 1}"))  # fmt: skip
+            notes.append(
+                Note(
+                    "warning",
+                    f"text below the data not read: {_shown(last)}",
+                    f"{sheet.name}, row {begin + len(body) + 1}",
+                )
+            )
     values = []
     kept = []
     dated = False
@@ -159,7 +197,7 @@ def _mixed(source: Source, sheet: Sheet, body: list[list[Any]], begin: int, colu
         index = begin + offset
         line = []
         for position, cell in enumerate(row):
-            if _is_number(cell):
+            if _is_number(cell) and math.isfinite(cell):
                 line.append(float(cell))
                 continue
             if position == 0 and isinstance(cell, (datetime, time, timedelta)):
@@ -172,11 +210,16 @@ def _mixed(source: Source, sheet: Sheet, body: list[list[Any]], begin: int, colu
                 asked += 1
                 stamp = row[0] if _is_number(row[0]) and position else None
                 where = f" (1 gap at t = {stamp:g} s)" if stamp is not None else ""
+            elif _is_number(cell):
+                problem, where = f"{cell} in a numeric cell", ""
             else:
                 problem, where = f"text {str(cell)[:40]!r} inside the data", ""
             if options.on_bad != "nan":
-                mend = ("Open the workbook in Excel and save it, so that formulas get their values."
-                        if "never calculated" in problem else "Mend the cell, or keep a gap with --on-bad nan.")  # fmt: skip
+                mend = (
+                    "Open the workbook in Excel and save it, so that formulas get their values."
+                    if "never calculated" in problem
+                    else "Mend the cell, or keep a gap with --on-bad nan."
+                )
                 raise source.error(f"{problem}{where}", mend, place)
             notes.append(Note("warning", f"{problem}{where}; taken as missing", place))
             line.append(np.nan)
@@ -219,8 +262,14 @@ def _from_text(
             line.append(cell)
         converted.append(line)
     if count:
-        notes.append(Note("warning", f"{count} numbers are stored as text, with decimal "
-                          f"{'comma' if decimal == ',' else 'point'}; read as numbers", sheet.name))  # fmt: skip
+        notes.append(
+            Note(
+                "warning",
+                f"{count} numbers are stored as text, with decimal "
+                f"{'comma' if decimal == ',' else 'point'}; read as numbers",
+                sheet.name,
+            )
+        )
     return converted if count else None
 
 

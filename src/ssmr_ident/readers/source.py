@@ -32,6 +32,7 @@ class Source:
     path: Path
     data: bytes
     kind: str
+    sha256: str = ""
     notes: list[Note] = field(default_factory=list)
 
     @property
@@ -39,7 +40,7 @@ class Source:
         return str(self.path)
 
     def provenance(self, reader: str, part: str = "") -> Provenance:
-        return Provenance(self.name, hashlib.sha256(self.data).hexdigest(), reader, part)
+        return Provenance(self.name, self.sha256, reader, part)
 
     def error(self, problem: str, mend: str = "", place: str = "") -> InputError:
         """An error at a place in this file."""
@@ -66,14 +67,17 @@ def open_source(path: str | Path) -> Source:
             raise InputError(str(path), "is a folder, not a log", "Name a file in it.")
         size = path.stat().st_size
         if size > MAX_BYTES:
-            raise InputError(str(path), f"holds {size / 2**20:.0f} MB, more than {MAX_BYTES // 2**20} MB",
-                             "Split the recording.")  # fmt: skip
+            raise InputError(
+                str(path),
+                f"holds {size / 2**20:.0f} MB, more than {MAX_BYTES // 2**20} MB",
+                "Split the recording.",
+            )
         data = path.read_bytes()
     except (OSError, ValueError) as error:  # ValueError: a NUL in the name
         reason = getattr(error, "strerror", None) or str(error)
         raise InputError(str(path), f"cannot be read ({reason})", "Check the name and the permissions.") from error
     kind = _kind(path, data)
-    source = Source(path, data, kind)
+    source = Source(path, data, kind, hashlib.sha256(data).hexdigest())
     _compare_with_extension(source)
     return source
 
@@ -82,7 +86,8 @@ def _kind(path: Path, data: bytes) -> str:
     where = str(path)
     if not data:
         raise InputError(where, "file is empty (0 bytes): no channels, no data", "Copy it again.")
-    if path.name.startswith("~$"):
+    # a lock file is the user's name behind its length, filled up with blanks
+    if path.name.startswith("~$") or (len(data) == 165 and 0 < data[0] < 55 and data.endswith(b" " * 20)):
         raise InputError(where, "is Excel's lock file, not the workbook", "Name the file without '~$'.")
     head = data[:1024]
     if head.startswith(b"PK"):
@@ -102,8 +107,11 @@ def _kind(path: Path, data: bytes) -> str:
             raise InputError(where, "is an HTML page, not a log", "Export the data itself, as .xlsx or text.")
         return "xml"
     if head.startswith((b"\x01\x00\x00\x00", b"\xd7\xcd\xc6\x9a", b"BM", b"\x89PNG", b"\xff\xd8\xff", b"%PDF")):
-        raise InputError(where, "is a picture, not data",
-                         "In LabVIEW use 'Export Data To Excel', not 'Export Simplified Image'.")  # fmt: skip
+        raise InputError(
+            where,
+            "is a picture, not data",
+            "In LabVIEW use 'Export Data To Excel', not 'Export Simplified Image'.",
+        )
     return "text"
 
 

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import io
 import logging
+from typing import Any
 
 import numpy as np
 
 from ssmr_ident.core.recording import Note, Recording
-from ssmr_ident.readers.assemble import Column, Table, facts, recordings_of
+from ssmr_ident.readers.assemble import recordings_of
 from ssmr_ident.readers.headings import quantity_of, split_header
 from ssmr_ident.readers.options import ReadOptions
 from ssmr_ident.readers.source import Source
+from ssmr_ident.readers.table import Column, Table, facts
 
 NAMES = ("tdms",)
 
@@ -45,8 +47,20 @@ def read(source: Source, options: ReadOptions) -> list[Recording]:
             if len(group.channels())
             for recording in _group(source, group, bool(status.incomplete_final_segment), file.properties, options)
         ]
-    except (ValueError, KeyError, IndexError, TypeError, EOFError, OSError, AttributeError, OverflowError, MemoryError,
-            NotImplementedError, AssertionError, RuntimeError) as error:  # fmt: skip
+    except (
+        ValueError,
+        KeyError,
+        IndexError,
+        TypeError,
+        EOFError,
+        OSError,
+        AttributeError,
+        OverflowError,
+        MemoryError,
+        NotImplementedError,
+        AssertionError,
+        RuntimeError,
+    ) as error:
         # npTDMS reports damage by whatever its parsing stumbles over
         raise source.error(
             f"TDMS is damaged ({type(error).__name__}: {str(error)[:100]})", "Copy it again."
@@ -59,12 +73,15 @@ def read(source: Source, options: ReadOptions) -> list[Recording]:
 
 
 def _check_segments(source: Source) -> None:
-    """Follow the segments' lead-ins (28 bytes: tag, flags, version, next offset, raw offset) and stop at garbage."""
+    """Follow the lead-ins (28 bytes: tag, flags, version, next offset, raw offset) and stop at garbage."""
     data, offset, end = source.data, 0, len(source.data)
     while offset < end:
         if data[offset : offset + 4] != b"TDSm":
-            raise source.error(f"garbage between segments: {data[offset : offset + 4]!r} instead of TDSm",
-                               "Copy it again.", f"byte {offset}")  # fmt: skip
+            raise source.error(
+                f"garbage between segments: {data[offset : offset + 4]!r} instead of TDSm",
+                "Copy it again.",
+                f"byte {offset}",
+            )
         if offset + 28 > end:
             return
         following = int.from_bytes(data[offset + 12 : offset + 20], "little")
@@ -73,7 +90,7 @@ def _check_segments(source: Source) -> None:
         offset += 28 + following
 
 
-def _group(source: Source, group, incomplete: bool, properties, options: ReadOptions) -> list[Recording]:  # type: ignore[no-untyped-def]
+def _group(source: Source, group: Any, incomplete: bool, properties: Any, options: ReadOptions) -> list[Recording]:
     channels = [channel for channel in group.channels() if len(channel)]
     if not channels:
         return []
@@ -81,8 +98,13 @@ def _group(source: Source, group, incomplete: bool, properties, options: ReadOpt
     lengths = {channel.name: len(channel) for channel in channels}
     shortest = min(lengths.values())
     if incomplete:
-        notes.append(Note("warning", f"the last segment is incomplete (the log was cut off); {shortest} samples per "
-                          "channel are whole", group.name))  # fmt: skip
+        notes.append(
+            Note(
+                "warning",
+                f"the last segment is incomplete (the log was cut off); {shortest} samples per channel are whole",
+                group.name,
+            )
+        )
     elif len(set(lengths.values())) > 1:
         shown = ", ".join(f"{name} {count}" for name, count in lengths.items())
         if not options.trim:
@@ -108,18 +130,29 @@ def _group(source: Source, group, incomplete: bool, properties, options: ReadOpt
         **{str(k): str(v) for k, v in properties.items()},
         **{str(k): str(v) for k, v in group.properties.items()},
     }
-    table = Table(columns, lambda row: f"{group.name}, sample {row + 1}", f"group {group.name}", facts(keep), notes, "V",
-                  axes_in_volts=True, split=False)  # fmt: skip
+    table = Table(
+        columns,
+        lambda row: f"{group.name}, sample {row + 1}",
+        f"group {group.name}",
+        facts(keep),
+        notes,
+        "V",
+        axes_in_volts=True,
+        split=False,
+    )
     return recordings_of(source, "tdms", table, options)
 
 
-def _computed_time(source: Source, group, channels, count: int, notes: list[Note]) -> Column:  # type: ignore[no-untyped-def]
+def _computed_time(source: Source, group: Any, channels: Any, count: int, notes: list[Note]) -> Column:
     increments = {float(c.properties["wf_increment"]) for c in channels if c.properties.get("wf_increment")}
     if not increments:
         raise source.error("has no time channel and no wf_increment", "Give --fs.", f"group {group.name}")
     if len(increments) > 1:
-        raise source.error(f"channels have different rates: {sorted(1 / i for i in increments)} Hz",
-                           "Put channels of one rate into one group.", f"group {group.name}")  # fmt: skip
+        raise source.error(
+            f"channels have different rates: {sorted(1 / i for i in increments)} Hz",
+            "Put channels of one rate into one group.",
+            f"group {group.name}",
+        )
     step = increments.pop()
     if not (0 < step < float("inf")):
         raise source.error(f"wf_increment is {step:g} s", "Give --fs.", f"group {group.name}")

@@ -63,8 +63,13 @@ def elapsed(stamps: np.ndarray, *, clock: bool = False) -> tuple[np.ndarray, lis
         kind = "clock times" if clock else "absolute seconds (LabVIEW counts from 1904)"
         resolution = np.spacing(np.nanmax(np.abs(stamps))) if len(stamps) else 0.0
         stamps = stamps - stamps[0]
-        notes.append(Note("info", f"time: {kind} became seconds since the first sample "
-                                  f"(resolution of the stamp {max(resolution, 1e-9):.1g} s)"))  # fmt: skip
+        notes.append(
+            Note(
+                "info",
+                f"time: {kind} became seconds since the first sample "
+                f"(resolution of the stamp {max(resolution, 1e-9):.1g} s)",
+            )
+        )
     return stamps, notes
 
 
@@ -96,11 +101,21 @@ def check(stamps: np.ndarray, place: Callable[[int], str], *, split: bool) -> Ti
         keep[1:][steps == 0] = False
         doubled = np.flatnonzero(~keep)
         if len(doubled) > max(1, 0.01 * len(stamps)):
-            raise TimeProblem(int(doubled[0]), f"time stands still in {len(doubled)} of {len(stamps)} rows: its "
-                              "resolution is coarser than the sampling", "Give --fs.")  # fmt: skip
+            raise TimeProblem(
+                int(doubled[0]),
+                f"time stands still in {len(doubled)} of {len(stamps)} rows: its "
+                "resolution is coarser than the sampling",
+                "Give --fs.",
+            )
         if len(doubled):
-            axis.notes.append(Note("warning", f"{len(doubled)} row(s) repeat the time of the row before, dropped "
-                                   f"(t = {stamps[doubled[0]]:.6g} s)", place(int(doubled[0]))))  # fmt: skip
+            axis.notes.append(
+                Note(
+                    "warning",
+                    f"{len(doubled)} row(s) repeat the time of the row before, dropped "
+                    f"(t = {stamps[doubled[0]]:.6g} s)",
+                    place(int(doubled[0])),
+                )
+            )
         axis.rows = rows[keep]
         axis.time = stamps[keep]
         axis.restarts = [int(np.searchsorted(axis.rows, start)) for start in restarts]
@@ -118,8 +133,11 @@ def _restarts(stamps: np.ndarray, steps: np.ndarray, place: Callable[[int], str]
         # one row that falls back and whose successor goes on is a damaged stamp, not another sample
         goes_on = row + 1 >= len(stamps) or stamps[row + 1] < stamps[row - 1]
         if not (split and near_start and goes_on):
-            raise TimeProblem(int(row), f"time decreases from {stamps[row - 1]:.6g} to {stamps[row]:.6g} s; two "
-                              "recordings in one table?", "Keep one of them per file or sheet.")  # fmt: skip
+            raise TimeProblem(
+                int(row),
+                f"time decreases from {stamps[row - 1]:.6g} to {stamps[row]:.6g} s: two recordings in one table",
+                "Keep one of them per file or sheet.",
+            )
         found.append(int(row))
         begin = int(row)
     return found
@@ -147,8 +165,13 @@ def gaps(time: np.ndarray, place: Callable[[int], str]) -> list[Note]:
     for row in wide[:3]:
         lost = round(float(steps[row] / typical)) - 1
         missing = f"{lost} samples missing" if lost > 0 else "a step too long"
-        notes.append(Note("warning", f"{missing} after t = {time[row]:.6g} s: time jumps to {time[row + 1]:.6g} s",
-                          place(int(row + 1))))  # fmt: skip
+        notes.append(
+            Note(
+                "warning",
+                f"{missing} after t = {time[row]:.6g} s: time jumps to {time[row + 1]:.6g} s",
+                place(int(row + 1)),
+            )
+        )
     if len(wide) > 3:
         notes.append(Note("warning", f"{len(wide)} gaps in time altogether; the first three are named"))
     return notes

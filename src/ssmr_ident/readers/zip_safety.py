@@ -6,6 +6,7 @@ A cell reference alone sets the size of the table that a parser lays out: one ce
 
 from __future__ import annotations
 
+import contextlib
 import io
 import re
 import zipfile
@@ -31,8 +32,9 @@ def check(source: Source) -> None:
         archive = zipfile.ZipFile(io.BytesIO(source.data))
         members = archive.infolist()
     except (zipfile.BadZipFile, ValueError, NotImplementedError, OverflowError, EOFError, OSError) as error:
-        raise source.error("workbook is damaged or incompletely copied (zip directory missing)",
-                           "Copy it again.") from error  # fmt: skip
+        raise source.error(
+            "workbook is damaged or incompletely copied (zip directory missing)", "Copy it again."
+        ) from error
     names = {member.filename for member in members}
     if not any(name.endswith("workbook.xml") for name in names):
         if any(name.endswith("workbook.bin") for name in names):
@@ -47,8 +49,11 @@ def check(source: Source) -> None:
         data = _unpack(source, archive, member, budget)
         budget -= len(data)
         if b"<!DOCTYPE" in data or b"<!ENTITY" in data:
-            raise source.error("holds a document type definition, which no workbook needs", "Save it anew in Excel.",
-                               member.filename)  # fmt: skip
+            raise source.error(
+                "holds a document type definition, which no workbook needs",
+                "Save it anew in Excel.",
+                member.filename,
+            )
         if member.filename.endswith("workbook.xml.rels") and b"sharedStrings.xml" in data:
             _require_shared_strings(source, names)
         if "/worksheets/" in member.filename or b"<sheetData" in data[:65536]:
@@ -85,8 +90,11 @@ def _check_corner(source: Source, name: str, data: bytes) -> None:
         corner = _exact_corner(data)
     rows, columns = corner
     if rows * columns > MAX_CELLS:
-        raise source.error(f"sheet reaches to row {rows}, column {columns}: {rows * columns:.3g} cells",
-                           "Delete stray cells far from the data.", name)  # fmt: skip
+        raise source.error(
+            f"sheet reaches to row {rows}, column {columns}: {rows * columns:.3g} cells",
+            "Delete stray cells far from the data.",
+            name,
+        )
 
 
 def _quick_corner(data: bytes) -> tuple[int, int] | None:
@@ -145,8 +153,7 @@ def _exact_corner(data: bytes) -> tuple[int, int]:
 
     parser = expat.ParserCreate()
     parser.StartElementHandler = start
-    try:
+    # a damaged sheet is reported with its name by whoever parses it; the corner so far bounds it
+    with contextlib.suppress(expat.ExpatError):
         parser.Parse(data, True)
-    except expat.ExpatError:
-        pass  # a damaged sheet is reported with its name by whoever parses it; the corner so far bounds it
     return rows, columns

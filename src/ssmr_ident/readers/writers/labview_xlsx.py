@@ -1,7 +1,7 @@
 """The thesis' workbook: three sheets z, y, x of time and volts, byte for byte the same for the same recording.
 
-Written as the few parts that Office Open XML (ISO/IEC 29500) asks for, with fixed dates: libraries put the clock into
-a workbook, and then the same seed gives another SHA-256 every time.
+Written as the few parts that Office Open XML (ISO/IEC 29500) asks for, with fixed dates: libraries put the clock
+into a workbook, and then the same seed gives another SHA-256 every time.
 """
 
 from __future__ import annotations
@@ -25,9 +25,16 @@ _PACKAGE = "http://schemas.openxmlformats.org/package/2006"
 _XML = '<?xml version="1.0" encoding="UTF-8" standalone="yes"?>\n'
 
 
-def write_labview_xlsx(path: str | Path, recording: Recording, *, header: str = "graph", decimals: int = 6,
-                       sheet_names: tuple[str, str, str] = ("Sheet1", "Sheet2", "Sheet3"),
-                       date: str = "2012/05/10", clock: str = "14:03:11.12") -> Path:  # fmt: skip
+def write_labview_xlsx(
+    path: str | Path,
+    recording: Recording,
+    *,
+    header: str = "graph",
+    decimals: int = 6,
+    sheet_names: tuple[str, str, str] = ("Sheet1", "Sheet2", "Sheet3"),
+    date: str = "2012/05/10",
+    clock: str = "14:03:11.12",
+) -> Path:
     """Write three axes in volts.
 
     Parameters
@@ -36,8 +43,8 @@ def write_labview_xlsx(path: str | Path, recording: Recording, *, header: str = 
     recording : Recording
         With channels ``ax``, ``ay``, ``az`` [V].
     header : {"graph", "segment", "none"}
-        ``graph``: the text row of LabVIEW's graph export. ``segment``: the ten rows of an LVM segment header, which
-        make the thesis' ``11:end`` begin at t = 0. ``none``: numbers from A1 on.
+        ``graph``: the text row of LabVIEW's graph export. ``segment``: the ten rows of an LVM segment header,
+        which make the thesis' ``11:end`` begin at t = 0. ``none``: numbers from A1 on.
     decimals : int
         Values are rounded to this many decimals, as a log prints them.
     sheet_names : tuple of str
@@ -50,8 +57,11 @@ def write_labview_xlsx(path: str | Path, recording: Recording, *, header: str = 
     """
     for name in _ORDER:
         if name not in recording or recording.channel(name).unit != "V":
-            raise InputError(str(path), f"a LabVIEW workbook holds ax, ay, az in volts; {name} is not among them",
-                             f"The recording has {', '.join(f'{c.name} [{c.unit}]' for c in recording.channels)}.")  # fmt: skip
+            raise InputError(
+                str(path),
+                f"a LabVIEW workbook holds ax, ay, az in volts; {name} is not among them",
+                f"The recording has {', '.join(f'{c.name} [{c.unit}]' for c in recording.channels)}.",
+            )
     if header not in ("graph", "segment", "none"):
         raise ValueError(f"header must be 'graph', 'segment' or 'none'. Got {header!r} instead.")
     parts = _frame(sheet_names)
@@ -74,9 +84,18 @@ def _header_rows(header: str, recording: Recording, name: str, date: str, clock:
     if header == "graph":
         return [["Time - Plot 0", "Amplitude - Plot 0"]]
     step = float(np.median(np.diff(recording.time))) if len(recording.time) > 1 else 0.0
-    return [["Channels", 1.0], ["Samples", float(len(recording.time))], ["Date", date], ["Time", clock],
-            ["Y_Unit_Label", "Volts"], ["X_Dimension", "Time"], ["X0", float(recording.time[0])], ["Delta_X", step],
-            ["***End_of_Header***"], ["X_Value", recording.channel(name).label or name, "Comment"]]  # fmt: skip
+    return [
+        ["Channels", 1.0],
+        ["Samples", float(len(recording.time))],
+        ["Date", date],
+        ["Time", clock],
+        ["Y_Unit_Label", "Volts"],
+        ["X_Dimension", "Time"],
+        ["X0", float(recording.time[0])],
+        ["Delta_X", step],
+        ["***End_of_Header***"],
+        ["X_Value", recording.channel(name).label or name, "Comment"],
+    ]
 
 
 def _cell(column: int, row: int, value: str | float) -> str:
@@ -100,10 +119,14 @@ def _sheet(header: list[list[str | float]], time: np.ndarray, volts: np.ndarray,
 
 def _frame(names: tuple[str, str, str]) -> dict[str, str]:
     """The parts of a workbook around its sheets."""
-    sheets = "".join(f'<sheet name="{escape(n, {chr(34): "&quot;"})}" sheetId="{i}" r:id="rId{i}"/>'
-                     for i, n in enumerate(names, start=1))  # fmt: skip
-    relations = "".join(f'<Relationship Id="rId{i}" Type="{_RELATIONS}/worksheet" Target="worksheets/sheet{i}.xml"/>'
-                        for i in (1, 2, 3))  # fmt: skip
+    sheets = "".join(
+        f'<sheet name="{escape(n, {chr(34): "&quot;"})}" sheetId="{i}" r:id="rId{i}"/>'
+        for i, n in enumerate(names, start=1)
+    )
+    relations = "".join(
+        f'<Relationship Id="rId{i}" Type="{_RELATIONS}/worksheet" Target="worksheets/sheet{i}.xml"/>'
+        for i in (1, 2, 3)
+    )
     content = "application/vnd.openxmlformats-officedocument.spreadsheetml."
     overrides = f'<Override PartName="/xl/workbook.xml" ContentType="{content}sheet.main+xml"/>' + "".join(
         f'<Override PartName="/xl/worksheets/sheet{i}.xml" ContentType="{content}worksheet+xml"/>'
@@ -112,15 +135,19 @@ def _frame(names: tuple[str, str, str]) -> dict[str, str]:
     overrides += f'<Override PartName="/xl/styles.xml" ContentType="{content}styles+xml"/>'
     relations += f'<Relationship Id="rId4" Type="{_RELATIONS}/styles" Target="styles.xml"/>'
     return {
-        "[Content_Types].xml": f'{_XML}<Types xmlns="{_PACKAGE}/content-types"><Default Extension="rels" ContentType='
-        f'"application/vnd.openxmlformats-package.relationships+xml"/><Default Extension="xml" ContentType='
-        f'"application/xml"/>{overrides}</Types>',
-        "_rels/.rels": f'{_XML}<Relationships xmlns="{_PACKAGE}/relationships"><Relationship Id="rId1" Type='
+        "[Content_Types].xml": f'{_XML}<Types xmlns="{_PACKAGE}/content-types"><Default Extension="rels" '
+        f'ContentType="application/vnd.openxmlformats-package.relationships+xml"/><Default Extension="xml" '
+        f'ContentType="application/xml"/>{overrides}</Types>',
+        "_rels/.rels": f"{_XML}"
+        f'<Relationships xmlns="{_PACKAGE}/relationships"><Relationship Id="rId1" Type='
         f'"{_RELATIONS}/officeDocument" Target="xl/workbook.xml"/></Relationships>',
-        "xl/workbook.xml": f'{_XML}<workbook xmlns="{_MAIN}" xmlns:r="{_RELATIONS}"><sheets>{sheets}</sheets></workbook>',
-        "xl/_rels/workbook.xml.rels": f'{_XML}<Relationships xmlns="{_PACKAGE}/relationships">{relations}</Relationships>',
-        "xl/styles.xml": f'{_XML}<styleSheet xmlns="{_MAIN}"><fonts count="1"><font/></fonts><fills count="2"><fill>'
+        "xl/workbook.xml": f"{_XML}"
+        f'<workbook xmlns="{_MAIN}" xmlns:r="{_RELATIONS}"><sheets>{sheets}</sheets></workbook>',
+        "xl/_rels/workbook.xml.rels": f"{_XML}"
+        f'<Relationships xmlns="{_PACKAGE}/relationships">{relations}</Relationships>',
+        "xl/styles.xml": f"{_XML}"
+        f'<styleSheet xmlns="{_MAIN}"><fonts count="1"><font/></fonts><fills count="2"><fill>'
         '<patternFill patternType="none"/></fill><fill><patternFill patternType="gray125"/></fill></fills>'
         '<borders count="1"><border/></borders><cellStyleXfs count="1"><xf/></cellStyleXfs><cellXfs count="1">'
         "<xf/></cellXfs></styleSheet>",
-    }  # fmt: skip
+    }

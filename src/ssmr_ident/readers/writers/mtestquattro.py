@@ -14,9 +14,16 @@ from ssmr_ident.readers.writers.printing import fixed
 _HEADINGS = {"position": "Position", "force": "Load"}
 
 
-def write_mtestquattro(path: str | Path, recording: Recording, *, style: str = "tab", position_unit: str = "mm",
-                       load_unit: str = "N", decimals: tuple[int, int, int] = (3, 4, 3),
-                       facts: Mapping[str, str] | None = None) -> Path:  # fmt: skip
+def write_mtestquattro(
+    path: str | Path,
+    recording: Recording,
+    *,
+    style: str = "tab",
+    position_unit: str = "mm",
+    load_unit: str = "N",
+    decimals: tuple[int, int, int] = (3, 4, 3),
+    facts: Mapping[str, str] | None = None,
+) -> Path:
     """Write position and force over time.
 
     Parameters
@@ -41,8 +48,11 @@ def write_mtestquattro(path: str | Path, recording: Recording, *, style: str = "
     for name, unit, si in (("position", position_unit, "m"), ("force", load_unit, "N")):
         conversion = find_unit(unit)
         if name not in recording or conversion is None or conversion.unit != si:
-            raise InputError(str(path), f"a testing machine's log needs {name} in a unit of {si}",
-                             f"The recording has {', '.join(recording.names)}.")  # fmt: skip
+            raise InputError(
+                str(path),
+                f"a testing machine's log needs {name} in a unit of {si}",
+                f"The recording has {', '.join(recording.names)}.",
+            )
         scales[name] = conversion.factor
     columns = [
         fixed(recording.time, decimals[0]),
