@@ -1,7 +1,38 @@
-"""``ident compare``."""
+"""``ident compare``: simulation against recordings."""
 
 from __future__ import annotations
 
+from pathlib import Path
+from typing import Annotated
 
-def command() -> None:
-    """(in the making)"""
+import typer
+
+
+def command(
+    session: Annotated[Path, typer.Argument(help="Session folder, or its session.yaml.")],
+    params: Annotated[
+        str, typer.Option("--params", "-p", help="Parameter file; left out: the session's own robot.")
+    ] = "",
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="Folder for overlay plots and compare.csv.")
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
+    quiet: Annotated[bool, typer.Option("-q", "--quiet", help="Print nothing but errors.")] = False,
+) -> None:
+    """Simulate every recording of a session with given parameters and say how far they are apart.
+
+    Example: ident compare data/raw/free_response --params out/parameters.yaml -o out/compare
+    """
+    from ssmr_ident.cli.progress import progress
+    from ssmr_ident.pipeline.compare import compare_session
+
+    with progress("simulating", hidden=quiet or as_json) as step:
+        result = compare_session(session, params, output, step)
+    if as_json:
+        import json
+
+        print(json.dumps(result.as_dict(), ensure_ascii=False, allow_nan=False))
+    elif not quiet:
+        print(result)
+        if output:
+            print(f"figures and compare.csv in {output}")

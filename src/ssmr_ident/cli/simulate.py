@@ -1,7 +1,62 @@
-"""``ident simulate``."""
+"""``ident simulate``: run the bundled simulator and write a recording of the same form as a real one."""
 
 from __future__ import annotations
 
+from pathlib import Path
+from typing import Annotated
 
-def command() -> None:
-    """(in the making)"""
+import typer
+
+CHOICES = "free_response, pull, swivel, straight, wheel_drag, vertical_compression, forced"
+
+
+def command(
+    params: Annotated[
+        str, typer.Argument(help="Parameter file, or a bundled robot: p3at-extended, p3at-platform.")
+    ],
+    experiment: Annotated[str, typer.Option("--experiment", "-e", help=f"One of {CHOICES}.")],
+    output: Annotated[Path, typer.Option("-o", "--output", help="Log to write: .csv, .lvm or .xlsx.")] = Path(
+        "rec.csv"
+    ),
+    motion: Annotated[str, typer.Option(help="Free response: roll, pitch or yaw.")] = "roll",
+    amplitude_mm: Annotated[
+        float, typer.Option(help="Free response: displacement of the wheels at the start.")
+    ] = 0.3,
+    direction: Annotated[str, typer.Option(help="Pull: lateral or longitudinal.")] = "lateral",
+    speed_mm_s: Annotated[float, typer.Option(help="Pull, drag, compression: speed of the head.")] = 1.0,
+    height_m: Annotated[float, typer.Option(help="Pull: height of the cable above the floor.")] = 0.05,
+    wheels_gripping: Annotated[str, typer.Option(help="Pull: wheels that grip, such as 1,2.")] = "1,2,3,4",
+    cable: Annotated[str, typer.Option(help="Pull: steel or rope.")] = "steel",
+    wheel_rate_rad_s: Annotated[float, typer.Option(help="Pull: spinning wheels, the robot held in place.")] = 0.0,
+    free_normal: Annotated[bool, typer.Option(help="Wheel drag: the wheel can move off the surface.")] = True,
+    yaw_rate_deg_s: Annotated[float, typer.Option(help="Swivel: wanted yaw rate.")] = 45.0,
+    speed_m_s: Annotated[float, typer.Option(help="Straight: wanted speed.")] = 0.3,
+    force: Annotated[str, typer.Option(help="Forced rig: a log with columns time and force.")] = "",
+    duration_s: Annotated[float | None, typer.Option(help="Length of the recording.")] = None,
+    rate_hz: Annotated[float | None, typer.Option(help="Samples per second.")] = None,
+    noise: Annotated[bool, typer.Option(help="Add the noise of the parameter file's noise block.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print what was written as JSON.")] = False,
+    quiet: Annotated[bool, typer.Option("-q", "--quiet", help="Print nothing.")] = False,
+    seed: Annotated[int, typer.Option(help="Of the noise.")] = 0,
+) -> None:
+    """Simulate one experiment and write it as a log.
+
+    Example: ident simulate p3at-extended -e swivel --yaw-rate-deg-s 45 -o swivel.csv
+    """
+    from ssmr_ident.pipeline.simulate import Request, simulate_to_file
+
+    request = Request(
+        experiment=experiment, motion=motion, amplitude_mm=amplitude_mm, direction=direction,
+        speed_mm_s=speed_mm_s, height_m=height_m, wheels_gripping=wheels_gripping, cable=cable, wheel_rate_rad_s=wheel_rate_rad_s,
+        free_normal=free_normal, yaw_rate_deg_s=yaw_rate_deg_s, speed_m_s=speed_m_s, force=force,
+        duration_s=duration_s, rate_hz=rate_hz, noise=noise, seed=seed,
+    )  # fmt: skip
+    recording = simulate_to_file(params, request, output)
+    if as_json:
+        import json
+
+        print(json.dumps({"file": str(output), "experiment": experiment, "samples": len(recording.time),
+                          "rate_hz": recording.sample_rate, "channels": list(recording.names)}))  # fmt: skip
+    elif not quiet:
+        print(recording)
+        print(f"written to {output}")

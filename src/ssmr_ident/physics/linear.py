@@ -75,3 +75,44 @@ def linear_robot(robot: Robot) -> LinearRobot:
 def _cross(arm: np.ndarray) -> np.ndarray:
     """Matrix of the cross product: _cross(a) @ b = a × b."""
     return np.array([[0.0, -arm[2], arm[1]], [arm[2], 0.0, -arm[0]], [-arm[1], arm[0], 0.0]])
+
+
+def accelerometer_rows(linear: LinearRobot, position: np.ndarray, gravity: float) -> np.ndarray:
+    """Specific force at the accelerometer for small motions, without the resting value (3.4).
+
+    Parameters
+    ----------
+    linear : LinearRobot
+    position : (3,) float [m]
+        p_a from the CoM.
+    gravity : float [m/s^2]
+
+    Returns
+    -------
+    (3, 12) float
+        Rows ax, ay, az over the state (q, q').
+    """
+    acceleration = linear.state_matrix[6:]
+    rows = acceleration[:3] - _cross(position) @ acceleration[3:]
+    rows[0, 4] -= gravity  # a tilt turns gravity into the axes
+    rows[1, 3] += gravity
+    return rows
+
+
+def responses(state_matrix: np.ndarray, rows: np.ndarray, time: np.ndarray) -> np.ndarray:
+    """What each unit of the starting state gives at the output.
+
+    Parameters
+    ----------
+    state_matrix : (k, k) float
+    rows : (c, k) float
+        Output over the state.
+    time : (n,) float [s]
+
+    Returns
+    -------
+    (n, c, k) float
+    """
+    values, vectors = np.linalg.eig(state_matrix)
+    course = np.exp(np.outer(time, values))
+    return np.einsum("ck,nk,kj->ncj", rows @ vectors, course, np.linalg.inv(vectors), optimize=True).real

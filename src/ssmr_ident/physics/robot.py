@@ -24,7 +24,8 @@ class Robot:
     inertia : (3, 3) float [kg m^2]
         About the CoM, body axes.
     contact_points : (4, 3) float [m]
-        From the CoM: rear left, front left, front right, rear right (Table 5.1).
+        From the CoM, in any order (Table 5.1: rear left, front left, front right, rear right); a wheel with
+        y > 0 turns with the left motor.
     stiffness, damping : (3,) float [N/m], [N s/m]
         Of one tire along x, y, z.
     effective_mass : float [kg]

@@ -7,6 +7,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ssmr_ident.core.kernel import kernel
+
 THESIS_VOLTS_PER_M_S2 = 5.0 / (3.4 * 9.8)  # ±1.7 g over 5 V
 
 
@@ -64,6 +66,24 @@ def low_pass_coefficients(bandwidth_hz: float, step: float) -> np.ndarray:
     k = math.tan(math.pi * bandwidth_hz * step)
     norm = 1.0 + math.sqrt(2.0) * k + k * k
     return np.array([k * k, 2 * k * k, k * k, 2 * (k * k - 1), 1 - math.sqrt(2.0) * k + k * k]) / norm
+
+
+@kernel
+def filter_step(history, value, c):
+    """One step of a second-order difference equation.
+
+    Parameters
+    ----------
+    history : (4,) float
+        Last two inputs and last two outputs; changed in place.
+    value : float
+    c : (5,) float
+        As ``low_pass_coefficients`` gives them.
+    """
+    result = c[0] * value + c[1] * history[0] + c[2] * history[1] - c[3] * history[2] - c[4] * history[3]
+    history[1], history[0] = history[0], value
+    history[3], history[2] = history[2], result
+    return result
 
 
 @dataclass(frozen=True)

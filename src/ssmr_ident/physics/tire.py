@@ -42,7 +42,8 @@ def contact_force(deflection, sliding, velocity, hub, stiffness, damping, mass, 
     While it sticks the contact point stands still and the carcass takes up the hub's whole motion. When the force
     on the contact exceeds ``breakaway`` (mu_s N) it lets go; it then obeys m_t dv_c/dt + D v_c = F' - drag, taken
     implicitly because m_t/D is about a millisecond or none at all, and sticks again once the force has fallen
-    to ``grip`` (mu_k N).
+    to ``grip`` (mu_k N). A step that would take the force below ``grip`` is slowed to end exactly on it: the depth
+    of a release then does not depend on the step size, and mu_k = mu_s is plain Coulomb sliding.
 
     Parameters
     ----------
@@ -75,28 +76,7 @@ def contact_force(deflection, sliding, velocity, hub, stiffness, damping, mass, 
     inertia = mass / step
     direction = 1.0 if force > 0.0 else -1.0
     velocity = (inertia * velocity + force - drag * direction) / (inertia + damping)
+    landing = hub + (deflection - (direction * grip - damping * hub) / stiffness) / step
+    if direction * velocity > direction * landing:
+        velocity = landing
     return True, velocity, damping * velocity - force
-
-
-@kernel
-def contact_advance(deflection, sliding, velocity, hub, stiffness, damping, grip, step):
-    """Carcass deflection one step later, with the hub's velocity half a step on.
-
-    The step that would take the force of a sliding contact below ``grip`` ends exactly on it and sticks, so
-    that the depth of a release does not depend on the step size.
-
-    Returns
-    -------
-    (float, bool)
-        Deflection [m], sliding or not.
-    """
-    moved = deflection + step * (hub - velocity)
-    if sliding:
-        direction = 1.0 if deflection > 0.0 else -1.0
-        if direction * (stiffness * moved + damping * hub) <= grip:
-            landed = (direction * grip - damping * hub) / stiffness
-            # land only on the way: a hub that moves faster than the force can follow keeps the plain step
-            if (landed - moved) * (landed - deflection) <= 0.0:
-                moved = landed
-            return moved, False
-    return moved, sliding

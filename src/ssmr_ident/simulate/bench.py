@@ -9,7 +9,7 @@ import numpy as np
 from ssmr_ident.core.kernel import kernel
 from ssmr_ident.physics.rig import Block
 from ssmr_ident.physics.robot import GRAVITY, Robot
-from ssmr_ident.physics.tire import contact_advance, contact_force
+from ssmr_ident.physics.tire import contact_force
 
 
 def drag_wheel(robot: Robot, head: np.ndarray, step: float, free_normal: bool = True) -> np.ndarray:
@@ -88,7 +88,7 @@ def _drag(stiffness, damping, mass, breakaway, grip, head, step, substeps, out):
             )
             if m == 0:
                 out[n] = -force
-            deflection, sliding = contact_advance(deflection, sliding, velocity, hub, stiffness, damping, grip, h)
+            deflection += h * (hub - velocity)
 
 
 @kernel

@@ -16,7 +16,8 @@ import math
 import numpy as np
 
 from ssmr_ident.core.kernel import kernel
-from ssmr_ident.physics.tire import contact_advance, contact_force, grip_shares
+from ssmr_ident.physics.sensor import filter_step
+from ssmr_ident.physics.tire import contact_force, grip_shares
 
 # Layout of the parameter vector: contact points and inverse inertia follow the scalars.
 MASS, KX, KY, KZ, DX, DY, DZ, PATCH_MASS, RADIUS = range(9)
@@ -122,7 +123,7 @@ def run(p, pulling, head, head_step, reference, reference_step, start, step, ste
                 normal = 0.0
             load[i] = normal
             weight = max(normal, 0.0) * p[GRIPPING + i]
-            rim = radius * (rate_left if i < 2 else rate_right)
+            rim = radius * (rate_left if b > 0.0 else rate_right)
             slip_x = hub_x - rim
             share_x, share_y = grip_shares(rim, slip_x, hub_y, lambda_max)
             grip[i, 0], grip[i, 1] = mu_k * share_x * weight, mu_k * share_y * weight
@@ -219,9 +220,9 @@ def run(p, pulling, head, head_step, reference, reference_step, start, step, ste
         az = r02 * force_u + r12 * force_v + r22 * force_w + bx * py - by * px + re * centripetal - spin * pz
         if n == 0:
             _settle(history, ax, ay, az)
-        ax = _filter(history, 0, ax, low_pass)
-        ay = _filter(history, 1, ay, low_pass)
-        az = _filter(history, 2, az, low_pass)
+        ax = filter_step(history[0], ax, low_pass)
+        ay = filter_step(history[1], ay, low_pass)
+        az = filter_step(history[2], az, low_pass)
 
         if n % stride == 0:
             o = out[row]
@@ -244,13 +245,9 @@ def run(p, pulling, head, head_step, reference, reference_step, start, step, ste
         for i in range(4):
             rx, ry, rz = arm[i, 0], arm[i, 1], arm[i, 2]
             hub_x, hub_y = u + oy * rz - oz * ry, v + oz * rx - ox * rz
-            rim = radius * (rate_left if i < 2 else rate_right)
-            deflection[i, 0], sliding[i, 0] = contact_advance(
-                deflection[i, 0], sliding[i, 0], contact[i, 0], hub_x - rim, kx, dx, grip[i, 0], step
-            )
-            deflection[i, 1], sliding[i, 1] = contact_advance(
-                deflection[i, 1], sliding[i, 1], contact[i, 1], hub_y, ky, dy, grip[i, 1], step
-            )
+            rim = radius * (rate_left if p[POINTS + 3 * i + 1] > 0.0 else rate_right)
+            deflection[i, 0] += step * (hub_x - rim - contact[i, 0])
+            deflection[i, 1] += step * (hub_y - contact[i, 1])
         # drift: pose rates with the angles half a step ahead
         cr, sr = math.cos(roll + 0.5 * step * roll_rate), math.sin(roll + 0.5 * step * roll_rate)
         half_pitch = pitch + 0.5 * step * pitch_rate
@@ -288,13 +285,3 @@ def _settle(history, ax, ay, az):
         history[0, j] = ax
         history[1, j] = ay
         history[2, j] = az
-
-
-@kernel
-def _filter(history, axis, value, c):
-    """One step of a second-order difference equation."""
-    h = history[axis]
-    result = c[0] * value + c[1] * h[0] + c[2] * h[1] - c[3] * h[2] - c[4] * h[3]
-    h[1], h[0] = h[0], value
-    h[3], h[2] = h[2], result
-    return result

@@ -1,0 +1,102 @@
+"""Pulls and bench tests: where the head was when the cable tightened, and the load cell's zero, are fitted."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from scipy.optimize import minimize_scalar
+
+from ssmr_ident.campaign import Measurement
+from ssmr_ident.compare.outcome import Prediction
+from ssmr_ident.core.errors import InputError
+from ssmr_ident.core.parameter import ParameterSet
+from ssmr_ident.physics.rig import block_from_parameters
+from ssmr_ident.physics.robot import robot_from_parameters
+from ssmr_ident.signals.grid import even_samples
+from ssmr_ident.simulate.bench import compress_wheel, drag_wheel, pull_block
+from ssmr_ident.simulate.scenarios import Scenario, cable_properties
+from ssmr_ident.simulate.simulation import simulate
+
+
+def predict_robot(parameters: ParameterSet, measurement: Measurement) -> Prediction:
+    """A robot pulled by a cable."""
+    robot = robot_from_parameters(parameters)
+    entry = measurement.entry
+    stiffness, damping = cable_properties(entry.cable)
+    rates = np.full((1, 2), entry.wheel_rate_rad_s or 0.0)
+
+    def run(head: np.ndarray, step: float) -> np.ndarray:
+        scenario = Scenario(
+            "pull",
+            len(head) * step,
+            head=head,
+            head_step=step,
+            direction=entry.direction or "lateral",
+            height=0.05 if entry.height_m is None else entry.height_m,
+            wheels_gripping=entry.wheels_gripping,
+            cable_stiffness=stiffness,
+            cable_damping=damping,
+            wheel_rates=rates,
+            held=bool(entry.wheel_rate_rad_s),
+        )
+        return simulate(robot, scenario, 1.0 / step, step=2e-4)["force"]
+
+    return _fitted(measurement, run)
+
+
+def predict_wheel(parameters: ParameterSet, measurement: Measurement) -> Prediction:
+    """One wheel dragged sideways or pressed down."""
+    robot = robot_from_parameters(parameters)
+    if measurement.entry.experiment == "vertical_compression":
+        return _fitted(measurement, lambda head, step: compress_wheel(robot, head, step))
+    free = measurement.entry.free_normal
+    return _fitted(measurement, lambda head, step: drag_wheel(robot, head, step, free))
+
+
+def predict_block(parameters: ParameterSet, measurement: Measurement) -> Prediction:
+    """A block pulled over a surface."""
+    block = block_from_parameters(parameters)
+    return _fitted(measurement, lambda head, step: pull_block(block, head, step))
+
+
+def _fitted(measurement: Measurement, run: Callable[[np.ndarray, float], np.ndarray]) -> Prediction:
+    """Slack by a search over the head's travel, the load cell's zero by its mean."""
+    recording, entry = measurement.recording, measurement.entry
+    if "position" in recording:
+        even = even_samples(recording.time, np.column_stack([recording["force"], recording["position"]]))
+        travel = even.samples[:, 1] - even.samples[0, 1]
+        if abs(travel.min()) > abs(travel.max()):
+            travel = -travel
+    elif entry.speed_mm_s:
+        even = even_samples(recording.time, recording["force"][:, None])
+        travel = entry.speed_mm_s * 1e-3 * (even.time - even.time[0])
+    else:
+        raise InputError(recording.provenance.file, "has no position, and session.yaml no speed_mm_s", "Give one")
+    force, step = even.samples[:, 0], 1.0 / even.sample_rate
+
+    def shifted(slack: float) -> np.ndarray:
+        return run(np.maximum(travel - slack, 0.0), step)
+
+    def misfit(slack: float) -> float:
+        rest = force - shifted(slack)
+        return float(np.sum((rest - rest.mean()) ** 2))
+
+    # slack up to a third of the travel; a log that starts under load is told apart by the zero
+    grid = np.linspace(0.0, travel.max() / 3.0, 13)
+    costs = [misfit(slack) for slack in grid]
+    best = int(np.argmin(costs))
+    low, high = grid[max(best - 1, 0)], grid[min(best + 1, len(grid) - 1)]
+    refined = minimize_scalar(misfit, bounds=(low, high), method="bounded", options={"maxiter": 20})
+    slack = float(refined.x) if refined.fun < costs[best] else float(grid[best])
+    simulated = shifted(slack)
+    zero = float((force - simulated).mean())
+    return Prediction(
+        even.time,
+        ("force",),
+        ("N",),
+        force[:, None],
+        (simulated + zero)[:, None],
+        low_pass_hz=None,
+        nuisances={"slack_m": slack, "zero_N": zero},
+    )

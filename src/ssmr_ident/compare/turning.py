@@ -1,0 +1,77 @@
+"""Swivels and straight runs: stick-slip does not repeat its waveform, so spectra are compared."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ssmr_ident.campaign import Measurement
+from ssmr_ident.compare.outcome import Prediction
+from ssmr_ident.core.errors import InputError
+from ssmr_ident.core.parameter import ParameterSet
+from ssmr_ident.core.recording import Recording
+from ssmr_ident.physics.motor import wheel_rates
+from ssmr_ident.physics.robot import Robot, robot_from_parameters
+from ssmr_ident.signals.grid import even_samples
+from ssmr_ident.simulate.scenarios import Scenario
+from ssmr_ident.simulate.simulation import simulate
+
+AXES = ("ax", "ay", "az")
+_SETTLING = 2.0  # s run before the record, so that motor and tires are in their steady course
+
+
+def predict(parameters: ParameterSet, measurement: Measurement) -> Prediction:
+    """Simulate a run at the wanted speed for as long as it was recorded.
+
+    Raises
+    ------
+    InputError
+        Neither yaw rate, wheel speed nor wheel log is given.
+    """
+    robot = robot_from_parameters(parameters)
+    recording = measurement.recording
+    names = tuple(name for name in AXES if name in recording)
+    even = even_samples(recording.time, np.column_stack([recording[name] for name in names]))
+    rates, rate_step, settling = _wanted(robot, measurement)
+    duration = len(even.samples) / even.sample_rate
+    scenario = Scenario(
+        measurement.entry.experiment, duration + settling, wheel_rates=rates, wheel_rate_step=rate_step
+    )
+    simulation = simulate(robot, scenario, even.sample_rate)
+    skip = len(simulation.time) - len(even.samples)
+    simulated = simulation.values[skip:][:, [AXES.index(name) for name in names]]
+    # a mounting that is not quite level shows as a constant: it is the sensor's, not the motion's
+    simulated = simulated - simulated.mean(axis=0) + even.samples.mean(axis=0)
+    return Prediction(
+        even.time, names, ("m/s^2",) * len(names), even.samples, simulated, metric="log_psd_db", low_pass_hz=None
+    )
+
+
+def _wanted(robot: Robot, measurement: Measurement) -> tuple[np.ndarray, float, float]:
+    entry = measurement.entry
+    if measurement.wheels is not None:
+        return _from_log(robot, measurement.wheels, measurement.recording)
+    if entry.wheel_speed_m_s is not None:
+        sign = np.array([-1.0, 1.0]) if entry.experiment == "swivel" else np.ones(2)
+        return np.atleast_2d(sign * entry.wheel_speed_m_s / robot.radius), 1.0, _SETTLING
+    if entry.yaw_rate_deg_s is not None:
+        return np.atleast_2d(wheel_rates(robot, 0.0, np.deg2rad(entry.yaw_rate_deg_s))), 1.0, _SETTLING
+    raise InputError(
+        f"session entry {entry.file}",
+        f"a {entry.experiment} needs yaw_rate_deg_s, wheel_speed_m_s or wheel_log",
+        "Add one of them to session.yaml",
+    )
+
+
+def _from_log(robot: Robot, wheels: Recording, recording: Recording) -> tuple[np.ndarray, float, float]:
+    """Wheel speeds as logged, on the recording's own clock."""
+    missing = [name for name in ("v_left", "v_right") if name not in wheels]
+    if missing:
+        raise InputError(
+            wheels.provenance.file,
+            f"has no {' or '.join(missing)}; found {', '.join(wheels.names)}",
+            "Rename the columns",
+        )
+    step = 1.0 / wheels.sample_rate
+    grid = np.arange(recording.time[0], recording.time[-1], step)
+    speeds = np.column_stack([np.interp(grid, wheels.time, wheels[name]) for name in ("v_left", "v_right")])
+    return speeds / robot.radius, step, 0.0

@@ -1,0 +1,50 @@
+"""From a session and parameters to a comparison, its table and its overlay plots."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Callable
+from pathlib import Path
+
+from ssmr_ident.campaign import load
+from ssmr_ident.compare import Comparison, compare
+from ssmr_ident.report.overlay import overlay_figure
+from ssmr_ident.report.style import save
+from ssmr_ident.session import read_parameters
+
+
+def compare_session(
+    session: Path, params: str = "", output: Path | None = None, progress: Callable[[int, int], None] | None = None
+) -> Comparison:
+    """Compare a session with parameters; write plots and a table where asked for.
+
+    Parameters
+    ----------
+    session : Path
+    params : str
+        Parameter file or bundled robot; empty takes the session's own.
+    output : Path or None
+        Folder for ``compare.csv`` and one overlay per recording.
+    progress : callable, optional
+    """
+    campaign = load(session)
+    parameters = read_parameters(params) if params else campaign.parameters
+    result = compare(campaign, parameters, progress)
+    if output is not None:
+        write_comparison(result, output)
+    return result
+
+
+def write_comparison(result: Comparison, output: Path) -> None:
+    """``compare.csv`` and one PNG per recording."""
+    output.mkdir(parents=True, exist_ok=True)
+    with (output / "compare.csv").open("w", newline="", encoding="utf-8") as stream:
+        writer = csv.writer(stream)
+        writer.writerow(["file", "experiment", "metric", "channel", "value"])
+        for row in result.recordings:
+            writer.writerow([row.file, row.experiment, row.metric, "all", repr(row.value)])
+            for name, value in row.channels.items():
+                writer.writerow([row.file, row.experiment, row.metric, name, repr(value)])
+    for row in result.recordings:
+        figure = overlay_figure(row.prediction, f"{row.file}: {row.experiment.replace('_', ' ')}")
+        save(figure, output / Path(row.file).stem)
