@@ -24,7 +24,8 @@ def ladder(
 ) -> dict[int, PoleFit]:
     """Fits with 1, 2, … modes, each from several starts; stops early where nothing is left to explain."""
     blocks = whitened_blocks(records, noises)
-    loudest = blocks[int(np.argmax([float(np.sum(np.var(block.samples, axis=0))) for block in blocks]))]
+    index = int(np.argmax([float(np.sum(np.var(block.samples, axis=0))) for block in blocks]))
+    loudest = blocks[index]
     fits: dict[int, PoleFit] = {}
     residual = loudest.samples
     for count in range(1, top + 1):
@@ -49,7 +50,6 @@ def ladder(
         if not sensible and fits:
             break
         fits[count] = min(sensible or candidates, key=lambda fit: fit.cost)
-        index = blocks.index(loudest)
         residual = loudest.samples - modelled(loudest, fits[count], index)
         if count < top and wanted is None and not (warm and count + 1 in warm) and not _something_left(residual):
             break
