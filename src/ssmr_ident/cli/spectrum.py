@@ -2,6 +2,109 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Literal
 
-def command() -> None:
-    """(in the making)"""
+import typer
+
+if TYPE_CHECKING:
+    from ssmr_ident.pipeline.spectrum import SpectrumReport
+
+RANGE_HELP = (
+    "Samples transformed: middle, beginning, end, all, or T0:T1 in seconds. "
+    "Left out: middle (2^14), for free responses beginning (2^11)."
+)
+LOW_PASS_HELP = "Of the trace and the amplitude. Left out: 50, for free responses of the robot 20."
+
+
+def command(
+    paths: Annotated[
+        list[Path], typer.Argument(metavar="FILE-or-SESSION...", help="A session folder, or one or more logs.")
+    ],
+    out: Annotated[
+        Path | None, typer.Option("--out", "-o", help="Folder for spectrum.csv and the figures.")
+    ] = None,
+    part: Annotated[str | None, typer.Option("--range", help=RANGE_HELP)] = None,
+    low_pass: Annotated[float | None, typer.Option("--low-pass", metavar="HZ", help=LOW_PASS_HELP)] = None,
+    half_width: Annotated[
+        float, typer.Option("--half-width", metavar="HZ", help="Of the band-pass; 1 for the thesis' 2 Hz.")
+    ] = 0.5,
+    band: Annotated[
+        str, typer.Option("--band", metavar="F0:F1", help="Where peaks are searched, in Hz.")
+    ] = "1:50",
+    reader: Annotated[
+        str | None, typer.Option("--reader", help="Of bare logs; left out, the content decides.")
+    ] = None,
+    sample: Annotated[
+        int | None, typer.Option("--sample", help="Which recording of a bare log that holds several.")
+    ] = None,
+    fs: Annotated[
+        float | None, typer.Option("--fs", metavar="HZ", help="Sampling rate of bare logs, instead of their own.")
+    ] = None,
+    units: Annotated[
+        list[str] | None, typer.Option("--units", metavar="COLUMN=UNIT", help="Unit of a column of bare logs.")
+    ] = None,
+    format: Annotated[Literal["png", "svg", "pdf"], typer.Option("--format", help="Of the figures.")] = "png",
+    figures: Annotated[bool, typer.Option("--figures/--no-figures", help="Draw figures into OUT.")] = True,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the answer as JSON, not as a table.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No table.")] = False,
+) -> None:
+    """Butterworth, FFT and peaks of logs (thesis section 3.2): table, spectrum.csv and figures."""
+    from ssmr_ident.core.errors import InputError
+    from ssmr_ident.pipeline.spectrum import SpectrumChoices, spectrum
+    from ssmr_ident.pipeline.spectrum_files import write
+    from ssmr_ident.readers import ReadOptions
+
+    for option, value in (("--low-pass", low_pass), ("--half-width", half_width), ("--fs", fs)):
+        if value is not None and not 0 < value < float("inf"):
+            raise InputError(option, f"{value} is no positive frequency", "Give it in Hz.")
+    if sample is not None and sample < 1:
+        raise InputError("--sample", f"{sample} is no recording", "Count from 1.")
+    options = ReadOptions(reader=reader, sample=sample, fs=fs, units=_units(units or []))
+    report = spectrum(paths, SpectrumChoices(part, low_pass, half_width, _band(band)), options=options)
+    if out is not None:
+        report = write(report, out, format=format, figures=figures)
+    if as_json:
+        _print_json(report)
+    elif not quiet:
+        from ssmr_ident.pipeline.spectrum_screen import screen_text
+
+        typer.echo(screen_text(report))
+
+
+def _band(text: str) -> tuple[float, float]:
+    from ssmr_ident.core.errors import InputError
+
+    low, _, high = text.partition(":")
+    try:
+        edges = float(low), float(high)
+    except ValueError:
+        edges = (0.0, -1.0)
+    if not 0 <= edges[0] < edges[1] < float("inf"):
+        raise InputError("--band", f"{text!r} is no band", "Write for example 0.2:50.")
+    return edges
+
+
+def _units(pairs: list[str]) -> dict[str, str]:
+    from ssmr_ident.core.errors import InputError
+
+    units = {}
+    for pair in pairs:
+        column, sign, unit = pair.partition("=")
+        if not (column and sign and unit):
+            raise InputError("--units", f"{pair!r} is no unit of a column", "Write for example --units load=N.")
+        units[column] = unit
+    return units
+
+
+def _print_json(report: SpectrumReport) -> None:
+    import json
+
+    answer = {
+        "source": report.source,
+        "rows": [row.as_dict() for row in report.rows],
+        "averages": report.average_rows(),
+        "notes": [{"file": file, "level": note.level, "text": note.text} for file, note in report.notes],
+        "files": [str(path) for path in report.files],
+    }
+    typer.echo(json.dumps(answer, ensure_ascii=False, allow_nan=False))

@@ -99,6 +99,9 @@ def log_amplitude(
 ) -> float | np.ndarray:
     """Amplitude of a log: (max − min)/2 of the low-passed samples.
 
+    The first and the last sample come through the filter as they are (see ``filters``): take the mains off first
+    where the hum is not small beside the vibration, as ``analyse`` does.
+
     Parameters
     ----------
     samples : (n,) or (n, k) float [any unit]
