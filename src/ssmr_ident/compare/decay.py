@@ -54,10 +54,7 @@ def predict(parameters: ParameterSet, measurement: Measurement, decoupled: bool 
     jacobian = _jacobian(model, robot, time - time[0], even.sample_rate, rows)
     if decoupled:
         jacobian[:, :, [0, 1, 2, 6, 7, 8]] = 0.0
-
-        def run(start: np.ndarray) -> np.ndarray:
-            return jacobian @ start
-
+        run = _linear_runner(jacobian)
     else:
         run = _runner(robot, len(time), even.sample_rate, rows)
     start, bias, simulated = fit_start(measured, even.sample_rate, jacobian, run)
@@ -140,6 +137,10 @@ def _runner(robot: Robot, samples: int, sample_rate: float, rows: list[int]) -> 
         return simulate(robot, scenario, sample_rate, step=2e-4).values[:, rows]
 
     return run
+
+
+def _linear_runner(jacobian: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
+    return lambda start: jacobian @ start
 
 
 def _jacobian(

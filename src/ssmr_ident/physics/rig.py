@@ -60,7 +60,8 @@ def rig_from_parameters(parameters: ParameterSet) -> Rig:
         A key is missing.
     """
     rotary = "inertia_kg_m2" in parameters
-    return Rig(*(_need(parameters, key) for key in RIG_KEYS[rotary]), rotary=rotary)
+    mass, damping, stiffness = (_need(parameters, key) for key in RIG_KEYS[rotary])
+    return Rig(mass, damping, stiffness, rotary)
 
 
 def block_from_parameters(parameters: ParameterSet) -> Block:

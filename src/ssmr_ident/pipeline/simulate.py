@@ -12,7 +12,7 @@ from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.core.recording import Channel, Provenance, Recording
 from ssmr_ident.physics.motor import wheel_rates
 from ssmr_ident.physics.rig import rig_from_parameters
-from ssmr_ident.physics.robot import robot_from_parameters
+from ssmr_ident.physics.robot import accelerometer_from_parameters, robot_from_parameters
 from ssmr_ident.physics.sensor import Noise
 from ssmr_ident.readers import ReadOptions, read_one, writers
 from ssmr_ident.session import read_parameters
@@ -76,8 +76,31 @@ def simulate_to_file(params: str, request: Request, output: Path) -> Recording:
     recording = _run(parameters, request)
     if request.noise:
         recording = _noisy(recording, parameters, request.seed)
-    writers.write(output, recording)
+    _write(output, recording, parameters)
     return recording
+
+
+def _write(output: Path, recording: Recording, parameters: ParameterSet) -> None:
+    """Accelerations become volts in LabVIEW's formats, as the DAQ logs them; CSV keeps SI units."""
+    suffix = output.suffix.lower()
+    if suffix == ".csv":
+        writers.write_csv(output, recording)
+    elif suffix == ".txt" and "force" in recording and "position" in recording:
+        writers.write_mtestquattro(output, recording)
+    elif suffix in (".lvm", ".xlsx") and "ax" in recording:
+        sensor = accelerometer_from_parameters(parameters)
+        volts = [
+            replace(recording.channel(name), samples=sensor.to_volts(recording[name], axis), unit="V", label=label)
+            for axis, (name, label) in enumerate((("ax", "Voltage_0"), ("ay", "Voltage_1"), ("az", "Voltage_2")))
+        ]
+        write = writers.write_lvm if suffix == ".lvm" else writers.write_labview_xlsx
+        write(output, recording.with_channels(volts))
+    else:
+        raise InputError(
+            str(output),
+            f"no writer for {suffix or 'a name without ending'} with {', '.join(recording.names)}",
+            "Accelerations go to .csv, .lvm or .xlsx, forces to .csv or .txt",
+        )
 
 
 def _run(parameters: ParameterSet, request: Request) -> Recording:
