@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -46,19 +46,22 @@ def recordings_of(source: Source, reader: str, table: Table, options: ReadOption
         )
     else:
         stamps = _seconds(source, time_column, options, table, notes)
+    rows: np.ndarray | None = None  # None: all; a copy of a million rows costs more than reading them
     kept = np.isfinite(stamps)
     if not kept.all():
         row = int(np.flatnonzero(~kept)[0])
         if options.on_bad != "nan":
             raise source.error("time is missing", "Drop the row with --on-bad nan, or mend it.", table.place(row))
         notes.append(Note("warning", f"{int((~kept).sum())} row(s) without time dropped", table.place(row)))
-    first = np.flatnonzero(kept)
+        rows = np.flatnonzero(kept)
+        stamps = stamps[rows]
     try:
-        axis = time_axis.check(stamps[first], lambda row: table.place(int(first[row])), split=table.split)
+        axis = time_axis.check(stamps, _place(table, rows, 0), split=table.split)
     except time_axis.TimeProblem as error:
-        raise source.error(error.problem, error.mend, table.place(int(first[error.row]))) from error
+        raise source.error(error.problem, error.mend, _place(table, rows, 0)(error.row)) from error
     notes += axis.notes
-    rows = first[axis.rows]
+    if axis.rows is not None:
+        rows = axis.rows if rows is None else rows[axis.rows]
     channels = channels_of(source, data, rows, table, notes)
     edges = [0, *axis.restarts, len(axis.time)]
     return [
@@ -67,7 +70,7 @@ def recordings_of(source: Source, reader: str, table: Table, options: ReadOption
             reader,
             table,
             axis.time[a:b],
-            rows[a:b],
+            _place(table, rows, a),
             [c.samples[a:b] for c in channels],
             channels,
             notes,
@@ -77,12 +80,17 @@ def recordings_of(source: Source, reader: str, table: Table, options: ReadOption
     ]
 
 
+def _place(table: Table, rows: np.ndarray | None, begin: int) -> Callable[[int], str]:
+    """Names a kept row of the table, counted from ``begin``."""
+    return lambda row: table.place(begin + row if rows is None else int(rows[begin + row]))
+
+
 def _recording(
     source: Source,
     reader: str,
     table: Table,
     time: np.ndarray,
-    rows: np.ndarray,
+    place: Callable[[int], str],
     samples: Sequence[np.ndarray],
     channels: Sequence[Channel],
     notes: list[Note],
@@ -92,21 +100,22 @@ def _recording(
         raise source.error(
             f"has {len(time)} row(s) of data",
             "A recording needs two samples at least.",
-            table.place(int(rows[0])) if len(rows) else table.part,
+            place(0) if len(time) else table.part,
         )
     part = table.part
     if of[1] > 1:
         part = f"{part}, sample {of[0]} of {of[1]}".lstrip(", ")
-    mine = notes + time_axis.gaps(time, lambda row: table.place(int(rows[row])))
+    mine = notes + time_axis.gaps(time, place)
     for channel, values in zip(channels, samples, strict=True):
-        missing = np.flatnonzero(~np.isfinite(values))
-        if len(missing):
+        finite = np.isfinite(values)
+        if not finite.all():
+            missing = np.flatnonzero(~finite)
             mine.append(
                 Note(
                     "warning",
                     f"{len(missing)} value(s) of {channel.label or channel.name} are no number, "
                     f"kept as NaN; the first at t = {time[missing[0]]:.6g} s",
-                    table.place(int(rows[missing[0]])),
+                    place(int(missing[0])),
                 )
             )
             if len(missing) == len(values):

@@ -17,7 +17,7 @@ _EXAMPLES = {"N": "N, kN, lbf or gf", "m": "mm or in", "m/s^2": "m/s^2 or g", "r
 
 
 def channels_of(
-    source: Source, data: list[Column], rows: np.ndarray, table: Table, notes: list[Note]
+    source: Source, data: list[Column], rows: np.ndarray | None, table: Table, notes: list[Note]
 ) -> list[Channel]:
     """Channels in SI with their names; notes for every conversion.
 
@@ -32,7 +32,7 @@ def channels_of(
         quantity = column.quantity or quantity_of(column.label, column.unit)
         conversion = find_unit(column.unit) if column.unit else None
         label = column.label
-        values = column.values[rows]
+        values = column.values if rows is None else column.values[rows]
         if column.unit is None and table.assumed_unit is not None and quantity in (None, "ax", "ay", "az"):
             assumed.append(label or f"column {len(channels) + 2}")
             unit = table.assumed_unit

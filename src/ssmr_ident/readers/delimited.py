@@ -136,7 +136,7 @@ def _without_cut_row(block: Block, notes: list[Note]) -> Block:
 
 
 def _is_graph_export(labels: list[str]) -> bool:
-    """LabVIEW's exports: pairs of ``{x label} - {plot}`` and ``{y label} - {plot}``, or of ``time[0]`` and ``Y[0]``."""
+    """LabVIEW's exports, pairs of ``{x label} - {plot}``, ``{y label} - {plot}``, or ``time[0]``, ``Y[0]``."""
     if len(labels) % 2 or not labels:
         return False
     for first, second in zip(labels[::2], labels[1::2], strict=True):

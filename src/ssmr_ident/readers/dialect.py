@@ -12,7 +12,7 @@ _CANDIDATES = [
     Dialect(d, m)
     for d, m in (("\t", "."), ("\t", ","), (";", "."), (";", ","), (",", "."), (" ", "."), (" ", ","))
 ]
-_HEAD_LINES = (300, 5000)  # first look, second look when the first found no numbers
+_HEAD_LINES = (120, 5000)  # first look, second look when the first found hardly any numbers
 
 
 def value_of(token: str, decimal: str) -> float | None:
@@ -57,7 +57,7 @@ def sniff(source: Source, text: Text, options: ReadOptions, *, delimiters: str =
             score = len(run) * (2 if run and len(run[0]) > 1 else 1)
             if score > length:
                 best, length, rows = dialect, score, run
-        if best is not None and len(rows) >= 2:
+        if best is not None and len(rows) >= 20:
             break
     if best is None:
         raise source.error("holds no rows of numbers", "Export the data, not a report or a picture of it.")

@@ -7,7 +7,44 @@ import numpy as np
 from ssmr_ident.core.kernel import kernel
 
 POWERS_OF_TEN = 10.0 ** np.arange(23)  # all exact in double precision
-_TAB, _NEWLINE, _RETURN, _BLANK, _PLUS, _MINUS, _ZERO, _NINE = 9, 10, 13, 32, 43, 45, 48, 57
+EXACT = 2**53  # integers up to here are exact in double precision
+LONGEST = 18  # digits that a 64-bit integer holds for certain
+_TAB, _NEWLINE, _RETURN, _BLANK, _PLUS, _MINUS, _ZERO = 9, 10, 13, 32, 43, 45, 48
+
+
+@kernel
+def _long_quotient(mantissa, places):
+    """``mantissa / 10**places`` for a mantissa beyond 2**53, and whether its rounding is certain.
+
+    The quotient of the leading part is corrected by its remainder (Dekker 1971), which is known to 2**-52 of itself;
+    where a change of the correction by 2**-48 of itself changes nothing, the sum is the nearest double.
+    """
+    if places < 0 or places > 22:
+        return 0.0, False
+    power = POWERS_OF_TEN[places]
+    high = float(mantissa)
+    low = float(mantissa - np.int64(high))
+    quotient = high / power
+    product = quotient * power
+    a = 134217729.0 * quotient  # 2**27 + 1 splits a double in two halves (Veltkamp 1968)
+    a = a - (a - quotient)
+    b = 134217729.0 * power
+    b = b - (b - power)
+    left, right = quotient - a, power - b
+    error = ((a * b - product) + a * right + left * b) + left * right
+    correction = ((high - product) - error + low) / power
+    value = quotient + correction
+    certain = value == quotient + correction * (1 + 2**-48) and value == quotient + correction * (1 - 2**-48)
+    return value, certain
+
+
+@kernel
+def count_lines(buffer):
+    """Line ends in (n,) uint8."""
+    count = 0
+    for i in range(buffer.size):
+        count += buffer[i] == _NEWLINE
+    return count
 
 
 @kernel
@@ -21,8 +58,8 @@ def parse_rows(buffer, position, delimiter, decimal, out):
         Start of a line.
     delimiter, decimal : int
         Character codes; a blank as delimiter stands for any run of blanks and tabs.
-    out : (rows, width) float
-        Filled from the top. An empty first cell becomes NaN.
+    out : (width, rows) float
+        Filled from the left, one row of the log per column. An empty first cell becomes NaN.
 
     Returns
     -------
@@ -32,7 +69,7 @@ def parse_rows(buffer, position, delimiter, decimal, out):
         Start of the first line that was not taken.
     """
     end = buffer.size
-    rows, width = out.shape
+    width, rows = out.shape
     blank = delimiter == _BLANK
     count = 0
     start = position
@@ -46,37 +83,34 @@ def parse_rows(buffer, position, delimiter, decimal, out):
                 good = False
                 break
             if column == 0 and not blank and buffer[p] == delimiter:
-                out[count, 0] = np.nan
+                out[0, count] = np.nan
                 p += 1
                 continue
-            negative = False
-            if buffer[p] == _MINUS:
-                negative = True
-                p += 1
-            elif buffer[p] == _PLUS:
+            negative = buffer[p] == _MINUS
+            if negative or buffer[p] == _PLUS:
                 p += 1
             mantissa = np.int64(0)
-            digits = 0
-            scale = 0
-            seen = False
-            after = False
+            begin = p
             while p < end:
-                c = buffer[p]
-                if _ZERO <= c <= _NINE:
-                    if digits > 0 or c != _ZERO:
-                        digits += 1
-                    if digits > 18:
-                        break
-                    mantissa = mantissa * 10 + (c - _ZERO)
-                    seen = True
-                    if after:
-                        scale -= 1
-                elif c == decimal and not after:
-                    after = True
-                else:
+                digit = np.int64(buffer[p]) - _ZERO
+                if digit < 0 or digit > 9:
                     break
+                mantissa = mantissa * 10 + digit
                 p += 1
-            if not seen or digits > 18 or mantissa > 9007199254740992:
+            digits = p - begin
+            scale = np.int64(0)
+            if p < end and buffer[p] == decimal:
+                p += 1
+                begin = p
+                while p < end:
+                    digit = np.int64(buffer[p]) - _ZERO
+                    if digit < 0 or digit > 9:
+                        break
+                    mantissa = mantissa * 10 + digit
+                    p += 1
+                scale = begin - p
+                digits -= scale
+            if digits == 0 or digits > LONGEST:
                 good = False
                 break
             if p < end and (buffer[p] == 69 or buffer[p] == 101):  # E, e
@@ -85,44 +119,54 @@ def parse_rows(buffer, position, delimiter, decimal, out):
                 if q < end and (buffer[q] == _MINUS or buffer[q] == _PLUS):
                     down = buffer[q] == _MINUS
                     q += 1
-                exponent = 0
-                places = 0
-                while q < end and _ZERO <= buffer[q] <= _NINE and places < 4:
-                    exponent = exponent * 10 + (buffer[q] - _ZERO)
-                    places += 1
+                exponent = np.int64(0)
+                begin = q
+                while q < end and 0 <= np.int64(buffer[q]) - _ZERO <= 9 and q - begin < 4:
+                    exponent = exponent * 10 + (np.int64(buffer[q]) - _ZERO)
                     q += 1
-                if places == 0:
+                if q == begin:
                     good = False
                     break
                 scale += -exponent if down else exponent
                 p = q
             if mantissa == 0:
                 value = 0.0
-            elif 0 <= scale <= 22:
-                value = mantissa * POWERS_OF_TEN[scale]
-            elif -22 <= scale < 0:
+            elif mantissa > EXACT:
+                value, certain = _long_quotient(mantissa, -scale)
+                if not certain:
+                    good = False
+                    break
+            elif -22 <= scale <= 0:
                 value = mantissa / POWERS_OF_TEN[-scale]
+            elif 0 < scale <= 22:
+                value = mantissa * POWERS_OF_TEN[scale]
             else:
                 good = False
                 break
-            out[count, column] = -value if negative else value
-            while p < end and (buffer[p] == _BLANK or (buffer[p] == _TAB and delimiter != _TAB)):
-                p += 1
+            out[column, count] = -value if negative else value
             if column < width - 1:
-                if blank:
-                    if p >= end or buffer[p] == _NEWLINE or buffer[p] == _RETURN:
-                        good = False
-                        break
-                elif p < end and buffer[p] == delimiter:
+                if not blank and p < end and buffer[p] == delimiter:
                     p += 1
-                else:
+                    continue
+                begin = p
+                while p < end and (buffer[p] == _BLANK or (buffer[p] == _TAB and delimiter != _TAB)):
+                    p += 1
+                if p >= end or (blank and p == begin) or (blank and buffer[p] <= _RETURN):
                     good = False
                     break
+                if not blank:
+                    if buffer[p] != delimiter:
+                        good = False
+                        break
+                    p += 1
         if not good:
             break
-        while p < end and (buffer[p] == delimiter or buffer[p] == _BLANK or buffer[p] == _RETURN):
-            p += 1  # empty cells at the end of a row
-        if p < end and buffer[p] != _NEWLINE:
+        while p < end and buffer[p] != _NEWLINE:  # empty cells at the end of a row
+            if buffer[p] != delimiter and buffer[p] != _BLANK and buffer[p] != _RETURN and buffer[p] != _TAB:
+                good = False
+                break
+            p += 1
+        if not good:
             break
         start = p + 1
         count += 1

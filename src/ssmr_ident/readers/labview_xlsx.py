@@ -178,7 +178,7 @@ def _check_axis(
         axis = time_axis.check(stamps, place, split=False)
     except time_axis.TimeProblem as error:
         raise source.error(error.problem, error.mend, place(error.row)) from error
-    if len(axis.rows) < len(stamps):
+    if axis.rows is not None:
         found.values, found.rows = found.values[axis.rows], found.rows[axis.rows]
     notes += axis.notes
     if options.fs is None and options.time_unit is None and step > _SLOWEST:

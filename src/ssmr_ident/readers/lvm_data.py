@@ -94,7 +94,11 @@ def read_rows(source: Source, lines: Lines, decimal: str, width: int | None, opt
     flush()
     if not parts:
         return Rows(np.empty((0, width or 1)), np.empty(0, dtype=int), notes)
-    return Rows(np.concatenate(parts), np.concatenate(numbers), notes if comments < 20 else notes[:20])
+    return Rows(_joined(parts), _joined(numbers), notes if comments < 20 else notes[:20])
+
+
+def _joined(parts: list[np.ndarray]) -> np.ndarray:
+    return parts[0] if len(parts) == 1 else np.concatenate(parts)
 
 
 def _segment_follows(lines: Lines) -> bool:

@@ -7,6 +7,7 @@ accurately"). Any other row goes through Python, so both ways give the same numb
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -17,6 +18,7 @@ from ssmr_ident.readers.numbers import Dialect
 from ssmr_ident.readers.text import Text
 
 LONG = 200_000  # bytes from which on compiling pays
+VERY_LONG = 4_000_000  # bytes from which on a second thread pays
 LONGEST_LINE = 1_000_000  # bytes; no log has such rows
 
 
@@ -115,37 +117,69 @@ def _run(text: Text, dialect: Dialect, position: int, line_number: int, width: i
         cells = dialect.cells(text.decode(line))
         if not cells or len(cells) > width or not is_number_row(cells, dialect.decimal):
             break
-        values = [np.nan] * width
+        row = [np.nan] * width
         for index, cell in enumerate(cells):
             if cell:
                 value = value_of(cell, dialect.decimal)
-                values[index] = np.nan if value is None else value
+                row[index] = np.nan if value is None else value
                 if ":" in cell:
                     timed.add(index)
         if len(cells) < width:
             short.append(line_number)
-        rows.append(values)
+        rows.append(row)
         row_lines.append(line_number)
         position, line_number, patience = following, line_number + 1, patience + 1
     if rows:
         parts.append(np.array(rows))
         numbers.append(np.array(row_lines))
-    run = NumberRun(np.concatenate(parts), np.concatenate(numbers), tuple(sorted(timed)), short)
+    values = parts[0] if len(parts) == 1 else np.concatenate(parts)
+    lines = numbers[0] if len(numbers) == 1 else np.concatenate(numbers)
+    run = NumberRun(values, lines, tuple(sorted(timed)), short)
     return run, position, line_number
 
 
 def compiled_rows(data: bytes, position: int, dialect: Dialect, width: int) -> tuple[np.ndarray, int]:
-    """Rows of plain numbers from a byte on, (n, width), and the byte where they end."""
+    """Rows of plain numbers from a byte on, (n, width) with contiguous columns, and the byte where they end."""
     from ssmr_ident.readers.fast_rows import parse_rows
 
     buffer = np.frombuffer(data, dtype=np.uint8)
-    # rows cannot be shorter than one digit and one separator per cell; grow only as far as the text goes
-    guess = min((len(data) - position) // (2 * width) + 1, 65536)
+    delimiter, decimal = ord(dialect.delimiter), ord(dialect.decimal)
+    if len(data) - position > VERY_LONG:
+        whole, end = _in_halves(buffer, data, position, delimiter, decimal, width)
+        if len(whole):
+            return whole, end
+    head = data[position : position + 65536]
+    rows_per_byte = (head.count(b"\n") + 1) / max(len(head), 1)
     blocks = []
     while True:
-        out = np.empty((guess, width))
-        count, position = parse_rows(buffer, position, ord(dialect.delimiter), ord(dialect.decimal), out)
-        blocks.append(out[:count])
+        # a little more than the head promises, never more than two bytes per cell allow; more follow if it was short
+        guess = int(min(1.05 * rows_per_byte, 1 / (2 * width)) * (len(data) - position)) + 16
+        out = np.empty((width, guess))
+        count, position = parse_rows(buffer, position, delimiter, decimal, out)
+        block = out[:, :count].T
+        blocks.append(block if 2 * count > guess else block.copy(order="F"))
         if count < guess:
             return (np.concatenate(blocks) if len(blocks) > 1 else blocks[0]), position
-        guess = min((len(data) - position) // (2 * width) + 1, 4 * guess)
+
+
+def _in_halves(
+    buffer: np.ndarray, data: bytes, position: int, delimiter: int, decimal: int, width: int
+) -> tuple[np.ndarray, int]:
+    """Both halves of a very long run at once; nothing when the first half is not plain rows throughout."""
+    from ssmr_ident.readers.fast_rows import count_lines, parse_rows
+
+    middle = data.find(b"\n", (position + len(data)) // 2) + 1
+    if not middle:
+        return np.empty((0, width)), position
+    first = count_lines(buffer[position:middle])
+    out = np.empty((width, first + count_lines(buffer[middle:]) + 1))
+    ends: list[tuple[int, int]] = []
+    beside = threading.Thread(
+        target=lambda: ends.append(parse_rows(buffer, middle, delimiter, decimal, out[:, first:]))
+    )
+    beside.start()
+    count, end = parse_rows(buffer[:middle], position, delimiter, decimal, out[:, :first])
+    beside.join()
+    if count < first or end < middle or not ends:
+        return np.empty((0, width)), position
+    return out[:, : first + ends[0][0]].T, ends[0][1]

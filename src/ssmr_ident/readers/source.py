@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import threading
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -10,9 +11,27 @@ from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.recording import Note, Provenance
 
 MAX_BYTES = 2**30  # a log of 20 s is 1 MB; an hour of three axes at 1 kHz as text is 150 MB
+_BESIDE = 2**20  # bytes from which on a thread pays
 
 _OLE2 = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"
 _LFS = b"version https://git-lfs"
+
+
+class Digest:
+    """SHA-256 of bytes; of many bytes, worked out beside the parsing (hashlib lets other threads run)."""
+
+    def __init__(self, data: bytes) -> None:
+        self._hash = hashlib.sha256()
+        self._thread = threading.Thread(target=self._hash.update, args=(data,))
+        if len(data) > _BESIDE:
+            self._thread.start()
+        else:
+            self._hash.update(data)
+
+    def hex(self) -> str:
+        if self._thread.ident is not None:
+            self._thread.join()
+        return self._hash.hexdigest()
 
 
 @dataclass(frozen=True)
@@ -32,7 +51,7 @@ class Source:
     path: Path
     data: bytes
     kind: str
-    sha256: str = ""
+    digest: Digest
     notes: list[Note] = field(default_factory=list)
 
     @property
@@ -40,7 +59,7 @@ class Source:
         return str(self.path)
 
     def provenance(self, reader: str, part: str = "") -> Provenance:
-        return Provenance(self.name, self.sha256, reader, part)
+        return Provenance(self.name, self.digest.hex(), reader, part)
 
     def error(self, problem: str, mend: str = "", place: str = "") -> InputError:
         """An error at a place in this file."""
@@ -77,7 +96,7 @@ def open_source(path: str | Path) -> Source:
         reason = getattr(error, "strerror", None) or str(error)
         raise InputError(str(path), f"cannot be read ({reason})", "Check the name and the permissions.") from error
     kind = _kind(path, data)
-    source = Source(path, data, kind, hashlib.sha256(data).hexdigest())
+    source = Source(path, data, kind, Digest(data))
     _compare_with_extension(source)
     return source
 

@@ -40,8 +40,8 @@ def open_sheets(source: Source) -> list[Sheet]:
     InputError
         Damaged, unsafe, or no workbook.
     """
-    zip_safety.check(source)
-    book = _guarded(source, "", lambda: CalamineWorkbook.from_filelike(io.BytesIO(source.data)))
+    parts = zip_safety.checked(source)
+    book = _guarded(source, "", lambda: CalamineWorkbook.from_filelike(parts))
     sheets: list[Sheet] = []
     for index, entry in enumerate(book.sheets_metadata):
         if entry.typ != SheetTypeEnum.WorkSheet:
