@@ -15,6 +15,7 @@ from ssmr_ident.core.errors import InputError
 from ssmr_ident.pipeline.spectrum import SpectrumChoices, spectrum
 from ssmr_ident.pipeline.spectrum_files import write
 from ssmr_ident.pipeline.spectrum_screen import screen_text
+from ssmr_ident.report.figures_speed import amplitude_figure, peaks_figure
 
 RATE = 250.0
 LINES = {("concrete", 20): 24.0, ("concrete", 40): 8.0, ("carpet", 20): 6.0, ("carpet", 40): 7.0}
@@ -103,6 +104,26 @@ def test_figures_are_drawn_and_the_same_twice(session: Path, tmp_path: Path) -> 
     }
     for one, other in zip(first.files, second.files, strict=True):
         assert one.read_bytes() == other.read_bytes()
+
+
+def test_axes_over_speed_hold_every_point(session: Path) -> None:
+    report = spectrum([session])
+    own = [average for average in report.averages if average.configuration == "concrete, aluminium"]
+    figures = [
+        peaks_figure("concrete, aluminium", own, report.speed_label),
+        amplitude_figure(report.averages, report.speed_label),
+    ]
+    for figure in figures:
+        for axes in figure.axes:
+            points = np.concatenate([line.get_xydata() for line in axes.lines])
+            points = points[np.isfinite(points).all(axis=1)]
+            assert len(points) >= 2 * 4  # two speeds: a mean and three repeats each
+            (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
+            assert left == 0
+            assert bottom == 0
+            assert points[:, 0].max() <= right < 2 * 40
+            assert points[:, 1].max() <= top
+            assert "deg/s" in figure.axes[-1].get_xlabel()
 
 
 def test_choices_reach_the_table(session: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
@@ -61,15 +62,24 @@ def command(
     if sample is not None and sample < 1:
         raise InputError("--sample", f"{sample} is no recording", "Count from 1.")
     options = ReadOptions(reader=reader, sample=sample, fs=fs, units=_units(units or []))
-    report = spectrum(paths, SpectrumChoices(part, low_pass, half_width, _band(band)), options=options)
+    progress = None if quiet or not sys.stderr.isatty() else _progress
+    choices = SpectrumChoices(part, low_pass, half_width, _band(band))
+    report = spectrum(paths, choices, options=options, progress=progress)
     if out is not None:
-        report = write(report, out, format=format, figures=figures)
+        report = write(report, out, format=format, figures=figures, progress=progress)
+    if progress:
+        progress("")
     if as_json:
         _print_json(report)
     elif not quiet:
         from ssmr_ident.pipeline.spectrum_screen import screen_text
 
         typer.echo(screen_text(report))
+
+
+def _progress(line: str) -> None:
+    """Over the line before, so that nothing of it stays on the screen."""
+    print(f"\r\033[K{line}", end="", file=sys.stderr, flush=True)
 
 
 def _band(text: str) -> tuple[float, float]:

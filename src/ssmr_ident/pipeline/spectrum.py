@@ -112,7 +112,7 @@ def spectrum(
     options : ReadOptions, optional
         How bare logs are read.
     progress : callable, optional
-        Called with the name of each log before it is analysed.
+        Called with a line on each log before it is analysed.
 
     Raises
     ------
@@ -124,7 +124,7 @@ def spectrum(
     rows: list[SpectrumRow] = []
     for label, recording in logs:
         if progress:
-            progress(label.file)
+            progress(f"analysing {label.file}")
         new_rows, new_notes = _rows(label, recording, choices.options(label))
         rows += new_rows
         notes += new_notes

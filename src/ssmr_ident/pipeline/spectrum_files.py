@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -17,7 +18,14 @@ MOST_PANELS = 6
 """More rows than this do not fit on a page; the table has them all."""
 
 
-def write(report: SpectrumReport, out: Path, *, format: str = "png", figures: bool = True) -> SpectrumReport:
+def write(
+    report: SpectrumReport,
+    out: Path,
+    *,
+    format: str = "png",
+    figures: bool = True,
+    progress: Callable[[str], None] | None = None,
+) -> SpectrumReport:
     """Write spectrum.csv, spectrum-average.csv where there are swivels, and the figures.
 
     Parameters
@@ -27,6 +35,8 @@ def write(report: SpectrumReport, out: Path, *, format: str = "png", figures: bo
         Folder; made when it does not exist.
     format : {"png", "svg", "pdf"}
     figures : bool
+    progress : callable, optional
+        Called with a line on each log before it is drawn.
 
     Returns
     -------
@@ -39,16 +49,17 @@ def write(report: SpectrumReport, out: Path, *, format: str = "png", figures: bo
     if report.averages:
         files.append(write_rows(out / "spectrum-average.csv", report.average_rows()))
     if figures:
-        files += _write_figures(report, out, format)
+        files += _write_figures(report, out, format, progress or (lambda name: None))
     return replace(report, files=tuple(files))
 
 
-def _write_figures(report: SpectrumReport, out: Path, format: str) -> list[Path]:
+def _write_figures(report: SpectrumReport, out: Path, format: str, progress: Callable[[str], None]) -> list[Path]:
     files = []
     by_file: dict[str, list[SpectrumRow]] = {}
     for row in report.rows:
         by_file.setdefault(row.label.file, []).append(row)
     for file, rows in by_file.items():
+        progress(f"drawing {file}")
         chosen = [row for row in rows if row.unit == "m/s^2"] or rows
         drawn = [NamedAnalysis(row.channel, row.unit, row.analysis) for row in chosen[:MOST_PANELS]]
         figure = recording_figure(_title(rows[0]), drawn)

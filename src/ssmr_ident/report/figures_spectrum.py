@@ -127,23 +127,32 @@ def _spectrum(axes: Axes, named: NamedAnalysis) -> None:
             ms=4.5,
             label=f"{frequency:.2f} Hz, {amplitude:.3g} {style.unit_text(named.unit)}",
         )
-    searched = shown & (spectrum.frequency >= band[0])
-    # Drift below the band may tower over all lines; the axis is for what is searched.
+    searched = shown & (spectrum.frequency >= band[0]) & (spectrum.frequency <= band[1])
+    # Drift below the band and hum above it may tower over all lines; the axis is for what is searched, with room
+    # for the legend.
     highest = spectrum.amplitude[searched].max() if searched.any() else spectrum.amplitude[shown].max()
-    axes.set_ylim(0, 1.18 * highest if highest > 0 else 1.0)
+    top = 1.25 * highest if highest > 0 else 1.0
+    axes.set_ylim(0, top)
     axes.set_xlim(0, end)
     mains = named.analysis.mains
-    # Named where it stands out of the line of the axis.
-    if mains is not None and mains.frequency < end and mains.amplitude > 0.04 * axes.get_ylim()[1]:
-        axes.annotate(
-            "mains",
-            (mains.frequency, min(mains.amplitude, 0.6 * axes.get_ylim()[1])),
-            (0, 3),
-            textcoords="offset points",
-            ha="center",
+    if mains is not None and mains.frequency < end and mains.amplitude > 0.04 * top:
+        axes.text(
+            mains.frequency - 2.5,
+            0.1 * top,
+            f"mains {mains.amplitude:.2g}",
+            rotation=90,
+            ha="right",
+            va="bottom",
             fontsize=6.5,
             color=style.MEASURED,
         )
     axes.set_ylabel(f"|{style.quantity_text(named.channel)}| [{style.unit_text(named.unit)}]")
     if len(peaks):
-        axes.legend(loc="upper right", handletextpad=0.2, borderaxespad=0.1)
+        axes.legend(
+            loc="upper right",
+            handletextpad=0.2,
+            borderaxespad=0.1,
+            frameon=True,
+            framealpha=0.85,
+            edgecolor="none",
+        )

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.transforms import ScaledTranslation
 
 from ssmr_ident.report import style
 
@@ -75,7 +74,7 @@ def peaks_figure(configuration: str, averages: Sequence[SpeedAverage], speed_lab
     for column, channel in zip(grid.T, channels, strict=True):
         own = sorted((a for a in averages if a.channel == channel), key=lambda a: a.speed)
         for rank, name in enumerate(RANKS):
-            look = _Look(style.SERIES[rank], style.MARKERS[rank], name, 3.5 * (rank - 1))
+            look = _Look(style.SERIES[rank], style.MARKERS[rank], name, 0.012 * (rank - 1))
             _series(column[0], own, [a.peak_hz[:, rank] for a in own], look, joined=False)
             _series(column[1], own, [a.peak_amplitude[:, rank] for a in own], look, joined=True)
         _series(column[2], own, [a.amplitude for a in own], _Look(style.INK, "o"))
@@ -118,6 +117,7 @@ def amplitude_figure(averages: Sequence[SpeedAverage], speed_label: str) -> Figu
                 # Beyond six configurations colours come again, with another marker.
                 style.MARKERS[(index + index // len(style.SERIES)) % len(style.MARKERS)],
                 configuration,
+                0.012 * (index - (len(configurations) - 1) / 2),
             )
             _series(axes, own, [a.amplitude for a in own], look)
         axes.set_title(style.quantity_text(channel))
@@ -134,7 +134,7 @@ def amplitude_figure(averages: Sequence[SpeedAverage], speed_label: str) -> Figu
 
 @dataclass(frozen=True)
 class _Look:
-    """Colour, marker and name of a series, drawn ``aside`` points beside its speeds."""
+    """Colour, marker and name of a series, s speeds."""
 
     color: str
     marker: str
@@ -153,9 +153,9 @@ def _series(
     """Means with bars over the speed; single repeats as small dots where there is more than one."""
     speeds = np.array([a.speed for a in averages])
     means, spreads = np.array([mean_and_spread(v) for v in values]).reshape(-1, 2).T
-    shifted = axes.transData + ScaledTranslation(look.aside / 72, 0, axes.figure.dpi_scale_trans)
+    shifted = speeds + look.aside * speeds.max()
     axes.errorbar(
-        speeds,
+        shifted,
         means,
         yerr=np.nan_to_num(spreads),
         color=look.color,
@@ -169,9 +169,8 @@ def _series(
         capsize=2,
         label=look.label,
         zorder=3,
-        transform=shifted,
     )
-    for speed, repeats in zip(speeds, values, strict=True):
+    for speed, repeats in zip(shifted, values, strict=True):
         if len(repeats) > 1:
             where = np.full(len(repeats), speed)
-            axes.plot(where, repeats, ".", color=look.color, ms=2.5, alpha=0.6, zorder=2, transform=shifted)
+            axes.plot(where, repeats, ".", color=look.color, ms=2.5, alpha=0.6, zorder=2)
