@@ -2,6 +2,39 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+from typing import Annotated
 
-def command() -> None:
-    """(in the making)"""
+import typer
+
+
+def command(
+    session: Annotated[Path, typer.Argument(help="Session folder, or its session.yaml.")],
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="Where to write the parameters (params.yaml).")
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
+    quiet: Annotated[bool, typer.Option("-q", "--quiet", help="Print nothing.")] = False,
+    seed: Annotated[int, typer.Option(help="Written into the provenance; nothing here is left to chance.")] = 0,
+    coulomb: Annotated[
+        bool, typer.Option(help="Allow dry friction and a force offset for a drive without a spring.")
+    ] = True,
+) -> None:
+    """Frequencies, damping, stiffness, inertia, friction from the recordings, with uncertainties."""
+    import json
+
+    from ssmr_ident.core.errors import InputError
+    from ssmr_ident.pipeline.fit import fit_session
+    from ssmr_ident.session import write_parameters
+
+    if output is not None and not output.absolute().parent.is_dir():
+        raise InputError(str(output), "its folder does not exist", "Make the folder, or write elsewhere with -o")
+    fit = fit_session(session, seed=seed, coulomb=coulomb)
+    if output is not None:
+        write_parameters(output, fit.parameters)
+    if as_json:
+        typer.echo(json.dumps(fit.as_dict(), ensure_ascii=False, indent=1, allow_nan=False))
+    elif not quiet:
+        typer.echo(str(fit))
+        if output is not None:
+            typer.echo(f"written: {output}")

@@ -69,19 +69,18 @@ def gripping_load(robot: Robot, gripping: tuple[int, ...], direction: str, heigh
     return float(sum(loads[wheel - 1] for wheel in gripping))
 
 
-def friction_of(pull: Pull, load_at: float | None, load: float, load_std: float = 0.0) -> Friction:
+def friction_of(pull: Pull, load: float, load_std: float = 0.0, zero: float = 0.0) -> Friction:
     """Coefficients of a pull.
 
     Parameters
     ----------
     pull : Pull
-    load_at : float or None
-        Unused force correction [N]: the load cell's zero; None where it is known to be 0.
     load : float [N]
         On the gripping wheels.
     load_std : float [N]
+    zero : float [N]
+        What the load cell reads without a pull.
     """
-    zero = 0.0 if load_at is None else load_at
     if pull.stick_slip:
         peaks = (np.array([tooth.peak for tooth in pull.teeth]) - zero) / load
         troughs = (np.array([tooth.trough for tooth in pull.teeth]) - zero) / load

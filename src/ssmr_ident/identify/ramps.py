@@ -7,6 +7,7 @@ Every partition of the log into straight lines is scored by Schwarz's criterion 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -130,7 +131,6 @@ def find_ramps(position: Array, force: Array) -> tuple[Ramp, ...]:
     count = len(force)
     block = max(1, -(-count // FINEST))
     whole = count // block * block
-    x = position[:whole].reshape(-1, block).mean(axis=1)
     y = force[:whole].reshape(-1, block).mean(axis=1)
     variance = noise_of(y) ** 2
     # A first pass shows how far neighbouring points go together; the second one charges for it.
@@ -140,7 +140,7 @@ def find_ramps(position: Array, force: Array) -> tuple[Ramp, ...]:
         residual = np.concatenate(
             [
                 y[a:b] - np.polyval(np.polyfit(np.arange(b - a), y[a:b], 1), np.arange(b - a))
-                for a, b in zip(edges[:-1], edges[1:], strict=True)
+                for a, b in pairwise(edges)
             ]
         )
         power = float(residual @ residual)
@@ -149,7 +149,7 @@ def find_ramps(position: Array, force: Array) -> tuple[Ramp, ...]:
         level = 1.4826 * float(np.median(np.abs(residual)))
         variance = max(variance, level**2) * (1 + correlation) / (1 - correlation)
     ramps = []
-    for a, b in zip(edges[:-1], edges[1:], strict=True):
+    for a, b in pairwise(edges):
         first, last = a * block, (b * block if b < len(y) else count) - 1
         first, last = _trimmed(force, first, last, block)
         xs, ys = position[first : last + 1], force[first : last + 1]

@@ -7,6 +7,7 @@ that loads the contact is the same. A plateau that wanders (a rough or worn surf
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from scipy.ndimage import median_filter
@@ -181,7 +182,7 @@ def _teeth(ramps: tuple[Ramp, ...], first: Ramp, noise: float, force: Array) -> 
     # A stretch that falls faster than the spring rises is the letting go itself.
     steady = [ramp for ramp in after if ramp.slope > -first.slope and ramp.samples >= 4]
     found = []
-    for before, following in zip(steady[:-1], steady[1:], strict=True):
+    for before, following in pairwise(steady):
         peak, trough = before.force_end, following.force_start
         gap = force[max(before.last - 2, 0) : following.first + 3]
         if len(gap):

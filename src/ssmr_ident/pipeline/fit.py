@@ -1,0 +1,163 @@
+"""``ident fit``: every recording by its own method, then the parameters that explain all of them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from ssmr_ident import __version__
+from ssmr_ident.campaign import Campaign, Measurement, load
+from ssmr_ident.core.errors import InputError
+from ssmr_ident.core.parameter import ParameterSet
+from ssmr_ident.report.text_fit import fit_report
+
+
+@dataclass(frozen=True, eq=False)
+class SessionFit:
+    """What ``ident fit`` found.
+
+    Parameters
+    ----------
+    session : str
+    before, parameters : ParameterSet
+        As the file has them, and with the fit's values, standard deviations and sources.
+    changed : tuple of str
+        Paths that the fit was free to move.
+    statistics : tuple of str
+    recordings : dict of file to lines
+    results : dict of file to numbers
+        The same for programs, SI units in the keys.
+    tables : tuple of str
+    correlations : tuple of (name, name, number)
+    findings : tuple of str
+    conflicts : tuple of dict
+        As in diagnosis.yaml.
+    """
+
+    session: str
+    before: ParameterSet
+    parameters: ParameterSet
+    changed: tuple[str, ...]
+    statistics: tuple[str, ...]
+    recordings: Mapping[str, tuple[str, ...]]
+    results: Mapping[str, Mapping[str, Any]]
+    tables: tuple[str, ...] = ()
+    correlations: tuple[tuple[str, str, float], ...] = ()
+    findings: tuple[str, ...] = ()
+    conflicts: tuple[Mapping[str, Any], ...] = field(default_factory=tuple)
+
+    def __str__(self) -> str:
+        return fit_report(
+            self.session,
+            self.statistics,
+            self.recordings,
+            self.tables,
+            self.before,
+            self.parameters,
+            self.changed,
+            self.correlations,
+            self.findings,
+        )
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain values for ``--json``."""
+        return {
+            "session": self.session,
+            "parameters": {
+                path: {
+                    "value": _plain(self.parameters[path].value),
+                    "std": self.parameters[path].std,
+                    "unit": self.parameters[path].unit,
+                    "source": self.parameters[path].source,
+                    "at_bound": self.parameters[path].at_bound,
+                }
+                for path in self.changed
+            },
+            "recordings": [{"file": file, **numbers} for file, numbers in self.results.items()],
+            "parameters_in_conflict": [dict(conflict) for conflict in self.conflicts],
+            "findings": list(self.findings),
+        }
+
+
+def _plain(value: Any) -> Any:
+    return value.tolist() if hasattr(value, "tolist") else value
+
+
+def fit_session(path: str | Path, seed: int = 0, coulomb: bool = True) -> SessionFit:
+    """Fit a session folder.
+
+    Parameters
+    ----------
+    path : path of the folder or of its session.yaml
+    seed : int
+        Written into the result; nothing here is left to chance.
+    coulomb : bool
+        Allow dry friction and a force offset where a drive without a spring is fitted.
+
+    Returns
+    -------
+    SessionFit
+
+    Raises
+    ------
+    InputError
+        Names the file, the place and the mend.
+    """
+    campaign = load(path)
+    chosen = fitted_measurements(campaign)
+    if campaign.session.baseline == "sdof":
+        from ssmr_ident.pipeline.fit_rig import fit_rig_session
+
+        fit = fit_rig_session(campaign, chosen, coulomb)
+    elif campaign.session.baseline == "drag":
+        from ssmr_ident.pipeline.fit_drag import fit_drag_session
+
+        fit = fit_drag_session(campaign, chosen)
+    else:
+        from ssmr_ident.pipeline.fit_robot import fit_robot_session
+
+        fit = fit_robot_session(campaign, chosen)
+    return _with_provenance(fit, campaign, chosen, seed, coulomb)
+
+
+def fitted_measurements(campaign: Campaign) -> tuple[Measurement, ...]:
+    """Calibration recordings where there are any, otherwise the targets; never the held-out ones.
+
+    Raises
+    ------
+    InputError
+        When nothing is left.
+    """
+    for role in ("calibration", "target"):
+        chosen = tuple(m for m in campaign.measurements if m.entry.role == role)
+        if chosen:
+            return chosen
+    raise InputError(
+        f"{campaign.session.folder}/session.yaml: recordings",
+        "all are heldout, so nothing may be fitted",
+        "Give at least one recording role: target",
+    )
+
+
+def _with_provenance(
+    fit: SessionFit, campaign: Campaign, chosen: tuple[Measurement, ...], seed: int, coulomb: bool
+) -> SessionFit:
+    """Add who, from what and how: no time and no absolute path, so that the same command writes the same file."""
+    from dataclasses import replace
+
+    provenance = {
+        "command": "ident fit",
+        "version": __version__,
+        "session": campaign.session.name,
+        "baseline": campaign.session.baseline,
+        "seed": seed,
+        "settings": {"coulomb": coulomb, "role": chosen[0].entry.role},
+        "files": [
+            {"file": m.name, "sha256": m.recording.provenance.sha256, "reader": m.recording.provenance.reader}
+            for m in chosen
+        ],
+        "findings": list(fit.findings),
+    }
+    return replace(fit, parameters=replace(fit.parameters, provenance=provenance))
