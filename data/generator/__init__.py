@@ -1,0 +1,1 @@
+"""The experiments of the reference campaign and what they were made with."""
