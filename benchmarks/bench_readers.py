@@ -74,7 +74,7 @@ def main() -> int:
         make_workbook(book)
         make_log(log)
         print(
-            f"workbook {book.stat().st_size / 1e6:.2f} MB, log {log.stat().st_size / 1e6:.1f} MB, median of {repeats}"
+            f"book {book.stat().st_size / 1e6:.2f} MB, log {log.stat().st_size / 1e6:.1f} MB, median of {repeats}"
         )
         good = side_by_side(
             "workbook: calamine to lists / Recording",

@@ -2,6 +2,130 @@
 
 from __future__ import annotations
 
+import sys
+from pathlib import Path
+from typing import Annotated, Literal
 
-def command() -> None:
-    """(in the making)"""
+import typer
+
+
+def command(
+    paths: Annotated[list[Path], typer.Argument(metavar="FILE...", help="Logs, or folders with logs in them.")],
+    reader: Annotated[
+        str | None,
+        typer.Option(
+            "--reader", help="labview-xlsx, lvm, tdms, mtestquattro or csv; left out, the content decides."
+        ),
+    ] = None,
+    columns: Annotated[
+        str | None, typer.Option("--columns", metavar="QUANTITY=COLUMN,...", help="Such as time=0,force=2.")
+    ] = None,
+    units: Annotated[
+        str | None, typer.Option("--units", metavar="COLUMN=UNIT,...", help="Such as force=lbf,position=in.")
+    ] = None,
+    sheets: Annotated[
+        str | None, typer.Option("--sheets", metavar="AXIS=SHEET,...", help="Such as x=4,y=3,z=2.")
+    ] = None,
+    fs: Annotated[
+        float | None, typer.Option("--fs", metavar="HZ", help="Sampling rate, instead of the log's own time.")
+    ] = None,
+    time_unit: Annotated[
+        str | None, typer.Option("--time-unit", metavar="UNIT", help="Of the time column: s, ms, us.")
+    ] = None,
+    skip: Annotated[
+        str, typer.Option("--skip", metavar="ROWS", help="Rows of a sheet's numbers; 10 is the thesis' 11:end.")
+    ] = "auto",
+    on_bad: Annotated[
+        Literal["error", "nan"], typer.Option("--on-bad", help="What a cell that is no number does.")
+    ] = "error",
+    trim: Annotated[bool, typer.Option("--trim", help="Cut axes of different length to what all have.")] = False,
+    load_scale: Annotated[
+        float | None, typer.Option("--load-scale", metavar="N", help="Newton per unit of LOAD in .mtwData.")
+    ] = None,
+    decimal: Annotated[
+        Literal[".", ","] | None, typer.Option("--decimal", help="Decimal sign, where the log leaves it open.")
+    ] = None,
+    sample: Annotated[
+        int | None, typer.Option("--sample", help="Which recording of a log that holds several, from 1.")
+    ] = None,
+    mains: Annotated[float, typer.Option("--mains", metavar="HZ", help="Frequency of the mains.")] = 60.0,
+    save: Annotated[
+        Path | None,
+        typer.Option("--save", metavar="SESSION.YAML", help="Write these choices into the log's entry there."),
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the answer as JSON.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Only warnings and errors.")] = False,
+) -> None:
+    """What a log holds: reader, channels, units, rate, length, gaps, clipping, mains hum."""
+    from ssmr_ident.cli.inspect_log import logs_in, summary_of
+    from ssmr_ident.cli.inspect_save import save_choices
+    from ssmr_ident.cli.inspect_screen import show
+    from ssmr_ident.core.errors import InputError
+    from ssmr_ident.readers import ReadOptions, read
+
+    try:
+        options = ReadOptions(
+            reader=reader,
+            fs=fs,
+            units=_pairs("--units", units),
+            columns=_pairs("--columns", columns),
+            skip=int(skip) if skip.isascii() and skip.isdigit() else skip,
+            sheets=_pairs("--sheets", sheets),
+            time_unit=time_unit,
+            on_bad=on_bad,
+            trim=trim,
+            load_scale=load_scale,
+            sample=sample,
+            decimal=decimal,
+        )
+    except ValueError as error:
+        raise InputError("ident inspect", str(error), "See ident inspect --help.") from error
+    if not 0 < mains < float("inf"):
+        raise InputError("--mains", f"{mains} is no frequency", "Give 50 or 60.")
+    files, unread = logs_in(paths)
+    summaries, errors = [], list(unread)
+    for file in files:
+        try:
+            recordings = read(file, options)
+        except InputError as error:
+            errors.append(error)
+            continue
+        found = [summary_of(recording, mains) for recording in recordings]
+        summaries += found
+        if not as_json:
+            show(found, quiet=quiet)
+    if save is not None:
+        if len(files) != 1 or errors:
+            raise errors[0] if errors else InputError("--save", f"{len(files)} logs are named", "Name one log.")
+        save_choices(save, files[0], options)
+        if not quiet and not as_json:
+            typer.echo(f"saved in {save}")
+    if as_json:
+        import json
+
+        answer = {
+            "logs": [summary.as_dict() for summary in summaries],
+            "errors": [{"where": e.where, "problem": e.problem, "mend": e.mend} for e in errors],
+        }
+        typer.echo(json.dumps(answer, ensure_ascii=False, allow_nan=False))
+    if len(errors) == 1:
+        raise errors[0]
+    for problem in errors:
+        print(f"ident: {' '.join(str(problem).split())}", file=sys.stderr)
+    if errors:
+        raise typer.Exit(2)
+
+
+def _pairs(option: str, text: str | None) -> dict[str, str]:
+    """``a=1,b=2`` as a mapping."""
+    from ssmr_ident.core.errors import InputError
+
+    pairs = {}
+    for pair in (text or "").split(","):
+        if not pair.strip():
+            continue
+        key, sign, value = (part.strip() for part in pair.partition("="))
+        if not (key and sign and value):
+            raise InputError(option, f"{pair!r} is no pair", "Write for example force=2,time=0.")
+        pairs[key] = value
+    return pairs

@@ -13,6 +13,7 @@ from ssmr_ident.core.units import find_unit
 from ssmr_ident.readers import time_axis
 from ssmr_ident.readers.channels import channels_of
 from ssmr_ident.readers.headings import quantity_of
+from ssmr_ident.readers.health import warnings_of
 from ssmr_ident.readers.options import ReadOptions
 from ssmr_ident.readers.source import Source
 from ssmr_ident.readers.table import Column, Table
@@ -124,14 +125,14 @@ def _recording(
                     "Export it again, or leave it out with --columns.",
                     part,
                 )
+    whole = tuple(
+        Channel(c.name, np.ascontiguousarray(v), c.unit, c.label) for c, v in zip(channels, samples, strict=True)
+    )
     return Recording(
         np.ascontiguousarray(time),
-        tuple(
-            Channel(c.name, np.ascontiguousarray(v), c.unit, c.label)
-            for c, v in zip(channels, samples, strict=True)
-        ),
+        whole,
         source.provenance(reader, part),
-        (*source.notes, *mine),
+        (*source.notes, *mine, *warnings_of(whole)),
         dict(table.header),
     )
 
@@ -226,6 +227,8 @@ def _time_column(source: Source, columns: list[Column], options: ReadOptions, ta
 
 def _seconds(source: Source, column: Column, options: ReadOptions, table: Table, notes: list[Note]) -> np.ndarray:
     values = column.values
+    if not np.isfinite(values).any():
+        raise source.error(f"time column {column.label!r} has no numbers", "Give --fs.", table.part)
     unit = options.time_unit or (None if column.clock else column.unit)
     if unit is None and not column.clock:
         finite = values[np.isfinite(values)]

@@ -60,7 +60,7 @@ def _data_blocks(source: Source, blocks: list[Block]) -> list[Block]:
     else:
         kept = [block for block in blocks if not block.results] or blocks
         longest = max((len(block.values) for block in kept), default=0)
-        dropped = [block for block in blocks if block not in kept]
+        dropped = [block for block in blocks if not any(block is one for one in kept)]
         short = [block for block in kept if len(block.values) < 0.1 * longest]  # stray numbers in a header
         dropped += short
         kept = [block for block in kept if len(block.values) >= 0.1 * longest]

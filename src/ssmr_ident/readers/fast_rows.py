@@ -16,8 +16,8 @@ _TAB, _NEWLINE, _RETURN, _BLANK, _PLUS, _MINUS, _ZERO = 9, 10, 13, 32, 43, 45, 4
 def _long_quotient(mantissa, places):
     """``mantissa / 10**places`` for a mantissa beyond 2**53, and whether its rounding is certain.
 
-    The quotient of the leading part is corrected by its remainder (Dekker 1971), which is known to 2**-52 of itself;
-    where a change of the correction by 2**-48 of itself changes nothing, the sum is the nearest double.
+    The quotient of the leading part is corrected by its remainder (Dekker 1971), which is known to 2**-52 of
+    itself; where a change of the correction by 2**-48 of itself changes nothing, the sum is the nearest double.
     """
     if places < 0 or places > 22:
         return 0.0, False

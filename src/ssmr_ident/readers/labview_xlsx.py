@@ -9,6 +9,7 @@ from ssmr_ident.core.units import find_unit
 from ssmr_ident.readers import time_axis
 from ssmr_ident.readers.assemble import recordings_of
 from ssmr_ident.readers.headings import split_header
+from ssmr_ident.readers.health import warnings_of
 from ssmr_ident.readers.options import ReadOptions
 from ssmr_ident.readers.sheet_axes import axes_of, is_filled
 from ssmr_ident.readers.sheet_numbers import SheetNumbers, numbers_of
@@ -156,7 +157,7 @@ def _recording(
         np.ascontiguousarray(time),
         tuple(channels),
         source.provenance("labview-xlsx", part),
-        (*source.notes, *notes),
+        (*source.notes, *notes, *warnings_of(tuple(channels))),
         {},
     )
 

@@ -3,8 +3,8 @@
 ``Multi_Headings No`` lets LabVIEW write one header and append packet after packet of ``Samples`` rows. A running
 acquisition makes them one record; a triggered one makes each packet a record of its own, and without an X column
 no stamp tells. The rows tell: in one record the step over a packet's end is one step among its neighbours, so its
-rank among n of them is uniform, p = 1/(n + 1) for the largest. Steps over the ends of all packets and channels are put
-together (Bonferroni over channels, Fisher 1925 over packet ends); below p = 0.01 the packets are records.
+rank among n of them is uniform, p = 1/(n + 1) for the largest. Steps over the ends of all packets and channels are
+put together (Bonferroni over channels, Fisher 1925 over packet ends); below p = 0.01 the packets are records.
 With an X column nothing is split here: a restart of X says it, and rows count, whatever ``Samples`` says.
 """
 

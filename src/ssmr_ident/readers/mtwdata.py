@@ -1,7 +1,7 @@
 """ADMET's native XML (.mtwData, .mtxData): ``<Sample TIME= POSN= LOAD=>``.
 
-The only hard evidence is a public reader at a synchrotron: TIME in ms, POSN in m, LOAD in units of 10 N. The factor
-10 may be that rig's own, so it is an option and its default is a warning.
+The only hard evidence is a public reader at a synchrotron: TIME in ms, POSN in m, LOAD in units of 10 N. The
+factor 10 may be that rig's own, so it is an option and its default is a warning.
 """
 
 from __future__ import annotations

@@ -152,7 +152,7 @@ def compiled_rows(data: bytes, position: int, dialect: Dialect, width: int) -> t
     rows_per_byte = (head.count(b"\n") + 1) / max(len(head), 1)
     blocks = []
     while True:
-        # a little more than the head promises, never more than two bytes per cell allow; more follow if it was short
+        # a little more than the head promises, never more than two bytes per cell allow
         guess = int(min(1.05 * rows_per_byte, 1 / (2 * width)) * (len(data) - position)) + 16
         out = np.empty((width, guess))
         count, position = parse_rows(buffer, position, delimiter, decimal, out)

@@ -21,6 +21,11 @@ def corner_of(data: bytes) -> tuple[int, int]:
     ----------
     data : bytes
         XML of a worksheet.
+
+    Raises
+    ------
+    LookupError
+        For an encoding that is not known.
     """
     if len(data) > LONG:
         plain, rows, columns = _scan(np.frombuffer(data, dtype=np.uint8))

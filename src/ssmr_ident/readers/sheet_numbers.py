@@ -1,9 +1,9 @@
 """The numbers of one worksheet: where the data begin, what stands above them, and what is wrong among them.
 
-``xlsread`` (the thesis) takes the bounding box of the numeric cells and keeps its rows ``11:end``. Two headers give
-a box of which ten rows are passed over: an LVM segment header, whose ten rows begin at ``Channels 1`` (H1: nothing
-is lost), or none at all, so that ten samples are lost (H2). With ``skip="auto"`` the rows tell: rows of numbers that
-lie on the time grid of the rest are samples.
+``xlsread`` (the thesis) takes the bounding box of the numeric cells and keeps its rows ``11:end``. Two headers
+give a box of which ten rows are passed over: an LVM segment header, whose ten rows begin at ``Channels 1`` (H1,
+nothing is lost), or none at all, so that ten samples are lost (H2). With ``skip="auto"`` the rows tell: rows of
+numbers that lie on the time grid of the rest are samples.
 """
 
 from __future__ import annotations

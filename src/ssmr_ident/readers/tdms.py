@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import logging
+import struct
 from typing import Any
 
 import numpy as np
@@ -32,12 +33,12 @@ def read(source: Source, options: ReadOptions) -> list[Recording]:
     """
     try:
         from nptdms import TdmsFile
+        from nptdms.log import log_manager
     except ImportError as error:
         raise source.error("is a TDMS file, which needs npTDMS", 'Run: pip install "ssmr_ident[tdms]"') from error
     _check_segments(source)
-    logger = logging.getLogger("nptdms")
-    level = logger.level
-    logger.setLevel(logging.CRITICAL)  # what it would say about a cut file is said below, with the mend
+    level = log_manager.log_level
+    log_manager.set_level(logging.CRITICAL)  # what it would say about a cut file is said below, with the mend
     try:
         file = TdmsFile.read(io.BytesIO(source.data))
         status = file.file_status
@@ -60,13 +61,14 @@ def read(source: Source, options: ReadOptions) -> list[Recording]:
         NotImplementedError,
         AssertionError,
         RuntimeError,
+        struct.error,
     ) as error:
         # npTDMS reports damage by whatever its parsing stumbles over
         raise source.error(
             f"TDMS is damaged ({type(error).__name__}: {str(error)[:100]})", "Copy it again."
         ) from error
     finally:
-        logger.setLevel(level)
+        log_manager.set_level(level)
     if not recordings:
         raise source.error("has no channels with data", "Copy it again, or check that the log was closed.")
     return recordings

@@ -98,7 +98,10 @@ def _require_shared_strings(source: Source, names: set[str]) -> None:
 
 
 def _check_corner(source: Source, name: str, data: bytes) -> None:
-    rows, columns = corner_of(data)
+    try:
+        rows, columns = corner_of(data)
+    except LookupError as error:
+        raise source.error(f"workbook part {name} is not UTF-8", "Save it anew in Excel.", name) from error
     if rows * columns > MAX_CELLS:
         raise source.error(
             f"sheet reaches to row {rows}, column {columns}: {rows * columns:.3g} cells",

@@ -1,0 +1,198 @@
+"""Feed the readers mutated logs: only a Recording or an InputError may come out, soon and without much memory.
+
+Seeds are the files of the folders given, or small logs of every format that this package writes itself. Bytes are
+flipped, cut, doubled, swapped and replaced by what trips parsers; the parts of a workbook are mutated inside the
+zip as well, with the checksums made right again, or nothing would ever get behind the door.
+
+Run: python benchmarks/fuzz_readers.py [--count 20000] [--seed 0] [FOLDER...]
+"""
+
+from __future__ import annotations
+
+import argparse
+import io
+import resource
+import sys
+import tempfile
+import time
+import traceback
+import warnings
+import zipfile
+from collections import Counter
+from pathlib import Path
+
+import numpy as np
+
+from ssmr_ident.core.errors import InputError
+from ssmr_ident.core.recording import Channel, Provenance, Recording
+from ssmr_ident.readers import read
+from ssmr_ident.readers.writers import write_csv, write_labview_xlsx, write_lvm, write_mtestquattro
+
+SECONDS = 2.0
+MEGABYTES = 500
+TOKENS = (
+    b"NaN", b"-1.#IND", b"1e999", b"-1e-999", b"0,5", b"1.234.567,8", b"\0", b"\xff\xfe", b"\xef\xbb\xbf", b'"',
+    b"'", b"\t\t\t", b";;;", b",,,", b"\r\n\r\n", b"***End_of_Header***", b"LabVIEW Measurement", b"X_Value",
+    b"99999999999", b"-0", b"<!DOCTYPE a [<!ENTITY b 'c'>]>", b"&b;", b"]]>", b"<", b"XFD1048576", b"A0",
+    b"Samples\t1", b"TDSm", b"PK\x03\x04", b"24:61:61", b"2012/02/31 25:00:00", "°µ²Ω".encode(), b"_", b"1_000",
+    b"__import__('os')", b"%s%n", b"../../", b" " * 300,
+)  # fmt: skip
+
+
+def seeds(folders: list[Path]) -> list[tuple[str, bytes]]:
+    """Name and bytes of the logs to begin with."""
+    files = sorted(f for folder in folders for f in folder.iterdir() if f.is_file() and f.stat().st_size < 200_000)
+    return [(file.name, file.read_bytes()) for file in files] or own_logs()
+
+
+def own_logs() -> list[tuple[str, bytes]]:
+    """A small log of every format that the writers know."""
+    rng = np.random.default_rng(0)
+    time_axis = np.arange(40) * 1e-3
+    volts = tuple(
+        Channel(f"a{a}", 2.6 + 0.1 * rng.standard_normal(40), "V", f"Voltage_{i}") for i, a in enumerate("xyz")
+    )
+    pull = (
+        Channel("position", time_axis, "m", "Position"),
+        Channel("force", rng.standard_normal(40), "N", "Load"),
+    )
+    accelerometer = Recording(time_axis, volts, Provenance("", "", ""))
+    machine = Recording(time_axis, pull, Provenance("", "", ""))
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        write_csv(folder / "a.csv", machine)
+        write_lvm(folder / "b.lvm", accelerometer)
+        write_lvm(folder / "c.lvm", accelerometer, decimal=",")
+        write_mtestquattro(folder / "d.txt", machine)
+        write_mtestquattro(folder / "e.csv", machine, style="csv", facts={"Sample": "1"})
+        for header in ("graph", "segment", "none"):
+            write_labview_xlsx(folder / f"{header}.xlsx", accelerometer, header=header)
+        rows = "".join(f'<Sample TIME="{k}" POSN="{k}e-5" LOAD="{k}"/>\n' for k in range(20))
+        (folder / "f.mtwData").write_text(f"<TestData><Samples>\n{rows}</Samples></TestData>")
+        return [(file.name, file.read_bytes()) for file in sorted(folder.iterdir())]
+
+
+def mutated(data: bytes, rng: np.random.Generator) -> bytes:
+    """One to eight small accidents."""
+    raw = bytearray(data)
+    for _ in range(int(rng.integers(1, 9))):
+        if not raw:
+            break
+        at = int(rng.integers(len(raw)))
+        length = int(rng.integers(1, 1 + min(64, len(raw) - at)))
+        kind = int(rng.integers(9))
+        if kind == 0:
+            raw[at] ^= 1 << int(rng.integers(8))
+        elif kind == 1:
+            raw[at : at + length] = rng.integers(0, 256, length, dtype=np.uint8).tobytes()
+        elif kind == 2:
+            del raw[at : at + length]
+        elif kind == 3:
+            raw[at:at] = raw[at : at + length] * int(rng.integers(1, 5))
+        elif kind == 4:
+            token = TOKENS[int(rng.integers(len(TOKENS)))]
+            raw[at : at + (length if rng.integers(2) else 0)] = token
+        elif kind == 5:
+            del raw[at:]
+        elif kind == 6:
+            lines = bytes(raw).split(b"\n")
+            i, j = rng.integers(len(lines), size=2)
+            lines[i], lines[j] = lines[j], lines[i]
+            raw = bytearray(b"\n".join(lines))
+        elif kind == 7:
+            old, new = (b".,;\t \n0-"[int(k) : int(k) + 1] for k in rng.integers(8, size=2))
+            raw = raw.replace(old, new, int(rng.integers(1, 200)))
+        else:
+            raw[at : at + length] = bytes(length)
+    return bytes(raw)
+
+
+def mutated_inside(data: bytes, rng: np.random.Generator) -> bytes:
+    """Mutate one part of a zip and pack it again."""
+    try:
+        archive = zipfile.ZipFile(io.BytesIO(data))
+        parts = {name: archive.read(name) for name in archive.namelist()}
+    except (zipfile.BadZipFile, ValueError, OSError, NotImplementedError):
+        return mutated(data, rng)
+    names = [name for name in parts if "sheet" in name or "workbook" in name or rng.random() < 0.2]
+    victim = names[int(rng.integers(len(names)))]
+    parts[victim] = mutated(parts[victim], rng)
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as packed:
+        for name, part in parts.items():
+            packed.writestr(name, part)
+    return buffer.getvalue()
+
+
+def run(count: int, seed: int, folders: list[Path], *, progress: bool = False) -> tuple[Counter, list[str]]:
+    """Read ``count`` mutated logs.
+
+    Returns
+    -------
+    outcomes : Counter
+        ``read``, ``refused`` and what must not be: ``traceback``, ``slow``, ``bad recording``.
+    failures : list of str
+    """
+    rng = np.random.default_rng(seed)
+    logs = seeds(folders)
+    outcomes: Counter = Counter()
+    failures: list[str] = []
+    slowest = 0.0
+    with tempfile.TemporaryDirectory() as folder:
+        for number in range(count):
+            name, data = logs[int(rng.integers(len(logs)))]
+            inside = data[:2] == b"PK" and rng.random() < 0.7
+            raw = (mutated_inside if inside else mutated)(data, rng)
+            path = Path(folder, name)
+            path.write_bytes(raw)
+            begin = time.perf_counter()
+            try:
+                with warnings.catch_warnings():
+                    warnings.simplefilter("error")
+                    recordings = read(path)
+                good = recordings and all((np.diff(r.time) > 0).all() and len(r.time) > 1 for r in recordings)
+                outcome = "read" if good else "bad recording"
+            except InputError as error:
+                outcome = "refused" if "\n" not in str(error) else "many lines"
+            except BaseException as error:
+                if isinstance(error, KeyboardInterrupt):
+                    raise
+                outcome = "traceback"
+                failures.append(f"#{number} {name}: " + traceback.format_exc(limit=-4))
+            spent = time.perf_counter() - begin
+            slowest = max(slowest, spent)
+            outcomes[outcome] += 1
+            if spent > SECONDS:
+                outcomes["slow"] += 1
+                failures.append(f"#{number} {name}: {spent:.1f} s")
+            if outcome in ("bad recording", "many lines"):
+                failures.append(f"#{number} {name}: {outcome}")
+            path.unlink()
+            if progress and number % 1000 == 999:
+                print(
+                    f"{number + 1}: {dict(outcomes)}, slowest {slowest:.2f} s, {peak_megabytes():.0f} MB",
+                    flush=True,
+                )
+    return outcomes, failures
+
+
+def peak_megabytes() -> float:
+    """Largest memory of this process so far."""
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / (2**20 if sys.platform == "darwin" else 2**10)
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--count", type=int, default=20_000)
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("folders", nargs="*", type=Path)
+    choices = parser.parse_args()
+    outcomes, failures = run(choices.count, choices.seed, choices.folders, progress=True)
+    for failure in failures[:20]:
+        print(failure[-400:])
+    print(f"{dict(outcomes)}; peak {peak_megabytes():.0f} MB; {len(failures)} failures")
+    return 1 if failures or peak_megabytes() > MEGABYTES else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,124 @@
+"""Which logs ``ident inspect`` looks at, and what it says about one."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ssmr_ident.core.errors import InputError
+from ssmr_ident.core.recording import Recording
+from ssmr_ident.readers.health import LogHealth, health_of
+from ssmr_ident.signals.clean import mains_line
+
+LOG_EXTENSIONS = {
+    ".xlsx",
+    ".xlsm",
+    ".lvm",
+    ".tdms",
+    ".csv",
+    ".txt",
+    ".dat",
+    ".asc",
+    ".tsv",
+    ".mtwdata",
+    ".mtxdata",
+}
+
+
+@dataclass(frozen=True)
+class LogSummary:
+    """A recording with its health and the mains hum of its channels.
+
+    Parameters
+    ----------
+    hum : dict of str to (float, float)
+        Amplitude at the mains frequency and its standard deviation, in the channel's unit; channels of which it
+        cannot be told (too short, too slow, missing samples) are left out.
+    """
+
+    recording: Recording
+    health: LogHealth
+    mains_hz: float
+    hum: dict[str, tuple[float, float]]
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain numbers and words; values that are not finite become None."""
+        provenance, health = self.recording.provenance, self.health
+        channels = []
+        for channel in health.channels:
+            facts = {k: _plain(v) for k, v in asdict(channel).items()}
+            amplitude, std = self.hum.get(channel.name, (None, None))
+            channels.append(facts | {"mains_amplitude": amplitude, "mains_amplitude_std": std})
+        return {
+            "file": provenance.file,
+            "part": provenance.part,
+            "reader": provenance.reader,
+            "sha256": provenance.sha256,
+            "samples": health.samples,
+            "start_s": float(self.recording.time[0]),
+            "duration_s": health.duration,
+            "sample_rate_hz": health.sample_rate,
+            "jitter_s": health.jitter,
+            "gaps": health.gaps,
+            "mains_hz": self.mains_hz,
+            "channels": channels,
+            "header": dict(self.recording.header),
+            "notes": [asdict(note) for note in self.recording.notes],
+        }
+
+
+def _plain(value: Any) -> Any:
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def summary_of(recording: Recording, mains_hz: float) -> LogSummary:
+    """Look over one recording.
+
+    Parameters
+    ----------
+    recording : Recording
+    mains_hz : float [Hz]
+    """
+    hum = {}
+    for channel in recording.channels:
+        try:
+            line = mains_line(channel.samples, recording.sample_rate, mains_hz)
+        except (InputError, np.linalg.LinAlgError):
+            continue  # the screen shows a dash: the record cannot tell, which is no fault of the log
+        if math.isfinite(line.amplitude) and math.isfinite(line.amplitude_std):
+            hum[channel.name] = (line.amplitude, line.amplitude_std)
+    return LogSummary(recording, health_of(recording), mains_hz, hum)
+
+
+def logs_in(paths: Iterable[Path]) -> tuple[list[Path], list[InputError]]:
+    """Files as named, and the logs in folders that are named.
+
+    Returns
+    -------
+    files : list of Path
+    errors : list of InputError
+        Folders without logs.
+    """
+    files: list[Path] = []
+    errors: list[InputError] = []
+    for path in paths:
+        if not path.is_dir():
+            files.append(path)
+            continue
+        found = sorted(
+            entry
+            for entry in path.iterdir()
+            if entry.suffix.lower() in LOG_EXTENSIONS
+            and not entry.name.startswith(("~$", "."))
+            and entry.is_file()
+        )
+        if not found:
+            kinds = ", ".join(sorted(LOG_EXTENSIONS))
+            errors.append(InputError(str(path), "is a folder without logs", f"Logs end in {kinds}."))
+        files += found
+    return files, errors

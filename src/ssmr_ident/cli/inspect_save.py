@@ -1,0 +1,106 @@
+"""Put the choices that a log needs into its entry of session.yaml, and leave every other line as it is."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from ssmr_ident.core.errors import InputError
+from ssmr_ident.readers.options import ReadOptions
+from ssmr_ident.readers.writers.atomic import write_bytes
+
+
+def save_choices(session: Path, log: Path, options: ReadOptions) -> None:
+    """Write reader, columns, units, rate and sample of ``options`` into the entry of ``log``.
+
+    Parameters
+    ----------
+    session : Path
+        An existing session.yaml.
+    log : Path
+        Its entry is the one whose ``file`` leads there.
+
+    Raises
+    ------
+    InputError
+        No such session, no entry for the log, or an entry that is not written line by line.
+    """
+    choices: dict[str, Any] = {
+        "reader": options.reader,
+        "columns": {k: int(v) if str(v).isdigit() else v for k, v in options.columns.items()} or None,
+        "units": dict(options.units) or None,
+        "sample_rate_hz": options.fs,
+        "sample": options.sample,
+    }
+    choices = {key: value for key, value in choices.items() if value is not None}
+    session = session / "session.yaml" if session.is_dir() else session
+    try:
+        text = session.read_text(encoding="utf-8")
+        root = yaml.compose(text, Loader=yaml.SafeLoader)
+    except OSError as error:
+        raise InputError(str(session), f"cannot be read ({error.strerror})", "Write the session first.") from error
+    except (yaml.YAMLError, UnicodeDecodeError) as error:
+        raise InputError(str(session), "is not valid YAML", "Mend it first.") from error
+    entry = _entry(session, log, root)
+    lines = text.splitlines()
+    spans = {
+        key.value: (key.start_mark.line, _last_line(value, key.start_mark.line))
+        for key, value in entry.value
+        if isinstance(key, yaml.ScalarNode)
+    }
+    column = entry.value[0][0].start_mark.column
+    for key, value in sorted(choices.items(), key=lambda item: -spans.get(item[0], (10**9, 0))[0]):
+        # JSON is YAML as well, and quotes what needs quoting
+        new = f"{key}: {json.dumps(value, ensure_ascii=False)}"
+        if key in spans:
+            first, last = spans[key]
+            before = (
+                lines[first][: entry.value[0][0].start_mark.column] if first == entry.start_mark.line else indent
+            )
+            lines[first : last + 1] = [before + new]
+        else:
+            lines.insert(spans["file"][1] + 1, " " * column + new)
+    result = "\n".join(lines) + "\n"
+    _check(session, log, result, choices)
+    write_bytes(session, result.encode())
+
+
+def _entry(session: Path, log: Path, root: Any) -> yaml.MappingNode:
+    recordings = next((v for k, v in getattr(root, "value", []) if getattr(k, "value", "") == "recordings"), None)
+    for node in getattr(recordings, "value", []):
+        if not isinstance(node, yaml.MappingNode):
+            continue
+        for key, value in node.value:
+            if key.value == "file" and (session.parent / str(value.value)).resolve() == log.resolve():
+                if node.flow_style:
+                    where = f"{session}:{node.start_mark.line + 1}"
+                    raise InputError(where, "the entry stands in braces", "Write it line by line first.")
+                return node
+    raise InputError(str(session), f"has no recording with file: {log.name}", "Add the entry first, then save.")
+
+
+def _last_line(value: yaml.Node, line: int) -> int:
+    """Last line of a value; the end mark of a block stands at the beginning of the line behind it."""
+    end = value.end_mark
+    if isinstance(value, yaml.ScalarNode) or getattr(value, "flow_style", False):
+        return int(end.line)
+    return max(line, int(end.line) - (1 if end.column <= value.start_mark.column else 0))
+
+
+def _check(session: Path, log: Path, result: str, choices: dict[str, Any]) -> None:
+    """The text must say what was meant before it replaces the old one."""
+    try:
+        content = yaml.safe_load(result)
+        entries = [e for e in content["recordings"] if (session.parent / e["file"]).resolve() == log.resolve()]
+        good = len(entries) >= 1 and all(entries[0].get(key) == value for key, value in choices.items())
+    except (yaml.YAMLError, KeyError, TypeError):
+        good = False
+    if not good:
+        raise InputError(
+            str(session),
+            "the entry could not be changed safely",
+            f"Add by hand: {choices}",
+        )

@@ -1,0 +1,172 @@
+"""What a recording's numbers say about the recording: rate, jitter, repeats, clipping. Nothing is changed here."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ssmr_ident.core.recording import Channel, Note, Recording
+
+# The thesis' accelerometer: 2.6 V at rest and 5/(3.4*9.8) V per m/s^2, so that +-1.7 g is 0.1 to 5.1 V; its supply
+# ends at 5 V. A session's robot.yaml may say otherwise; these rails only raise a warning.
+VOLTS_LOW, VOLTS_HIGH = 0.1, 5.0
+_RAIL_TOLERANCE = 1e-3  # V, below the step of a 12-bit card over 5 V
+_SATURATED = 50  # equal samples at the largest value, see ``saturated``
+AXES = ("ax", "ay", "az")
+
+
+@dataclass(frozen=True)
+class ChannelHealth:
+    """One channel's numbers, in its unit.
+
+    Parameters
+    ----------
+    minimum, maximum, mean, std : float
+    missing : int
+        Samples that are no number.
+    repeated : float
+        Share of samples that equal the one before: 0 for a noisy signal, high for a slow clock or coarse steps.
+    clipped : int
+        Samples at the rails of the accelerometer (axes in volts), or at a value that the channel does not leave.
+    """
+
+    name: str
+    label: str
+    unit: str
+    minimum: float
+    maximum: float
+    mean: float
+    std: float
+    missing: int
+    repeated: float
+    clipped: int
+
+
+@dataclass(frozen=True)
+class LogHealth:
+    """The time axis and the channels of a recording.
+
+    Parameters
+    ----------
+    sample_rate : float [Hz]
+        From first and last time.
+    jitter : float [s]
+        Largest distance of a stamp from the even grid; rounding of printed stamps counts as well.
+    gaps : int
+        Steps of more than 1.5 times the median one.
+    """
+
+    samples: int
+    duration: float
+    sample_rate: float
+    jitter: float
+    gaps: int
+    channels: tuple[ChannelHealth, ...]
+
+    def __str__(self) -> str:
+        lines = [
+            f"{self.samples} samples, {self.duration:.6g} s, {self.sample_rate:.6g} Hz, "
+            f"jitter {self.jitter:.2g} s, {self.gaps} gaps"
+        ]
+        lines += [
+            f"  {c.name:<14} {c.minimum:.6g} … {c.maximum:.6g} {c.unit}, mean {c.mean:.6g}, {c.clipped} clipped, "
+            f"{c.missing} missing, {100 * c.repeated:.0f} % repeated"
+            for c in self.channels
+        ]
+        return "\n".join(lines)
+
+
+def health_of(recording: Recording) -> LogHealth:
+    """Look over a recording.
+
+    Parameters
+    ----------
+    recording : Recording
+    """
+    time = recording.time
+    grid = np.linspace(time[0], time[-1], len(time))
+    steps = np.diff(time)
+    gaps = int((steps > 1.5 * np.median(steps)).sum())
+    return LogHealth(
+        len(time),
+        recording.duration,
+        recording.sample_rate,
+        float(np.abs(time - grid).max()),
+        gaps,
+        tuple(_channel_health(channel) for channel in recording.channels),
+    )
+
+
+def _channel_health(channel: Channel) -> ChannelHealth:
+    finite = channel.samples[np.isfinite(channel.samples)]
+    repeated = float(np.mean(np.diff(finite) == 0)) if len(finite) > 1 else 0.0
+    return ChannelHealth(
+        channel.name,
+        channel.label,
+        channel.unit,
+        float(finite.min(initial=np.inf)),
+        float(finite.max(initial=-np.inf)),
+        float(finite.mean()) if len(finite) else float("nan"),
+        float(finite.std()) if len(finite) else float("nan"),
+        len(channel.samples) - len(finite),
+        repeated,
+        at_rails(channel) or saturated(channel.samples),
+    )
+
+
+def at_rails(channel: Channel) -> int:
+    """Samples of an accelerometer axis in volts that stand at its rails."""
+    if channel.unit != "V" or channel.name not in AXES:
+        return 0
+    samples = channel.samples[np.isfinite(channel.samples)]
+    low = samples <= VOLTS_LOW + _RAIL_TOLERANCE
+    high = samples >= VOLTS_HIGH - _RAIL_TOLERANCE
+    return int(low.sum() + high.sum())
+
+
+def saturated(samples: np.ndarray) -> int:
+    """Length of the longest run of equal samples at the value farthest from zero, when it is 50 or more.
+
+    An amplifier that has come to its end gives the same largest number again and again. A channel that never
+    leaves one value is not counted here.
+    """
+    finite = samples[np.isfinite(samples)]
+    if len(finite) < _SATURATED or finite.min() == finite.max():
+        return 0
+    high, low = float(finite.max()), float(finite.min())
+    extreme = high if abs(high) >= abs(low) else low
+    if extreme == 0:
+        return 0
+    at = finite == extreme
+    if int(at.sum()) < _SATURATED:
+        return 0
+    edges = np.flatnonzero(np.diff(np.r_[False, at, False]))
+    longest = int((edges[1::2] - edges[::2]).max())
+    return longest if longest >= _SATURATED else 0
+
+
+def warnings_of(channels: tuple[Channel, ...]) -> list[Note]:
+    """Warnings about channels that are clipped, saturated, or stand still.
+
+    Parameters
+    ----------
+    channels : tuple of Channel
+    """
+    notes = []
+    for channel in channels:
+        name = channel.label if channel.label and channel.label != channel.name else channel.name
+        rails = at_rails(channel)
+        flat = 0 if rails else saturated(channel.samples)
+        if rails:
+            notes.append(
+                Note("warning", f"{name} clipped: {rails} sample(s) at the rails, ±1.7 g exceeded", channel.name)
+            )
+        elif flat:
+            notes.append(
+                Note("warning", f"{name} stands at its largest value for {flat} samples: saturated?", channel.name)
+            )
+        if len(channel.samples) >= _SATURATED and np.ptp(channel.samples) == 0:
+            text = "zero throughout" if channel.samples[0] == 0 else "one value throughout"
+            notes.append(Note("warning", f"{name} is {text}: not connected?", channel.name))
+    return notes
