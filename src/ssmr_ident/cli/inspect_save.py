@@ -57,10 +57,8 @@ def save_choices(session: Path, log: Path, options: ReadOptions) -> None:
         new = f"{key}: {json.dumps(value, ensure_ascii=False)}"
         if key in spans:
             first, last = spans[key]
-            before = (
-                lines[first][: entry.value[0][0].start_mark.column] if first == entry.start_mark.line else indent
-            )
-            lines[first : last + 1] = [before + new]
+            dash = first == entry.start_mark.line  # the entry's first key stands behind its dash
+            lines[first : last + 1] = [(lines[first][:column] if dash else " " * column) + new]
         else:
             lines.insert(spans["file"][1] + 1, " " * column + new)
     result = "\n".join(lines) + "\n"

@@ -202,9 +202,7 @@ def _time_column(source: Source, columns: list[Column], options: ReadOptions, ta
     mapped = [column for column in columns if column.quantity == "time"]
     named = mapped or [c for c in columns if c.quantity is None and quantity_of(c.label, c.unit) == "time"]
     if not named:
-        named = [
-            c for c in columns if c.quantity is None and c.unit and (u := find_unit(c.unit)) and u.unit == "s"
-        ]
+        named = [c for c in columns if c.quantity is None and c.unit and (u := find_unit(c.unit)) and u.unit == "s"]
     if named:
         return named[0]
     if options.fs is not None:
@@ -213,9 +211,7 @@ def _time_column(source: Source, columns: list[Column], options: ReadOptions, ta
     if len(columns) > 1 and columns[0].quantity is None and not columns[0].label and len(first) > 2:
         steps = np.diff(first)
         if (steps > 0).all() and np.ptp(steps) <= 0.02 * np.median(steps) + 1e-6:
-            table.notes.append(
-                Note("warning", "no header: the first column rises evenly and was taken as time in s")
-            )
+            table.notes.append(Note("warning", "no header: the first column rises evenly and was taken as time in s"))
             return columns[0]
     labels = ", ".join(f"{i}={c.label or 'no header'}" for i, c in enumerate(columns))
     raise source.error(

@@ -100,9 +100,7 @@ def blocks_of(source: Source, items: list[NumberRun | TextRow], on_bad: str) -> 
     if pending and blocks:
         filled = [row for row in pending if row.cells]
         if filled and any(_is_results(row) for row in filled):
-            source.inform(
-                f"{len(filled)} line(s) of results after the data are not data", f"line {filled[0].line}"
-            )
+            source.inform(f"{len(filled)} line(s) of results after the data are not data", f"line {filled[0].line}")
         elif filled:
             _tail(source, filled)
     return blocks
@@ -110,9 +108,7 @@ def blocks_of(source: Source, items: list[NumberRun | TextRow], on_bad: str) -> 
 
 def _tail(source: Source, rows: list[TextRow]) -> None:
     row = rows[0]
-    source.warn(
-        f"{len(rows)} line(s) of text after the data not read: {row.raw.strip()[:60]!r}", f"line {row.line}"
-    )
+    source.warn(f"{len(rows)} line(s) of text after the data not read: {row.raw.strip()[:60]!r}", f"line {row.line}")
 
 
 def _restarts(previous: Block, item: NumberRun) -> bool:

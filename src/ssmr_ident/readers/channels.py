@@ -76,11 +76,7 @@ def channels_of(
 def _named(channels: list[Channel], table: Table, notes: list[Note]) -> list[Channel]:
     """Names that differ; three voltages of a data-acquisition log are the axes x, y, z."""
     volts = [channel for channel in channels if channel.unit == "V"]
-    if (
-        table.axes_in_volts
-        and len(channels) == len(volts) == 3
-        and not {"ax", "ay", "az"} & {c.name for c in channels}
-    ):
+    if table.axes_in_volts and len(channels) == len(volts) == 3 and not {"ax", "ay", "az"} & {c.name for c in channels}:
         notes.append(
             Note(
                 "info",

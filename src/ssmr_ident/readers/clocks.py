@@ -40,9 +40,7 @@ def onto_one_clock(source: Source, table: Table, options: ReadOptions) -> None:
 
 
 def _is_time(column: Column) -> bool:
-    return (column.quantity or quantity_of(column.label, column.unit)) == "time" or column.label.startswith(
-        "time["
-    )
+    return (column.quantity or quantity_of(column.label, column.unit)) == "time" or column.label.startswith("time[")
 
 
 def _plain_time_label(column: Column) -> None:
@@ -83,9 +81,7 @@ def _merge(source: Source, table: Table, times: list[int], owner: dict[int, int]
     begin = max(float(table.columns[i].values[ticked[i][0]]) for i in times)
     finish = min(float(table.columns[i].values[ticked[i][-1]]) for i in times)
     inside = (time >= begin) & (time <= finish)
-    merged = [
-        Column(table.columns[slowest].label, table.columns[slowest].unit, time[inside] - origin, quantity="time")
-    ]
+    merged = [Column(table.columns[slowest].label, table.columns[slowest].unit, time[inside] - origin, quantity="time")]
     for index, clock in owner.items():
         column = table.columns[index]
         if clock == slowest:

@@ -83,8 +83,7 @@ def _refuse_split_decimals(source: Source, items: list, blocks: list[Block]) -> 
         above = [item for item in items if isinstance(item, TextRow) and item.line < block.lines[0] and item.cells]
         if above and len(above[-1].cells) * 2 == width and not any(v.isdigit() for v in above[-1].cells):
             raise source.error(
-                f"rows have {width} cells below {len(above[-1].cells)} names: comma as separator and "
-                "as decimal sign?",
+                f"rows have {width} cells below {len(above[-1].cells)} names: comma as separator and as decimal sign?",
                 "Export with ; or tab as the separator.",
                 f"line {block.lines[0]}",
             )
@@ -157,6 +156,4 @@ def _is_testing_machine(columns: list[Column]) -> bool:
     """Force over position, with their units spelt out: what a testing machine writes."""
     words = {split_header(column.label)[0].strip().lower() for column in columns}
     found = {quantity_of(column.label, column.unit) for column in columns}
-    return {"force", "position"} <= found and bool(
-        words & {"load", "standardkraft", "obciążenie", "kraft", "force"}
-    )
+    return {"force", "position"} <= found and bool(words & {"load", "standardkraft", "obciążenie", "kraft", "force"})

@@ -9,8 +9,7 @@ from ssmr_ident.readers.text import Text
 
 # In the order of preference among equals: a tab or a semicolon is never part of a number
 _CANDIDATES = [
-    Dialect(d, m)
-    for d, m in (("\t", "."), ("\t", ","), (";", "."), (";", ","), (",", "."), (" ", "."), (" ", ","))
+    Dialect(d, m) for d, m in (("\t", "."), ("\t", ","), (";", "."), (";", ","), (",", "."), (" ", "."), (" ", ","))
 ]
 _HEAD_LINES = (120, 5000)  # first look, second look when the first found hardly any numbers
 
@@ -94,7 +93,5 @@ def _with_decimal(source: Source, dialect: Dialect, rows: list[list[str]]) -> Di
         return Dialect(dialect.delimiter, "," if "," in votes else ".")
     undecided = next((cell for row in rows for cell in row if "." in cell or "," in cell), None)
     if undecided is not None:
-        raise source.error(
-            f"number {undecided!r} may hold a decimal or a thousands separator", "Give --decimal . or ,"
-        )
+        raise source.error(f"number {undecided!r} may hold a decimal or a thousands separator", "Give --decimal . or ,")
     return dialect

@@ -62,9 +62,7 @@ def _one_sheet(source: Source, sheet: Sheet, options: ReadOptions) -> list[Recor
     columns = []
     for index, header in enumerate(found.labels):
         label, unit = split_header(header)
-        columns.append(
-            Column(label, unit, np.ascontiguousarray(found.values[:, index]), found.dated and index == 0)
-        )
+        columns.append(Column(label, unit, np.ascontiguousarray(found.values[:, index]), found.dated and index == 0))
     columns[0].quantity = "time" if found.dated or columns[0].label == "X_Value" else None
     table = Table(
         columns,
@@ -146,7 +144,7 @@ def _recording(
     order: list[str] = [axis for axis in ("x", "y", "z", "ax", "ay", "az") if axis in numbers]
     time, values = _on_one_grid(source, axes, numbers, order, options, notes)
     _check_volts(source, axes, order, values, options, notes)
-    _refuse_equal_sheets(source, axes, order, values, notes)
+    _refuse_equal_sheets(source, axes, order, time, values, notes)
     channels = []
     for axis in order:
         label, _ = split_header(numbers[axis].labels[-1])
@@ -210,11 +208,7 @@ def _on_one_grid(
     counts = ", ".join(f"{axis} {count}" for axis, count in lengths.items())
     reason = "; ".join(note.text for note in notes if "missing after" in note.text)
     if not options.trim:
-        what = (
-            f"{counts} samples"
-            if len(set(lengths.values())) > 1
-            else "the same count of samples at different times"
-        )
+        what = f"{counts} samples" if len(set(lengths.values())) > 1 else "the same count of samples at different times"
         raise source.error(
             f"axes differ: {what}" + (f" ({reason})" if reason else ""),
             "Keep what all have with --trim, or export the axes again.",
@@ -239,9 +233,7 @@ def _check_volts(
     notes: list[Note],
 ) -> None:
     for axis in order:
-        given = next(
-            (unit for key, unit in options.units.items() if key.lower().removeprefix("a") == axis[-1]), None
-        )
+        given = next((unit for key, unit in options.units.items() if key.lower().removeprefix("a") == axis[-1]), None)
         if given is not None:
             conversion = find_unit(given)
             if conversion is None or conversion.unit != "V":
@@ -257,20 +249,24 @@ def _check_volts(
                 f"sheet {axes[axis].name}",
             )
         if low < _SUPPLY[0] or high > _SUPPLY[1]:
-            notes.append(
-                Note("warning", f"volts outside the sensor's 0…5 V ({low:g} to {high:g})", axes[axis].name)
-            )
+            notes.append(Note("warning", f"volts outside the sensor's 0…5 V ({low:g} to {high:g})", axes[axis].name))
 
 
 def _refuse_equal_sheets(
-    source: Source, axes: dict[str, Sheet], order: list[str], values: dict[str, np.ndarray], notes: list[Note]
+    source: Source,
+    axes: dict[str, Sheet],
+    order: list[str],
+    time: np.ndarray,
+    values: dict[str, np.ndarray],
+    notes: list[Note],
 ) -> None:
     """Two measured axes never agree in every sample; a straight line holds no noise that could tell."""
     for i, first in enumerate(order):
         for second in order[i + 1 :]:
             if not np.array_equal(values[first], values[second]):
                 continue
-            bend = np.abs(np.diff(values[first], 2)).max(initial=0.0)
+            line = np.polynomial.Polynomial.fit(time, values[first], 1)
+            bend = float(np.abs(values[first] - line(time)).max())
             text = f"sheets {axes[first].name} and {axes[second].name} are identical"
             if bend > 1e-9 * max(1.0, float(np.abs(values[first]).max())):
                 raise source.error(text, "The same axis was pasted twice; export the other one.")

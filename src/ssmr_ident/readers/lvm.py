@@ -90,9 +90,7 @@ def _segment(
     if not len(rows.values):
         raise source.error("no data below the header", "Export the .lvm again.", f"line {lines.number - 1}")
     labels = names or ["X_Value", *(f"Channel {k}" for k in range(1, rows.values.shape[1]))]
-    return _recordings_of_segment(
-        source, header, file_header, labels, rows, step, decimal, number_of_segment, options
-    )
+    return _recordings_of_segment(source, header, file_header, labels, rows, step, decimal, number_of_segment, options)
 
 
 def _names(lines: Lines) -> list[str]:
@@ -167,9 +165,7 @@ def _recordings_of_segment(
         unit = units[data.index(index)] or unit
         columns.append(Column(name, unit, values))
         if name.lower() == "f" and unit == "g":
-            source.warn(
-                "channel F bears the unit g, an acceleration's; if it is a force: --units F=N", "Y_Unit_Label"
-            )
+            source.warn("channel F bears the unit g, an acceleration's; if it is a force: --units F=N", "Y_Unit_Label")
     columns = _without_empty(source, columns)
     notes = [
         Note("info", f"{len(rows.values)} rows, decimal {'point' if decimal == '.' else 'comma'}"),
@@ -185,9 +181,7 @@ def _recordings_of_segment(
         notes += more
     if samples and samples != len(rows.values) and len(pieces) == 1:
         notes.append(
-            Note(
-                "warning", f"Samples says {samples}, the file holds {len(rows.values)} rows; the rows count", part
-            )
+            Note("warning", f"Samples says {samples}, the file holds {len(rows.values)} rows; the rows count", part)
         )
     keep = {
         k: v

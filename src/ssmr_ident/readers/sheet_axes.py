@@ -42,8 +42,7 @@ def axes_of(source: Source, sheets: list[Sheet], options: ReadOptions) -> dict[s
         order = [sheet.name.strip().lower().removeprefix("a") for sheet in sheets if id(sheet) in used]
         if tuple(order) != BY_POSITION:
             source.warn(
-                f"sheets are named in the order {', '.join(order)}, not z, y, x as by position; the names "
-                "were followed"
+                f"sheets are named in the order {', '.join(order)}, not z, y, x as by position; the names were followed"
             )
         return axes
     names = ", ".join(sheet.name for sheet in sheets)
@@ -86,12 +85,8 @@ def _wanted(source: Source, sheets: list[Sheet], axis: str, which: int | str) ->
     if isinstance(which, int) or which.isdigit():
         if 1 <= int(which) <= len(sheets):
             return sheets[int(which) - 1]
-        raise source.error(
-            f"has {len(sheets)} worksheets; sheet {which} for {axis} is not there", "They count from 1."
-        )
+        raise source.error(f"has {len(sheets)} worksheets; sheet {which} for {axis} is not there", "They count from 1.")
     found = [sheet for sheet in sheets if sheet.name == which]
     if not found:
-        raise source.error(
-            f"has no sheet {which!r} for {axis}", did_you_mean(which, [sheet.name for sheet in sheets])
-        )
+        raise source.error(f"has no sheet {which!r} for {axis}", did_you_mean(which, [sheet.name for sheet in sheets]))
     return found[0]

@@ -135,8 +135,7 @@ def _labels(rows: list[list[Any]], begin: int, columns: list[int]) -> list[str]:
     """Texts of the nearest row above the data that has one over a data column."""
     for row in reversed(rows[max(0, begin - 3) : begin]):
         cells = [
-            str(row[index]).strip() if index < len(row) and isinstance(row[index], str) else ""
-            for index in columns
+            str(row[index]).strip() if index < len(row) and isinstance(row[index], str) else "" for index in columns
         ]
         if any(cells) and not cells[0].startswith("***"):
             return cells
@@ -239,9 +238,7 @@ def _seconds(cell: Any) -> float:
     return cell.total_seconds()
 
 
-def _from_text(
-    rows: list[list[Any]], sheet: Sheet, options: ReadOptions, notes: list[Note]
-) -> list[list[Any]] | None:
+def _from_text(rows: list[list[Any]], sheet: Sheet, options: ReadOptions, notes: list[Note]) -> list[list[Any]] | None:
     """Rows whose numbers were stored as text (a decimal comma that Excel did not know), as numbers."""
     texts = [cell for row in rows for cell in row if isinstance(cell, str) and cell[:1] in "+-0123456789" and cell]
     votes = {evidence_for_decimal(text) for text in texts if text.strip("+-0123456789.,eE") == ""} - {""}

@@ -64,9 +64,7 @@ def read(source: Source, options: ReadOptions) -> list[Recording]:
         struct.error,
     ) as error:
         # npTDMS reports damage by whatever its parsing stumbles over
-        raise source.error(
-            f"TDMS is damaged ({type(error).__name__}: {str(error)[:100]})", "Copy it again."
-        ) from error
+        raise source.error(f"TDMS is damaged ({type(error).__name__}: {str(error)[:100]})", "Copy it again.") from error
     finally:
         log_manager.set_level(level)
     if not recordings:

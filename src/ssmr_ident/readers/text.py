@@ -92,9 +92,7 @@ def _without_nuls(source: Source, data: bytes) -> bytes:
     kept = data.rstrip(b"\0")
     tail = len(data) - len(kept)
     if tail:
-        source.warn(
-            f"{tail} NUL bytes at the end dropped (power lost while writing?); last samples may be missing"
-        )
+        source.warn(f"{tail} NUL bytes at the end dropped (power lost while writing?); last samples may be missing")
     inside = kept.count(b"\0")
     if inside > 0.1 * max(len(kept), 1) or not kept:
         raise source.error("is binary, not a text log", "Export the log as text, .lvm, .tdms or .xlsx.")

@@ -101,16 +101,14 @@ def check(stamps: np.ndarray, place: Callable[[int], str], *, split: bool) -> Ti
     if len(doubled) > max(1, 0.01 * len(stamps)):
         raise TimeProblem(
             int(doubled[0]),
-            f"time stands still in {len(doubled)} of {len(stamps)} rows: its "
-            "resolution is coarser than the sampling",
+            f"time stands still in {len(doubled)} of {len(stamps)} rows: its resolution is coarser than the sampling",
             "Give --fs.",
         )
     if len(doubled):
         axis.notes.append(
             Note(
                 "warning",
-                f"{len(doubled)} row(s) repeat the time of the row before, dropped "
-                f"(t = {stamps[doubled[0]]:.6g} s)",
+                f"{len(doubled)} row(s) repeat the time of the row before, dropped (t = {stamps[doubled[0]]:.6g} s)",
                 place(int(doubled[0])),
             )
         )

@@ -47,9 +47,7 @@ def open_sheets(source: Source) -> list[Sheet]:
         if entry.typ != SheetTypeEnum.WorkSheet:
             source.inform(f"{entry.name} is no worksheet and does not count", entry.name)
             continue
-        rows = _guarded(
-            source, entry.name, lambda i=index: book.get_sheet_by_index(i).to_python(skip_empty_area=False)
-        )
+        rows = _guarded(source, entry.name, lambda i=index: book.get_sheet_by_index(i).to_python(skip_empty_area=False))
         sheets.append(Sheet(entry.name, len(sheets) + 1, rows, entry.visible != SheetVisibleEnum.Visible))
     if not sheets:
         raise source.error("is a zip, but not a workbook with worksheets", "Give the .xlsx itself.")
@@ -103,9 +101,7 @@ def what_is_in(source: Source, sheet: str, row: int, column: int) -> str:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # styles that openpyxl does not know have no bearing on a value
-            cached = openpyxl.load_workbook(io.BytesIO(source.data), data_only=True)[sheet].cell(
-                row + 1, column + 1
-            )
+            cached = openpyxl.load_workbook(io.BytesIO(source.data), data_only=True)[sheet].cell(row + 1, column + 1)
             if isinstance(cached.value, str) and cached.value.startswith("#"):
                 return f"Excel error {cached.value} in {address}"
             formula = openpyxl.load_workbook(io.BytesIO(source.data))[sheet].cell(row + 1, column + 1)

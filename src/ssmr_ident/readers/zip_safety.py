@@ -44,31 +44,30 @@ def checked(source: Source) -> io.BytesIO:
         raise source.error(f"unpacks to more than {MAX_UNPACKED // 2**20} MB", "Split the recording.")
     budget = MAX_UNPACKED
     parts = io.BytesIO()
-    repacked = zipfile.ZipFile(parts, "w", zipfile.ZIP_STORED)
     seen: set[str] = set()
-    for member in members:
-        if not member.filename.lower().endswith((".xml", ".rels")):
-            continue
-        data = _unpack(source, archive, member, budget)
-        budget -= len(data)
-        if b"\0" in data[:64]:
-            raise source.error(
-                f"workbook part {member.filename} is not UTF-8", "Save it anew in Excel.", member.filename
-            )
-        if b"<!DOCTYPE" in data or b"<!ENTITY" in data:
-            raise source.error(
-                "holds a document type definition, which no workbook needs",
-                "Save it anew in Excel.",
-                member.filename,
-            )
-        if member.filename.endswith("workbook.xml.rels") and b"sharedStrings.xml" in data:
-            _require_shared_strings(source, names)
-        if "/worksheets/" in member.filename or b"<sheetData" in data[:65536]:
-            _check_corner(source, member.filename, data)
-        if member.filename not in seen:
-            seen.add(member.filename)
-            repacked.writestr(zipfile.ZipInfo(member.filename), data)
-    repacked.close()
+    with archive, zipfile.ZipFile(parts, "w", zipfile.ZIP_STORED) as repacked:
+        for member in members:
+            if not member.filename.lower().endswith((".xml", ".rels")):
+                continue
+            data = _unpack(source, archive, member, budget)
+            budget -= len(data)
+            if b"\0" in data[:64]:
+                raise source.error(
+                    f"workbook part {member.filename} is not UTF-8", "Save it anew in Excel.", member.filename
+                )
+            if b"<!DOCTYPE" in data or b"<!ENTITY" in data:
+                raise source.error(
+                    "holds a document type definition, which no workbook needs",
+                    "Save it anew in Excel.",
+                    member.filename,
+                )
+            if member.filename.endswith("workbook.xml.rels") and b"sharedStrings.xml" in data:
+                _require_shared_strings(source, names)
+            if "/worksheets/" in member.filename or b"<sheetData" in data[:65536]:
+                _check_corner(source, member.filename, data)
+            if member.filename not in seen:
+                seen.add(member.filename)
+                repacked.writestr(zipfile.ZipInfo(member.filename), data)
     parts.seek(0)
     return parts
 

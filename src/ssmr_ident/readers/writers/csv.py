@@ -20,8 +20,7 @@ def write_csv(path: str | Path, recording: Recording, *, decimals: int | None = 
         Count of decimals; None prints what reads back to the same double.
     """
     header = ["time [s]"] + [
-        f"{_quoted(c.label or c.name)} [{c.unit}]" if c.unit else _quoted(c.label or c.name)
-        for c in recording.channels
+        f"{_quoted(c.label or c.name)} [{c.unit}]" if c.unit else _quoted(c.label or c.name) for c in recording.channels
     ]
     columns = [recording.time, *(channel.samples for channel in recording.channels)]
     texts = [shortest(column) if decimals is None else fixed(column, decimals) for column in columns]

@@ -124,13 +124,11 @@ def _frame(names: tuple[str, str, str]) -> dict[str, str]:
         for i, n in enumerate(names, start=1)
     )
     relations = "".join(
-        f'<Relationship Id="rId{i}" Type="{_RELATIONS}/worksheet" Target="worksheets/sheet{i}.xml"/>'
-        for i in (1, 2, 3)
+        f'<Relationship Id="rId{i}" Type="{_RELATIONS}/worksheet" Target="worksheets/sheet{i}.xml"/>' for i in (1, 2, 3)
     )
     content = "application/vnd.openxmlformats-officedocument.spreadsheetml."
     overrides = f'<Override PartName="/xl/workbook.xml" ContentType="{content}sheet.main+xml"/>' + "".join(
-        f'<Override PartName="/xl/worksheets/sheet{i}.xml" ContentType="{content}worksheet+xml"/>'
-        for i in (1, 2, 3)
+        f'<Override PartName="/xl/worksheets/sheet{i}.xml" ContentType="{content}worksheet+xml"/>' for i in (1, 2, 3)
     )
     overrides += f'<Override PartName="/xl/styles.xml" ContentType="{content}styles+xml"/>'
     relations += f'<Relationship Id="rId4" Type="{_RELATIONS}/styles" Target="styles.xml"/>'
