@@ -188,9 +188,7 @@ def _from_volts(
         clipped = np.abs(samples) >= accelerometer.range_m_s2 * (1.0 - 1e-3)
         if clipped.any():
             limit = f"±{accelerometer.range_m_s2:g} m/s^2"
-            note = Note(
-                "warning", f"{channel.name}: {int(clipped.sum())} samples at the sensor's range of {limit}"
-            )
+            note = Note("warning", f"{channel.name}: {int(clipped.sum())} samples at the sensor's range of {limit}")
         return replace(channel, samples=samples, unit="m/s^2"), note
     if channel.name in entry.channels:
         raise InputError(

@@ -65,7 +65,7 @@ def _world(pose: np.ndarray, point: np.ndarray) -> np.ndarray:
 def test_energy_is_kept_without_damping_and_friction(robot: Robot) -> None:
     free = _gripping(robot, damping=np.zeros(3))
     offset = {name: 3.0 * value for name, value in START.items()}
-    result = simulate(free, Scenario("free_response", 2.0, offset=offset), 2000.0, step=1e-4, coriolis=1.0)
+    result = simulate(free, Scenario("free_response", 2.0, offset=offset), 2000.0, step=1e-4, effects={"coriolis": {}})
     energy = _energy(free, result)[10:-10]
     rest = simulate(free, Scenario("free_response", 0.01), 2000.0)
     swing = energy[0] - _energy(free, rest)[3]
@@ -124,9 +124,7 @@ def test_small_decays_match_the_coupled_determinants(robot: Robot) -> None:
         other = "y" if channel == "roll" else "x"
         # start in the shape of the mode, so that the count of zero crossings is that of one line
         ratio = -(4 * 0.23 * k) / (4 * k - m * root**2) * (1.0 if channel == "roll" else -1.0)
-        result = simulate(
-            plain, Scenario("free_response", 4.0, offset={channel: 1e-5, other: 1e-5 * ratio}), 2000.0
-        )
+        result = simulate(plain, Scenario("free_response", 4.0, offset={channel: 1e-5, other: 1e-5 * ratio}), 2000.0)
         course = result[channel] - result[channel].mean()
         up = np.flatnonzero((course[:-1] < 0) & (course[1:] >= 0))
         exact = up - course[up] / (course[up + 1] - course[up])
@@ -163,8 +161,7 @@ def test_momentum_is_kept_without_a_floor(robot: Robot) -> None:
     result = simulate(
         robot,
         Scenario("free_response", 0.3, offset={"z": 2.0}, velocity={"x": 0.3, "yaw": 1.0}),
-        wheel_lift=True,
-        coriolis=1.0,
+        effects={"wheel_lift": {}, "coriolis": {}},
     )
     t = result.time
     assert result["z"] - result["z"][0] == pytest.approx(-0.5 * GRAVITY * t**2, abs=1e-9)

@@ -119,9 +119,7 @@ def test_bundled_robots_survive_a_round_trip(tmp_path: Path, name: str) -> None:
 
 def test_awkward_numbers_and_texts_survive_bit_for_bit(tmp_path: Path) -> None:
     random = np.random.default_rng(5)
-    numbers = np.concatenate(
-        [random.standard_normal(20) * 10.0 ** random.integers(-300, 300, 20), [5e-324, 0.1 + 0.2]]
-    )
+    numbers = np.concatenate([random.standard_normal(20) * 10.0 ** random.integers(-300, 300, 20), [5e-324, 0.1 + 0.2]])
     for number in np.abs(numbers):
         original = ParameterSet(
             "näme: with # signs",

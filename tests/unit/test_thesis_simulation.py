@@ -35,9 +35,7 @@ def test_a_pull_is_a_saw_tooth(robot: Robot) -> None:
 
 
 def test_ramp_slopes_lie_between_two_and_four_tires_with_the_height_of_the_cable(robot: Robot) -> None:
-    slopes = [
-        _slope(simulate(robot, pull("lateral", 1.0, 2.0, height=h), 100.0), 0.3, 1.5) for h in (0, 0.1, 0.2, 0.3)
-    ]
+    slopes = [_slope(simulate(robot, pull("lateral", 1.0, 2.0, height=h), 100.0), 0.3, 1.5) for h in (0, 0.1, 0.2, 0.3)]
     stiffness = robot.stiffness[1]
     assert np.all(np.diff(slopes) < 0)
     assert 3.5 * stiffness < slopes[0] < 4.0 * stiffness

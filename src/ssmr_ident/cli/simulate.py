@@ -11,17 +11,13 @@ CHOICES = "free_response, pull, swivel, straight, wheel_drag, vertical_compressi
 
 
 def command(
-    params: Annotated[
-        str, typer.Argument(help="Parameter file, or a bundled robot: p3at-extended, p3at-platform.")
-    ],
+    params: Annotated[str, typer.Argument(help="Parameter file, or a bundled robot: p3at-extended, p3at-platform.")],
     experiment: Annotated[str, typer.Option("--experiment", "-e", help=f"One of {CHOICES}.")],
     output: Annotated[Path, typer.Option("-o", "--output", help="Log to write: .csv, .lvm or .xlsx.")] = Path(
         "rec.csv"
     ),
     motion: Annotated[str, typer.Option(help="Free response: roll, pitch or yaw.")] = "roll",
-    amplitude_mm: Annotated[
-        float, typer.Option(help="Free response: displacement of the wheels at the start.")
-    ] = 0.3,
+    amplitude_mm: Annotated[float, typer.Option(help="Free response: displacement of the wheels at the start.")] = 0.3,
     direction: Annotated[str, typer.Option(help="Pull: lateral or longitudinal.")] = "lateral",
     speed_mm_s: Annotated[float, typer.Option(help="Pull, drag, compression: speed of the head.")] = 1.0,
     height_m: Annotated[float, typer.Option(help="Pull: height of the cable above the floor.")] = 0.05,
@@ -47,8 +43,8 @@ def command(
 
     request = Request(
         experiment=experiment, motion=motion, amplitude_mm=amplitude_mm, direction=direction,
-        speed_mm_s=speed_mm_s, height_m=height_m, wheels_gripping=wheels_gripping, cable=cable, wheel_rate_rad_s=wheel_rate_rad_s,
-        free_normal=free_normal, yaw_rate_deg_s=yaw_rate_deg_s, speed_m_s=speed_m_s, force=force,
+        speed_mm_s=speed_mm_s, height_m=height_m, wheels_gripping=wheels_gripping, cable=cable,
+        wheel_rate_rad_s=wheel_rate_rad_s, free_normal=free_normal, yaw_rate_deg_s=yaw_rate_deg_s, speed_m_s=speed_m_s, force=force,
         duration_s=duration_s, rate_hz=rate_hz, noise=noise, seed=seed,
     )  # fmt: skip
     recording = simulate_to_file(params, request, output)

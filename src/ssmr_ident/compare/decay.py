@@ -143,9 +143,7 @@ def _linear_runner(jacobian: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
     return lambda start: jacobian @ start
 
 
-def _jacobian(
-    model: LinearRobot, robot: Robot, time: np.ndarray, sample_rate: float, rows: list[int]
-) -> np.ndarray:
+def _jacobian(model: LinearRobot, robot: Robot, time: np.ndarray, sample_rate: float, rows: list[int]) -> np.ndarray:
     output = accelerometer_rows(model, robot.accelerometer.position, GRAVITY)[rows]
     course = responses(model.state_matrix, output, time)
     c = low_pass_coefficients(robot.accelerometer.bandwidth_hz, 1.0 / sample_rate)

@@ -68,9 +68,7 @@ def _fit(
     aim = ((measured - driven)[:, main] / scale[main]).T.ravel()
     # the cut-off leaves out what the record cannot tell from another nuisance (a force zero from a sensor zero)
     found = np.linalg.lstsq(design / size, aim, rcond=1e-6)[0] / size
-    simulated = driven + sum(
-        value * parts[name] for name, value in zip(names, found, strict=False) if name in parts
-    )
+    simulated = driven + sum(value * parts[name] for name, value in zip(names, found, strict=False) if name in parts)
     nuisances = dict(zip(names, map(float, found), strict=True))
     for position, index in enumerate(main):
         simulated[:, index] += found[len(parts) + position] * scale[index]

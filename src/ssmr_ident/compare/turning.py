@@ -33,9 +33,7 @@ def predict(parameters: ParameterSet, measurement: Measurement) -> Prediction:
     even = even_samples(recording.time, np.column_stack([recording[name] for name in names]))
     rates, rate_step, settling = _wanted(robot, measurement)
     duration = len(even.samples) / even.sample_rate
-    scenario = Scenario(
-        measurement.entry.experiment, duration + settling, wheel_rates=rates, wheel_rate_step=rate_step
-    )
+    scenario = Scenario(measurement.entry.experiment, duration + settling, wheel_rates=rates, wheel_rate_step=rate_step)
     simulation = simulate(robot, scenario, even.sample_rate)
     skip = len(simulation.time) - len(even.samples)
     simulated = simulation.values[skip:][:, [AXES.index(name) for name in names]]

@@ -33,6 +33,8 @@ class Robot:
     radius : float [m]
     mu_static, mu_kinetic, lambda_max : float
         Relay friction (6.4) and the slip at which grip is used up (4.10)-(4.12).
+    slip_coupling : float
+        Share of (4.10)-(4.12) that acts: 1, or 0 where the file knows no lambda_max.
     motor_gain : float [1/s]
         Of eq (6.1).
     cable_stiffness, cable_damping : float [N/m], [N s/m]
@@ -49,6 +51,7 @@ class Robot:
     mu_static: float
     mu_kinetic: float
     lambda_max: float
+    slip_coupling: float
     motor_gain: float
     cable_stiffness: float
     cable_damping: float
@@ -88,9 +91,7 @@ def robot_from_parameters(parameters: ParameterSet) -> Robot:
         return float(parameters[path].value)
 
     if "contact_points_m" not in parameters:
-        raise InputError(
-            f"{parameters.file or parameters.name}: contact_points_m", "is missing", "Give four xyz rows"
-        )
+        raise InputError(f"{parameters.file or parameters.name}: contact_points_m", "is missing", "Give four xyz rows")
     points = np.asarray(parameters["contact_points_m"].value, dtype=float)
     inertia = np.array([[need(f"inertia_kg_m2.{''.join(sorted(i + j))}") for j in _AXES] for i in _AXES])
     eigenvalues = np.linalg.eigvalsh(inertia)
@@ -114,6 +115,7 @@ def robot_from_parameters(parameters: ParameterSet) -> Robot:
         mu_static=mu_static,
         mu_kinetic=parameters.number("tire.mu_kinetic", mu_static),
         lambda_max=parameters.number("tire.lambda_max", 1.0),
+        slip_coupling=float("tire.lambda_max" in parameters),
         motor_gain=parameters.number("motor.gain_1_s", 6.0),
         cable_stiffness=cable,
         # thesis section 4: D_cable = 4 sqrt(m K_cable), so that the steel cable does not ring

@@ -7,25 +7,30 @@ import numpy as np
 from ssmr_ident.physics.robot import GRAVITY, Robot
 
 
-def rest_pose(robot: Robot) -> np.ndarray:
-    """Sinking and tilt at which the tires carry the weight.
+def rest_pose(robot: Robot, cubic: float = 0.0) -> np.ndarray:
+    """Sinking and tilt at which the tires carry the weight, by Newton's method on the exact geometry.
 
-    The four vertical springs are loaded by the weight alone; small angles make the problem linear, and two
-    further passes with the exact geometry remove the rest.
+    Parameters
+    ----------
+    robot : Robot
+    cubic : float [N/m^3]
+        k3 of each tire beside its K_z.
 
     Returns
     -------
     (3,) float [m, rad, rad]
         Height of the CoM above the floor, roll and pitch.
     """
-    stiffness = robot.stiffness[2]
-    pose = np.array([robot.height, 0.0, 0.0])
-    for _ in range(12):
+    sink = robot.mass * GRAVITY / (4.0 * robot.stiffness[2])
+    pose = np.array([robot.height - sink, 0.0, 0.0])
+    for _ in range(30):
         arms, depth = _arms_and_depth(robot, pose)
-        load = stiffness * depth
+        load = robot.stiffness[2] * depth + cubic * depth**3
+        slope = robot.stiffness[2] + 3.0 * cubic * depth**2
         residual = np.array([load.sum() - robot.mass * GRAVITY, load @ arms[:, 1], -load @ arms[:, 0]])
         rows = np.column_stack([-np.ones(4), -arms[:, 1], arms[:, 0]])
-        jacobian = stiffness * np.vstack([rows.sum(0), arms[:, 1] @ rows, -arms[:, 0] @ rows])
+        rows = slope[:, None] * rows
+        jacobian = np.vstack([rows.sum(0), arms[:, 1] @ rows, -arms[:, 0] @ rows])
         change = np.linalg.solve(jacobian, residual)
         pose = pose - change
         if np.abs(change).max() < 1e-15:

@@ -36,7 +36,7 @@ def grip_shares(rim_speed, slip_x, slip_y, lambda_max):
 
 
 @kernel
-def contact_force(deflection, sliding, velocity, hub, stiffness, damping, mass, breakaway, grip, drag, step):
+def contact_force(deflection, sliding, velocity, hub, beside, stiffness, damping, mass, breakaway, grip, drag, step):
     """Relay (6.4) and tire force (4.9) of one contact axis at a whole step.
 
     While it sticks the contact point stands still and the carcass takes up the hub's whole motion. When the force
@@ -54,6 +54,8 @@ def contact_force(deflection, sliding, velocity, hub, stiffness, damping, mass, 
         Of the contact point.
     hub : float [m/s]
         Velocity of the hub relative to the rolling contact.
+    beside : float [N]
+        Force of whatever acts beside the carcass' spring and damper.
     stiffness, damping, mass : float
         K, D, m_t of this axis.
     breakaway, grip, drag : float [N]
@@ -65,7 +67,7 @@ def contact_force(deflection, sliding, velocity, hub, stiffness, damping, mass, 
     (bool, float, float)
         Sliding or not, contact velocity [m/s], force on the hub [N].
     """
-    force = stiffness * deflection + damping * hub
+    force = stiffness * deflection + damping * hub + beside
     if not sliding and abs(force) > breakaway:
         sliding = True
         velocity = 0.0
@@ -76,7 +78,7 @@ def contact_force(deflection, sliding, velocity, hub, stiffness, damping, mass, 
     inertia = mass / step
     direction = 1.0 if force > 0.0 else -1.0
     velocity = (inertia * velocity + force - drag * direction) / (inertia + damping)
-    landing = hub + (deflection - (direction * grip - damping * hub) / stiffness) / step
+    landing = hub + (deflection - (direction * grip - damping * hub - beside) / stiffness) / step
     if direction * velocity > direction * landing:
         velocity = landing
     return True, velocity, damping * velocity - force

@@ -67,9 +67,7 @@ def simulate_to_file(params: str, request: Request, output: Path) -> Recording:
         An unknown experiment, a missing parameter, an ending without a writer.
     """
     if request.experiment not in EXPERIMENTS:
-        raise InputError(
-            "--experiment", f"is {request.experiment!r}", did_you_mean(request.experiment, EXPERIMENTS)
-        )
+        raise InputError("--experiment", f"is {request.experiment!r}", did_you_mean(request.experiment, EXPERIMENTS))
     if request.duration <= 0 or request.rate <= 0 or request.duration * request.rate > 5e7:
         raise InputError("--duration-s, --rate-hz", f"ask for {request.duration * request.rate:g} samples")
     parameters = read_parameters(params)
@@ -143,9 +141,7 @@ def _forced(parameters: ParameterSet, request: Request) -> Recording:
         raise InputError("--force", "is missing", "Name a log with columns time and force")
     log = read_one(request.force, ReadOptions())
     if "force" not in log:
-        raise InputError(
-            request.force, f"has no force; found {', '.join(log.names)}", "Head the column 'force (N)'"
-        )
+        raise InputError(request.force, f"has no force; found {', '.join(log.names)}", "Head the column 'force (N)'")
     bandwidth = parameters.number("accelerometer.bandwidth_hz", float("inf"))
     motion = simulate_rig(rig_from_parameters(parameters), log["force"], log.sample_rate, bandwidth_hz=bandwidth)
     position, velocity, acceleration = motion.T

@@ -26,9 +26,7 @@ _TOP = {"schema", "name", "effects", "provenance"}
 def bundled_robots() -> tuple[str, ...]:
     """Names that ``robot:`` accepts without a file."""
     folder = resources.files("ssmr_ident.session") / "robots"
-    return tuple(
-        sorted(entry.name.removesuffix(".yaml") for entry in folder.iterdir() if entry.name.endswith(".yaml"))
-    )
+    return tuple(sorted(entry.name.removesuffix(".yaml") for entry in folder.iterdir() if entry.name.endswith(".yaml")))
 
 
 def read_parameters(path: str | Path) -> ParameterSet:
@@ -83,9 +81,7 @@ def _estimate(where: str, key: str, block: Any, unit: str = "1") -> Estimate:
             raise InputError(where, f"has an unknown field {name!r}", did_you_mean(str(name), _FIELDS))
     given = canonical_unit(entry.get("unit", unit))
     if declared and given != unit:
-        raise InputError(
-            where, f"unit is {given!r}, expected {unit!r}", f"Convert the value and write unit: {unit}"
-        )
+        raise InputError(where, f"unit is {given!r}, expected {unit!r}", f"Convert the value and write unit: {unit}")
     value = _number(where, "value", entry["value"], declared.shape if declared else None)
     std = entry.get("std")
     if std is not None:
@@ -108,9 +104,7 @@ def _number(where: str, name: str, value: Any, shape: tuple[int, ...] | None) ->
             raise ValueError
         array = np.asarray(value, dtype=float)
     except (TypeError, ValueError):
-        raise InputError(
-            where, f"{name} is {value!r}, expected a number", "Use a decimal point, no unit"
-        ) from None
+        raise InputError(where, f"{name} is {value!r}, expected a number", "Use a decimal point, no unit") from None
     if np.isnan(array).any():
         raise InputError(where, f"{name} is not a number (NaN)")
     if shape is not None and array.shape != shape:

@@ -18,8 +18,7 @@ class Key:
 
 def _inertia() -> dict[str, Key]:
     kinds = {
-        axis: Key("kg m^2", f"moment of inertia about {axis[0]} through the CoM", 0.0)
-        for axis in ("xx", "yy", "zz")
+        axis: Key("kg m^2", f"moment of inertia about {axis[0]} through the CoM", 0.0) for axis in ("xx", "yy", "zz")
     }
     kinds |= {axis: Key("kg m^2", f"product of inertia {axis} (tensor element)") for axis in ("xy", "xz", "yz")}
     return {f"inertia_kg_m2.{axis}": key for axis, key in kinds.items()}

@@ -99,23 +99,17 @@ def read_session(path: str | Path) -> Session:
         raise InputError(f"{file}: schema", f"is {content.get('schema')!r}, expected {SCHEMA!r}")
     rows = content.get("recordings")
     if not isinstance(rows, list) or not rows:
-        raise InputError(
-            f"{file}: recordings", "missing or empty", "List at least one log with file and experiment"
-        )
+        raise InputError(f"{file}: recordings", "missing or empty", "List at least one log with file and experiment")
     baseline = _one_of(f"{file}: baseline", content.get("baseline", "rigid6"), BASELINES)
     entries = tuple(_entry(file, index, row) for index, row in enumerate(rows))
     _no_repeats(file, entries)
-    return Session(
-        str(content.get("name", file.parent.name)), file.parent, _robot(file, content), baseline, entries
-    )
+    return Session(str(content.get("name", file.parent.name)), file.parent, _robot(file, content), baseline, entries)
 
 
 def _robot(file: Path, content: dict[str, Any]) -> str:
     robot = content.get("robot")
     if not isinstance(robot, str):
-        raise InputError(
-            f"{file}: robot", "missing", f"Give a parameter file, or one of {', '.join(bundled_robots())}"
-        )
+        raise InputError(f"{file}: robot", "missing", f"Give a parameter file, or one of {', '.join(bundled_robots())}")
     return robot if robot in bundled_robots() else str(_inside(f"{file}: robot", file.parent, robot))
 
 
@@ -143,9 +137,7 @@ def _no_repeats(file: Path, entries: tuple[Entry, ...]) -> None:
     seen: set[tuple[str, int | None]] = set()
     for index, entry in enumerate(entries):
         if (entry.file, entry.sample) in seen:
-            raise InputError(
-                f"{file}: recordings[{index}].file", f"{entry.file} is listed twice", "Remove one of them"
-            )
+            raise InputError(f"{file}: recordings[{index}].file", f"{entry.file} is listed twice", "Remove one of them")
         seen.add((entry.file, entry.sample))
 
 
@@ -201,11 +193,7 @@ def _yes_no(where: str, value: Any) -> bool:
 
 
 def _wheels(where: str, value: Any) -> tuple[int, ...]:
-    if (
-        not isinstance(value, list)
-        or not set(map(str, value)) <= {"1", "2", "3", "4"}
-        or len(set(value)) != len(value)
-    ):
+    if not isinstance(value, list) or not set(map(str, value)) <= {"1", "2", "3", "4"} or len(set(value)) != len(value):
         raise InputError(where, f"is {value!r}, expected a list of different wheels out of 1, 2, 3, 4")
     return tuple(sorted(value))
 

@@ -84,7 +84,7 @@ def _drag(stiffness, damping, mass, breakaway, grip, head, step, substeps, out):
         hub = (head[n + 1] - head[n]) / step if n + 1 < out.shape[0] else 0.0
         for m in range(substeps):
             sliding, velocity, force = contact_force(
-                deflection, sliding, velocity, hub, stiffness, damping, mass, breakaway, grip, 0.0, h
+                deflection, sliding, velocity, hub, 0.0, stiffness, damping, mass, breakaway, grip, 0.0, h
             )
             if m == 0:
                 out[n] = -force

@@ -1,4 +1,4 @@
-"""The 6-DOF robot on four tires, one step after the other (thesis section 6.1, eq 2.65).
+"""The 6-DOF robot on four tires, one step after the other (thesis section 6.1, eq 2.65), with every effect in it.
 
 Velocities are those of the CoM along the heading axes (x where the robot points, z up) and the body's angular
 rates; the pose is the CoM in the world and yaw, pitch, roll. In these axes gravity and the floor's normal are
@@ -16,41 +16,96 @@ import math
 import numpy as np
 
 from ssmr_ident.core.kernel import kernel
+from ssmr_ident.physics import slots
+from ssmr_ident.physics.effects import (
+    flexible_mast,
+    load_sensitive_friction,
+    motor_belt,
+    rolling_resistance,
+    stribeck,
+)
+from ssmr_ident.physics.effects import wheel_lift as lift_effect
+from ssmr_ident.physics.element import STATES, element_advance, element_force
 from ssmr_ident.physics.sensor import filter_step
+from ssmr_ident.physics.slots import (
+    BELT_DAMPING,
+    BELT_STIFFNESS,
+    GAP_SHARE_X,
+    KINETIC_SHARE,
+    LOAD_EXPONENT,
+    MAST_DAMPING,
+    MAST_HZ,
+    MAST_MASS,
+    RIM_MASS,
+    ROLLING,
+    STRIBECK_SPEED,
+)
 from ssmr_ident.physics.tire import contact_force, grip_shares
+from ssmr_ident.simulate.floor import contact_speed, floor_height
+from ssmr_ident.simulate.pulling import (
+    HELD,
+    HOOK_X,
+    HOOK_Y,
+    HOOK_Z,
+    PULL_X,
+    PULL_Y,
+    PULLED,
+    cable_tension,
+    head_motion,
+    hook_position,
+)
 
-# Layout of the parameter vector: contact points and inverse inertia follow the scalars.
+# Layout of the parameter vector; p_a, contact points, inverse inertia, inertia and gripping wheels follow the scalars.
 MASS, KX, KY, KZ, DX, DY, DZ, PATCH_MASS, RADIUS = range(9)
-MU_STATIC, MU_KINETIC, LAMBDA_MAX, MOTOR_GAIN, GRAVITY_G = range(9, 14)
-RELEASE_DRAG, WHEEL_LIFT, CORIOLIS = range(14, 17)
-SENSOR = 17  # three numbers: p_a
-POINTS = 20  # twelve numbers: p_i, row by row
-INVERSE_INERTIA = 32  # nine numbers
-INERTIA = 41  # nine numbers
-GRIPPING = 50  # four numbers: share of the friction each wheel has
-PARAMETERS = 54
+MU_STATIC, MU_KINETIC, LAMBDA_MAX, SLIP_COUPLING, MOTOR_GAIN, GRAVITY_G, RELEASE_DRAG = range(9, 16)
+SENSOR, POINTS, INVERSE_INERTIA, INERTIA, GRIPPING, PARAMETERS = 16, 19, 31, 40, 49, 53
 
-# Layout of the pulling arrangement: cable and fixture.
-PULLED, CABLE_K, CABLE_D, PULL_X, PULL_Y, HOOK_X, HOOK_Y, HOOK_Z, HELD = range(9)
-PULLING = 9
-
-# Layout of the start: pose, velocities, wheel rates, carcass deflections.
-START = 22  # x y z roll pitch yaw | u v w p q r | left right | (x, y) of each wheel
-
+START = 22  # x y z roll pitch yaw | u v w p q r | left right | carcass deflections (x, y) of each wheel
 OUTPUTS = ("ax", "ay", "az", "wx", "wy", "wz", "x", "y", "z", "roll", "pitch", "yaw", "vx", "vy", "force", "head",
            "rate_left", "rate_right", "sliding", "load_1", "load_2", "load_3", "load_4")  # fmt: skip
 
+_JOINT_DEPTH, _ECCENTRICITY, _ROUGHNESS = slots.JOINT_DEPTH, slots.ECCENTRICITY, slots.ROUGHNESS
+_CUBIC, _QUADRATIC, _FRICTION, _ALPHA = slots.CUBIC, slots.QUADRATIC, slots.FRICTION_FORCE, slots.ALPHA
+_RELAXATION, _GAP, _LIFT, _CORIOLIS = slots.RELAXATION_STIFFNESS, slots.GAP, slots.LIFT, slots.CORIOLIS
+_stribeck, _load_law, _rolling = (
+    stribeck.coefficient,
+    load_sensitive_friction.coefficient,
+    rolling_resistance.force,
+)
+_mast_force, _belt_force, _lifted = flexible_mast.force, motor_belt.force, lift_effect.load
+
 
 @kernel
-def run(p, pulling, head, head_step, reference, reference_step, start, step, steps, stride, low_pass, out):
+def run(
+    p,
+    e,
+    floor,
+    mast,
+    pulling,
+    head,
+    head_step,
+    reference,
+    reference_step,
+    start,
+    step,
+    steps,
+    stride,
+    low_pass,
+    out,
+):
     """Integrate ``steps`` steps and store every ``stride``-th state in ``out``.
 
     Parameters
     ----------
     p : (PARAMETERS,) float
+    e : (SLOTS,) float
+        Effects.
+    floor : (n, n) float [m]
+    mast : (8, 8) float
+        Inverse mass matrix of body and swaying mast; not used while the mast is stiff.
     pulling : (PULLING,) float
     head : (m,) float [m]
-        Position of the pulling head at multiples of ``head_step`` [s]; straight between, at rest after the end.
+        Position of the pulling head at multiples of ``head_step`` [s].
     reference : (k, 2) float [rad/s]
         Wanted rates of the left and right wheels at multiples of ``reference_step`` [s].
     start : (START,) float
@@ -68,26 +123,37 @@ def run(p, pulling, head, head_step, reference, reference_step, start, step, ste
     mass, gravity = p[MASS], p[GRAVITY_G]
     kx, ky, kz, dx, dy, dz = p[KX], p[KY], p[KZ], p[DX], p[DY], p[DZ]
     patch, radius, lambda_max, gain = p[PATCH_MASS], p[RADIUS], p[LAMBDA_MAX], p[MOTOR_GAIN]
-    mu_s, mu_k, drag_share = p[MU_STATIC], p[MU_KINETIC], p[RELEASE_DRAG]
-    lift, coriolis = p[WHEEL_LIFT] > 0.5, p[CORIOLIS]
-    inv = p[INVERSE_INERTIA : INVERSE_INERTIA + 9]
-    tensor = p[INERTIA : INERTIA + 9]
+    coupling, drag_share, nominal_load = p[SLIP_COUPLING], p[RELEASE_DRAG], 0.25 * p[MASS] * p[GRAVITY_G]
+    inv, tensor = p[INVERSE_INERTIA : INVERSE_INERTIA + 9], p[INERTIA : INERTIA + 9]
+    beside = (
+        e[_CUBIC] != 0.0 or e[_QUADRATIC] != 0.0 or e[_FRICTION] != 0.0 or e[_ALPHA] != 1.0
+        or e[_RELAXATION] != 0.0 or e[_GAP] != 0.0
+    )  # fmt: skip
+    uneven = e[_JOINT_DEPTH] != 0.0 or e[_ECCENTRICITY] != 0.0 or e[_ROUGHNESS] != 0.0
+    falling, load_law = e[KINETIC_SHARE] != 1.0, e[LOAD_EXPONENT] != 0.0
+    swaying, stretching = math.isfinite(e[MAST_HZ]), math.isfinite(e[BELT_STIFFNESS])
+    lift, coriolis, share_x_gap = e[_LIFT] > 0.5, e[_CORIOLIS], e[GAP_SHARE_X]
 
     x, y, z, roll, pitch, yaw = start[0], start[1], start[2], start[3], start[4], start[5]
     u, v, w = start[6], start[7], start[8]
     wx, wy, wz = start[9], start[10], start[11]
-    rate_left, rate_right = start[12], start[13]
+    rate_left, rate_right, angle_left, angle_right = start[12], start[13], 0.0, 0.0
     au = av = aw = bx = by = bz = 0.0  # accelerations of the last step
     roll_rate = pitch_rate = yaw_rate = 0.0
 
     deflection = np.empty((4, 2))
     for i in range(4):
         deflection[i, 0], deflection[i, 1] = start[14 + 2 * i], start[15 + 2 * i]
-    contact = np.zeros((4, 2))  # velocity of the contact points
+    contact, slip = (
+        np.zeros((4, 2)),
+        np.zeros((4, 2)),
+    )  # velocities of the contact points, and of the hubs over them
     sliding = np.zeros((4, 2), dtype=np.bool_)
-    grip = np.zeros((4, 2))
-    arm = np.zeros((4, 3))
-    load = np.zeros(4)
+    hidden, hidden_z = np.zeros((4, 2, STATES)), np.zeros((4, STATES))
+    arm, load, path, ground_rate = np.zeros((4, 3)), np.zeros(4), np.zeros(4), np.zeros(4)
+    belt, belt_rate, belt_pull = np.zeros(2), np.zeros(2), np.zeros(2)
+    sway, sway_rate, sway_acceleration = np.zeros(2), np.zeros(2), np.zeros(2)
+    right_side, solved = np.zeros(8), np.zeros(8)
     history = np.zeros((3, 4))  # of the accelerometer's low-pass: u', u'', y', y'' per axis
     decay = math.exp(-gain * step)
 
@@ -96,9 +162,8 @@ def run(p, pulling, head, head_step, reference, reference_step, start, step, ste
     hook_start = 0.0
     if pulled:
         hx, hy, _ = _to_heading(roll, pitch, pulling[HOOK_X], pulling[HOOK_Y], pulling[HOOK_Z])
-        cy0, sy0 = math.cos(yaw), math.sin(yaw)
-        hook_start = pulling[PULL_X] * (x + cy0 * hx - sy0 * hy) + pulling[PULL_Y] * (y + sy0 * hx + cy0 * hy)
-    head_last, reference_last = head.shape[0] - 1, reference.shape[0] - 1
+        hook_start = hook_position(pulling, x, y, yaw, hx, hy)
+    reference_last = reference.shape[0] - 1
 
     row = 0
     for n in range(steps + 1):
@@ -114,50 +179,74 @@ def run(p, pulling, head, head_step, reference, reference_step, start, step, ste
         fx, fy, fz = 0.0, 0.0, 0.0
         tx, ty, tz = 0.0, 0.0, 0.0
         any_sliding = 0.0
+        belt_pull[0] = belt_pull[1] = 0.0
+        cyaw, syaw = 1.0, 0.0
+        if uneven or pulled:
+            cyaw, syaw = math.cos(yaw), math.sin(yaw)
         for i in range(4):
             a, b, c = p[POINTS + 3 * i], p[POINTS + 3 * i + 1], p[POINTS + 3 * i + 2]
+            side = 0 if b > 0.0 else 1
             rx, ry, rz = cp * a + r01 * b + r02 * c, cr * b + r12 * c, -sp * a + r21 * b + r22 * c
+            arm[i, 0], arm[i, 1], arm[i, 2] = rx, ry, rz
             hub_x, hub_y, hub_z = ue + oy * rz - oz * ry, ve + oz * rx - ox * rz, we + ox * ry - oy * rx
-            normal = -kz * (z + rz) - dz * hub_z
-            if (lift and normal < 0.0) or (lift and z + rz > 0.0):
-                normal = 0.0
+            rate = rate_left if side == 0 else rate_right
+            rim = radius * rate
+            depth, sinking = -(z + rz), -hub_z
+            if uneven:
+                angle = angle_left if side == 0 else angle_right
+                level, change = floor_height(
+                    e, floor, i, path[i], contact_speed(hub_x, hub_y), angle, rate,
+                    x + cyaw * rx - syaw * ry, y + syaw * rx + cyaw * ry,
+                    cyaw * hub_x - syaw * hub_y, syaw * hub_x + cyaw * hub_y,
+                )  # fmt: skip
+                depth, sinking = depth + level, sinking + change
+                ground_rate[i] = change
+            normal = kz * depth + dz * sinking
+            if beside:
+                normal += element_force(depth, sinking, hidden_z[i], kz, kz / ky, 0.0, False, e)
+            if lift:
+                normal = _lifted(normal, depth)
             load[i] = normal
             weight = max(normal, 0.0) * p[GRIPPING + i]
-            rim = radius * (rate_left if b > 0.0 else rate_right)
-            slip_x = hub_x - rim
-            share_x, share_y = grip_shares(rim, slip_x, hub_y, lambda_max)
-            grip[i, 0], grip[i, 1] = mu_k * share_x * weight, mu_k * share_y * weight
-            limit = mu_s * share_x * weight
+            slip[i, 0], slip[i, 1] = hub_x - rim, hub_y
+            if stretching:
+                slip[i, 0] -= belt_rate[side]
+            share_x, share_y = 1.0, 1.0
+            if coupling != 0.0:
+                share_x, share_y = grip_shares(rim, slip[i, 0], hub_y, lambda_max)
+                share_x, share_y = 1.0 - coupling * (1.0 - share_x), 1.0 - coupling * (1.0 - share_y)
+            mu_s, mu_k = p[MU_STATIC], p[MU_KINETIC]
+            if load_law:
+                mu_s, mu_k = (
+                    _load_law(mu_s, weight, nominal_load, e[LOAD_EXPONENT]),
+                    _load_law(mu_k, weight, nominal_load, e[LOAD_EXPONENT]),
+                )
+            release = drag_share
+            if falling:  # friction over speed takes the place of the relay's lower limit, and acts while sliding
+                speed = contact_speed(contact[i, 0], contact[i, 1])
+                mu_k, release = _stribeck(mu_s, e[KINETIC_SHARE], speed, e[STRIBECK_SPEED]), 1.0
+            beside_x, beside_y = 0.0, 0.0
+            if beside:
+                beside_x = element_force(
+                    deflection[i, 0], slip[i, 0] - contact[i, 0], hidden[i, 0], kx, kx / ky, share_x_gap, True, e
+                )
+                beside_y = element_force(deflection[i, 1], hub_y - contact[i, 1], hidden[i, 1], ky, 1.0, 1.0, True, e)
+            limit, grip = mu_s * share_x * weight, mu_k * share_x * weight
             sliding[i, 0], contact[i, 0], force_x = contact_force(
-                deflection[i, 0],
-                sliding[i, 0],
-                contact[i, 0],
-                slip_x,
-                kx,
-                dx,
-                patch,
-                limit,
-                grip[i, 0],
-                drag_share * grip[i, 0],
-                step,
-            )
-            limit = mu_s * share_y * weight
+                deflection[i, 0], sliding[i, 0], contact[i, 0], slip[i, 0], beside_x, kx, dx, patch,
+                limit, grip, release * grip, step,
+            )  # fmt: skip
+            limit, grip = mu_s * share_y * weight, mu_k * share_y * weight
             sliding[i, 1], contact[i, 1], force_y = contact_force(
-                deflection[i, 1],
-                sliding[i, 1],
-                contact[i, 1],
-                hub_y,
-                ky,
-                dy,
-                patch,
-                limit,
-                grip[i, 1],
-                drag_share * grip[i, 1],
-                step,
-            )
-            arm[i, 0], arm[i, 1], arm[i, 2] = rx, ry, rz
+                deflection[i, 1], sliding[i, 1], contact[i, 1], hub_y, beside_y, ky, dy, patch,
+                limit, grip, release * grip, step,
+            )  # fmt: skip
             if sliding[i, 0] or sliding[i, 1]:
                 any_sliding += 1.0
+            if stretching:
+                belt_pull[side] += force_x
+            if e[ROLLING] != 0.0 and rim != 0.0:
+                force_x += _rolling(weight, hub_x, e[ROLLING])
             fx += force_x
             fy += force_y
             fz += normal
@@ -167,49 +256,66 @@ def run(p, pulling, head, head_step, reference, reference_step, start, step, ste
 
         tension, head_now = 0.0, 0.0
         if pulled:
-            position = t / head_step
-            k = min(int(position), head_last)
-            head_rate = 0.0
-            head_now = head[k]
-            if k < head_last:
-                head_rate = (head[k + 1] - head[k]) / head_step
-                head_now += (position - k) * (head[k + 1] - head[k])
-            cyaw, syaw = math.cos(yaw), math.sin(yaw)
+            head_now, head_rate = head_motion(head, head_step, t)
             pull_x, pull_y = pulling[PULL_X], pulling[PULL_Y]
-            hx, hy, hz = _to_heading(roll, pitch, pulling[HOOK_X], pulling[HOOK_Y], pulling[HOOK_Z])
             along_x, along_y = cyaw * pull_x + syaw * pull_y, -syaw * pull_x + cyaw * pull_y
-            hook = pull_x * (x + cyaw * hx - syaw * hy) + pull_y * (y + syaw * hx + cyaw * hy) - hook_start
+            hx, hy, hz = _to_heading(roll, pitch, pulling[HOOK_X], pulling[HOOK_Y], pulling[HOOK_Z])
+            hook = hook_position(pulling, x, y, yaw, hx, hy) - hook_start
             hook_rate = along_x * (ue + oy * hz - oz * hy) + along_y * (ve + oz * hx - ox * hz)
-            tension = pulling[CABLE_K] * (head_now - hook) + pulling[CABLE_D] * (head_rate - hook_rate)
-            if tension < 0.0 or head_now < hook:  # a cable never pushes
-                tension = 0.0
+            tension = cable_tension(pulling, head_now, head_rate, hook, hook_rate)
             fx += along_x * tension
             fy += along_y * tension
-            tx += -hz * along_y * tension
+            tx -= hz * along_y * tension
             ty += hz * along_x * tension
             tz += (hx * along_y - hy * along_x) * tension
-        if (
-            held
-        ):  # a fixture that keeps the robot from driving off and from turning, not from being pulled sideways
+        if held:  # a fixture that keeps the robot from driving off and from turning, not from being pulled sideways
             fx -= 1e6 * x + 2e4 * ue
             tz -= 1e5 * yaw + 2e3 * oz
 
         # accelerations; torque and rates in body axes
         body_x, body_y, body_z = cp * tx - sp * tz, r01 * tx + cr * ty + r21 * tz, r02 * tx + r12 * ty + r22 * tz
-        au, av, aw = fx / mass, fy / mass, fz / mass - gravity
-        force_u, force_v, force_w = au, av, aw + gravity
         if coriolis != 0.0:
-            au += coriolis * oz * ve
-            av -= coriolis * oz * ue
             lx = tensor[0] * pe + tensor[1] * qe + tensor[2] * re
             ly = tensor[3] * pe + tensor[4] * qe + tensor[5] * re
             lz = tensor[6] * pe + tensor[7] * qe + tensor[8] * re
             body_x -= coriolis * (qe * lz - re * ly)
             body_y -= coriolis * (re * lx - pe * lz)
             body_z -= coriolis * (pe * ly - qe * lx)
-        bx = inv[0] * body_x + inv[1] * body_y + inv[2] * body_z
-        by = inv[3] * body_x + inv[4] * body_y + inv[5] * body_z
-        bz = inv[6] * body_x + inv[7] * body_y + inv[8] * body_z
+        if swaying:
+            # forces along the body axes; gravity in them is (sp, r21, r22) times -g
+            fz_all = fz - mass * gravity
+            gx, gy, gz = sp * gravity, -r21 * gravity, -r22 * gravity
+            mast_mass = e[MAST_MASS]
+            right_side[0] = cp * fx - sp * fz_all
+            right_side[1] = r01 * fx + cr * fy + r21 * fz_all
+            right_side[2] = r02 * fx + r12 * fy + r22 * fz_all
+            right_side[3] = body_x + mast_mass * sway[1] * gz
+            right_side[4] = body_y - mast_mass * sway[0] * gz
+            right_side[5] = body_z + mast_mass * (sway[0] * gy - sway[1] * gx)
+            for j in range(2):
+                rate = sway_rate[j] + 0.5 * step * sway_acceleration[j]
+                right_side[6 + j] = _mast_force(sway[j], rate, mast_mass, e[MAST_HZ], e[MAST_DAMPING])
+            right_side[6] += mast_mass * gx
+            right_side[7] += mast_mass * gy
+            for j in range(8):
+                total = 0.0
+                for k in range(8):
+                    total += mast[j, k] * right_side[k]
+                solved[j] = total
+            au = cp * solved[0] + r01 * solved[1] + r02 * solved[2]
+            av = cr * solved[1] + r12 * solved[2]
+            aw = -sp * solved[0] + r21 * solved[1] + r22 * solved[2]
+            bx, by, bz = solved[3], solved[4], solved[5]
+            sway_acceleration[0], sway_acceleration[1] = solved[6], solved[7]
+        else:
+            au, av, aw = fx / mass, fy / mass, fz / mass - gravity
+            bx = inv[0] * body_x + inv[1] * body_y + inv[2] * body_z
+            by = inv[3] * body_x + inv[4] * body_y + inv[5] * body_z
+            bz = inv[6] * body_x + inv[7] * body_y + inv[8] * body_z
+        force_u, force_v, force_w = au, av, aw + gravity
+        if coriolis != 0.0:
+            au += coriolis * oz * ve
+            av -= coriolis * oz * ue
 
         # specific force at the accelerometer, body axes, through its low-pass (3.4)
         px, py, pz = p[SENSOR], p[SENSOR + 1], p[SENSOR + 2]
@@ -219,7 +325,8 @@ def run(p, pulling, head, head_step, reference, reference_step, start, step, ste
         ay = r01 * force_u + cr * force_v + r21 * force_w + bz * px - bx * pz + qe * centripetal - spin * py
         az = r02 * force_u + r12 * force_v + r22 * force_w + bx * py - by * px + re * centripetal - spin * pz
         if n == 0:
-            _settle(history, ax, ay, az)
+            for j in range(4):  # the low-pass starts as if the first value had always been there
+                history[0, j], history[1, j], history[2, j] = ax, ay, az
         ax = filter_step(history[0], ax, low_pass)
         ay = filter_step(history[1], ay, low_pass)
         az = filter_step(history[2], az, low_pass)
@@ -240,14 +347,35 @@ def run(p, pulling, head, head_step, reference, reference_step, start, step, ste
         kick = step if n > 0 else 0.5 * step
         u, v, w = u + kick * au, v + kick * av, w + kick * aw
         wx, wy, wz = wx + kick * bx, wy + kick * by, wz + kick * bz
+        if swaying:
+            for j in range(2):
+                sway_rate[j] += kick * sway_acceleration[j]
+                sway[j] += step * sway_rate[j]
+        if stretching:
+            for j in range(2):
+                # the tire pulls the rim along with minus its force on the hub; a light rim asks for the implicit form
+                pushed = belt_rate[j] - kick / e[RIM_MASS] * (
+                    belt_pull[j] - _belt_force(belt[j], 0.0, e[BELT_STIFFNESS], 0.0)
+                )
+                belt_rate[j] = pushed / (1.0 + kick * e[BELT_DAMPING] / e[RIM_MASS])
+                belt[j] += step * belt_rate[j]
         # carcasses follow the hubs half a step on
         ox, oy, oz = cp * wx + r01 * wy + r02 * wz, cr * wy + r12 * wz, -sp * wx + r21 * wy + r22 * wz
         for i in range(4):
             rx, ry, rz = arm[i, 0], arm[i, 1], arm[i, 2]
+            side = 0 if p[POINTS + 3 * i + 1] > 0.0 else 1
             hub_x, hub_y = u + oy * rz - oz * ry, v + oz * rx - ox * rz
-            rim = radius * (rate_left if p[POINTS + 3 * i + 1] > 0.0 else rate_right)
-            deflection[i, 0] += step * (hub_x - rim - contact[i, 0])
+            slip_x = hub_x - radius * (rate_left if side == 0 else rate_right)
+            if stretching:
+                slip_x -= belt_rate[side]
+            deflection[i, 0] += step * (slip_x - contact[i, 0])
             deflection[i, 1] += step * (hub_y - contact[i, 1])
+            if uneven:
+                path[i] += step * contact_speed(hub_x, hub_y)
+            if beside:
+                element_advance(hidden[i, 0], slip_x - contact[i, 0], step, True, e)
+                element_advance(hidden[i, 1], hub_y - contact[i, 1], step, True, e)
+                element_advance(hidden_z[i], ground_rate[i] - (w + ox * ry - oy * rx), step, False, e)
         # drift: pose rates with the angles half a step ahead
         cr, sr = math.cos(roll + 0.5 * step * roll_rate), math.sin(roll + 0.5 * step * roll_rate)
         half_pitch = pitch + 0.5 * step * pitch_rate
@@ -263,8 +391,9 @@ def run(p, pulling, head, head_step, reference, reference_step, start, step, ste
         pitch += step * pitch_rate
         yaw += step * yaw_rate
         # motors hold their speed whatever the load (6.1): exact for a constant wish
-        position = t / reference_step
-        k = min(int(position), reference_last)
+        k = min(int(t / reference_step + 1e-9), reference_last)
+        angle_left += step * rate_left
+        angle_right += step * rate_right
         rate_left = reference[k, 0] + (rate_left - reference[k, 0]) * decay
         rate_right = reference[k, 1] + (rate_right - reference[k, 1]) * decay
     return -1
@@ -276,12 +405,3 @@ def _to_heading(roll, pitch, a, b, c):
     cr, sr, cp, sp = math.cos(roll), math.sin(roll), math.cos(pitch), math.sin(pitch)
     across = sr * b + cr * c
     return cp * a + sp * across, cr * b - sr * c, -sp * a + cp * across
-
-
-@kernel
-def _settle(history, ax, ay, az):
-    """Let the low-pass start as if the first value had always been there."""
-    for j in range(4):
-        history[0, j] = ax
-        history[1, j] = ay
-        history[2, j] = az

@@ -7,12 +7,27 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ssmr_ident.core.errors import SimulationError
+from ssmr_ident.core.errors import InputError, SimulationError
 from ssmr_ident.core.recording import Channel, Provenance, Recording
+from ssmr_ident.physics.effect import Site
+from ssmr_ident.physics.effects import CATALOGUE, ground_roughness
 from ssmr_ident.physics.robot import GRAVITY, Robot
 from ssmr_ident.physics.sensor import low_pass_coefficients
+from ssmr_ident.physics.slots import CUBIC, Effects, checked, effect_vector
 from ssmr_ident.physics.statics import rest_pose, tilt
 from ssmr_ident.simulate import robot_kernel as k
+from ssmr_ident.simulate.pulling import (
+    CABLE_D,
+    CABLE_K,
+    HELD,
+    HOOK_X,
+    HOOK_Y,
+    HOOK_Z,
+    PULL_X,
+    PULL_Y,
+    PULLED,
+    PULLING,
+)
 from ssmr_ident.simulate.scenarios import Scenario
 
 _UNITS = ["m/s^2"] * 3 + ["rad/s"] * 3 + ["m"] * 3 + ["rad"] * 3 + ["m/s"] * 2
@@ -50,9 +65,7 @@ class Simulation:
         return Recording(self.time, channels, Provenance(f"simulated {self.scenario.experiment}", "", "simulator"))
 
     def __str__(self) -> str:
-        lines = [
-            f"{self.scenario.experiment}: {len(self.time)} samples, {self.time[-1]:g} s, step {self.step:g} s"
-        ]
+        lines = [f"{self.scenario.experiment}: {len(self.time)} samples, {self.time[-1]:g} s, step {self.step:g} s"]
         for name in ("ax", "ay", "az", "force"):
             lines.append(f"  {name:<6} {self[name].min():>10.4g} … {self[name].max():.4g} {UNITS[name]}")
         return "\n".join(lines)
@@ -63,9 +76,8 @@ def simulate(
     scenario: Scenario,
     sample_rate: float = 1000.0,
     step: float = 1e-4,
+    effects: Effects | None = None,
     release_drag: float = 0.0,
-    wheel_lift: bool = False,
-    coriolis: float = 0.0,
 ) -> Simulation:
     """Integrate a scenario.
 
@@ -77,32 +89,40 @@ def simulate(
         Of the stored output.
     step : float [s]
         Upper limit of the integration step; it is shortened so that a sample is a whole number of steps.
+    effects : mapping of effect id to mapping of parameter to value
+        Physics beyond the baseline; parameters left out take their nominal values.
     release_drag : float
         Share of the kinetic friction that acts while a contact slides: 0 is the thesis' (6.4), 1 is (6.4) with the
         term that the thesis drops.
-    wheel_lift : bool
-        Wheels cannot pull on the floor, eq (4.15).
-    coriolis : float
-        Share of the term M·V̂·V of (2.65): 0 as in section 6.1, 1 in full.
 
     Raises
     ------
     SimulationError
-        A state was no longer finite; says when.
+        A state was no longer finite; says when, and with which effects and parameters.
+    InputError
+        An unknown effect or parameter.
     """
+    active = checked(effects or {})
+    e = effect_vector(active)
+    for effect_id, values in active.items():
+        change = CATALOGUE[effect_id].acts.get(Site.ROBOT)
+        if change and not CATALOGUE[effect_id].is_off(values):
+            robot = change(robot, **values)
     stride = max(1, math.ceil(1.0 / (sample_rate * step) - 1e-9))
     step = 1.0 / (sample_rate * stride)
     samples = round(scenario.duration * sample_rate)
-    p = pack_robot(robot, scenario, release_drag, wheel_lift, coriolis)
     out = np.empty((samples, len(k.OUTPUTS)))
     failed = k.run(
-        p,
-        _pulling(robot, scenario),
+        pack_robot(robot, scenario, release_drag),
+        e,
+        _floor(active),
+        _mast(robot, active),
+        _pulling(robot, scenario, active),
         scenario.head if len(scenario.head) else np.zeros(1),
         scenario.head_step,
         scenario.wheel_rates,
         scenario.wheel_rate_step,
-        _start(robot, scenario),
+        _start(robot, scenario, float(e[CUBIC])),
         step,
         (samples - 1) * stride,
         stride,
@@ -111,22 +131,32 @@ def simulate(
     )
     if failed >= 0:
         raise SimulationError(
-            f"{scenario.experiment} left the finite numbers at t = {failed * step:.4g} s (step {step:g} s); "
-            f"mass {robot.mass:g} kg, tire stiffness {robot.stiffness.tolist()}, damping {robot.damping.tolist()}"
+            f"{scenario.experiment} left the finite numbers at t = {failed * step:.4g} s (step {step:g} s) with "
+            f"effects {active or 'none'}; mass {robot.mass:g} kg, tire stiffness {robot.stiffness.tolist()} N/m, "
+            f"damping {robot.damping.tolist()} N s/m. Check these values, or take a shorter step"
         )
-    return Simulation(np.arange(samples) / sample_rate, out, k.OUTPUTS, scenario, step)
+    time = np.arange(samples) / sample_rate
+    return Simulation(time, _sensed(time, out, active), k.OUTPUTS, scenario, step)
 
 
-def pack_robot(
-    robot: Robot, scenario: Scenario, release_drag: float, wheel_lift: bool, coriolis: float
-) -> np.ndarray:
+def _sensed(time: np.ndarray, out: np.ndarray, active: Effects) -> np.ndarray:
+    """What the sensor effects make of the motion, in the order of the catalogue."""
+    for effect_id, values in active.items():
+        change = CATALOGUE[effect_id].acts.get(Site.OUTPUT)
+        if change and not CATALOGUE[effect_id].is_off(values):
+            channels = {name: out[:, index] for index, name in enumerate(k.OUTPUTS)}
+            out = np.column_stack(list(change(time, channels, **values).values()))
+    return out
+
+
+def pack_robot(robot: Robot, scenario: Scenario, release_drag: float = 0.0) -> np.ndarray:
     """The kernel's parameter vector."""
     p = np.zeros(k.PARAMETERS)
     p[k.MASS], p[k.PATCH_MASS], p[k.RADIUS] = robot.mass, robot.effective_mass, robot.radius
     p[k.KX : k.KZ + 1], p[k.DX : k.DZ + 1] = robot.stiffness, robot.damping
     p[k.MU_STATIC], p[k.MU_KINETIC], p[k.LAMBDA_MAX] = robot.mu_static, robot.mu_kinetic, robot.lambda_max
-    p[k.MOTOR_GAIN], p[k.GRAVITY_G] = robot.motor_gain, GRAVITY
-    p[k.RELEASE_DRAG], p[k.WHEEL_LIFT], p[k.CORIOLIS] = release_drag, float(wheel_lift), coriolis
+    p[k.SLIP_COUPLING], p[k.MOTOR_GAIN], p[k.GRAVITY_G] = robot.slip_coupling, robot.motor_gain, GRAVITY
+    p[k.RELEASE_DRAG] = release_drag
     p[k.SENSOR : k.SENSOR + 3] = robot.accelerometer.position
     p[k.POINTS : k.POINTS + 12] = robot.contact_points.ravel()
     p[k.INVERSE_INERTIA : k.INVERSE_INERTIA + 9] = np.linalg.inv(robot.inertia).ravel()
@@ -135,8 +165,38 @@ def pack_robot(
     return p
 
 
-def _pulling(robot: Robot, scenario: Scenario) -> np.ndarray:
-    q = np.zeros(k.PULLING)
+def _floor(active: Effects) -> np.ndarray:
+    values = active.get("ground_roughness")
+    if not values or values["height_m"] == 0.0:
+        return np.zeros((1, 1))
+    return ground_roughness.field(values["height_m"], values["length_m"], values["seed"])
+
+
+def _mast(robot: Robot, active: Effects) -> np.ndarray:
+    """Inverse mass matrix of body and swaying mast in body axes; total mass and inertia hold with it locked."""
+    values = active.get("flexible_mast")
+    if not values or math.isinf(values["f_mast_Hz"]):
+        return np.eye(8)
+    mass, height = values["mass_kg"], values["height_above_com_m"]
+    matrix = np.zeros((8, 8))
+    matrix[:3, :3] = robot.mass * np.eye(3)
+    matrix[3:6, 3:6] = robot.inertia
+    matrix[6:, 6:] = mass * np.eye(2)
+    coupling = np.zeros((6, 2))
+    coupling[0, 0] = coupling[1, 1] = mass
+    coupling[4, 0], coupling[3, 1] = mass * height, -mass * height  # p × e_x and p × e_y with p = (0, 0, height)
+    matrix[:6, 6:], matrix[6:, :6] = coupling, coupling.T
+    if np.linalg.eigvalsh(matrix)[0] <= 0.0:
+        raise InputError(
+            "effects: flexible_mast",
+            f"{mass:g} kg at {height:g} m is more than the robot's mass and inertia hold",
+            "Give a lighter or lower mast",
+        )
+    return np.linalg.inv(matrix)
+
+
+def _pulling(robot: Robot, scenario: Scenario, active: Effects) -> np.ndarray:
+    q = np.zeros(PULLING)
     if scenario.experiment != "pull":
         return q
     stiffness = scenario.cable_stiffness or robot.cable_stiffness
@@ -144,18 +204,23 @@ def _pulling(robot: Robot, scenario: Scenario) -> np.ndarray:
     if damping is None:  # thesis section 4: 4 sqrt(m K)
         own = scenario.cable_stiffness is None
         damping = robot.cable_damping if own else 4.0 * math.sqrt(robot.mass * stiffness)
-    q[k.PULLED], q[k.CABLE_K], q[k.CABLE_D], q[k.HELD] = 1.0, stiffness, damping, float(scenario.held)
-    q[k.PULL_X], q[k.PULL_Y] = (0.0, 1.0) if scenario.direction == "lateral" else (-1.0, 0.0)
+    for effect_id, values in active.items():
+        change = CATALOGUE[effect_id].acts.get(Site.PULL)
+        if change:
+            softer = change(stiffness, **values)
+            damping, stiffness = damping * math.sqrt(softer / stiffness), softer
+    q[PULLED], q[CABLE_K], q[CABLE_D], q[HELD] = 1.0, stiffness, damping, float(scenario.held)
+    q[PULL_X], q[PULL_Y] = (0.0, 1.0) if scenario.direction == "lateral" else (-1.0, 0.0)
     # the hook sits above the contact points, on the side that is pulled; its height counts from the unloaded floor
-    q[k.HOOK_X] = 0.0 if scenario.direction == "lateral" else float(robot.contact_points[:, 0].min())
-    q[k.HOOK_Y] = robot.half_track if scenario.direction == "lateral" else 0.0
-    q[k.HOOK_Z] = scenario.height - robot.height
+    q[HOOK_X] = 0.0 if scenario.direction == "lateral" else float(robot.contact_points[:, 0].min())
+    q[HOOK_Y] = robot.half_track if scenario.direction == "lateral" else 0.0
+    q[HOOK_Z] = scenario.height - robot.height
     return q
 
 
-def _start(robot: Robot, scenario: Scenario) -> np.ndarray:
+def _start(robot: Robot, scenario: Scenario, cubic: float) -> np.ndarray:
     """Rest, displaced and pushed as the scenario says; the tires were set down unstressed at rest."""
-    height, roll, pitch = rest_pose(robot)
+    height, roll, pitch = rest_pose(robot, cubic)
     offset, velocity = scenario.offset, scenario.velocity
     pose = np.array([0.0, 0.0, height, roll, pitch, 0.0])
     pose += [offset.get(name, 0.0) for name in ("x", "y", "z", "roll", "pitch", "yaw")]

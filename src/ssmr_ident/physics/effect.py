@@ -1,0 +1,93 @@
+"""A left-out piece of physics as a value: what it is, its parameters, and where it acts on the simulator."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from enum import Enum
+from typing import Any
+
+from ssmr_ident.core.parameter import Parameter
+
+
+class Site(Enum):
+    """Where an effect enters. Kernel sites are compiled into the one simulator; the others change values.
+
+    ==========  ======================================================================================
+    ELEMENT     ``force(s, v, z, ...)``: further force of one tire or rig spring [N], against s [m], v [m/s]
+    STATE       ``advance(z, s, v, step, ...)``: the element's hidden state one step later
+    FRICTION    ``coefficient(mu, ...)``: friction coefficient of a contact
+    GROUND      ``height(...)``: height of the floor under a wheel [m]
+    BODY        extra bodies and terms of the equations of motion
+    ROBOT       ``change(robot, **parameters)``: another robot value
+    PULL        ``change(stiffness, **parameters)``: another cable
+    OUTPUT      ``change(time, channels, **parameters)``: what the sensor makes of the motion
+    ==========  ======================================================================================
+    """
+
+    ELEMENT = "element"
+    STATE = "state"
+    FRICTION = "friction"
+    GROUND = "ground"
+    BODY = "body"
+    ROBOT = "robot"
+    PULL = "pull"
+    OUTPUT = "output"
+
+
+@dataclass(frozen=True, eq=False)
+class Effect:
+    """One effect of the catalogue.
+
+    Parameters
+    ----------
+    id : str
+        Fixed name, as in the catalogue file.
+    sentence : str
+        What it is, for a reader who is no specialist.
+    equation : str
+        TeX.
+    source : str
+        Where the formula is from.
+    signature : str
+        How it shows in a recording.
+    parameters : tuple of Parameter
+        Those with ``off`` switch the effect off when all of them are at it: the baseline is nested exactly.
+    experiments : tuple of str
+        In which it can be seen.
+    acts : mapping of Site to function
+    rig : bool
+        Whether it also acts on a rig with one mass.
+    """
+
+    id: str
+    sentence: str
+    equation: str
+    source: str
+    signature: str
+    parameters: tuple[Parameter, ...]
+    experiments: tuple[str, ...]
+    acts: Mapping[Site, Callable[..., Any] | None] = field(default_factory=dict)
+    rig: bool = False
+
+    @property
+    def amplitudes(self) -> tuple[Parameter, ...]:
+        """The parameters that switch it off."""
+        return tuple(parameter for parameter in self.parameters if parameter.off is not None)
+
+    def values(self, given: Mapping[str, float] | None = None) -> dict[str, float]:
+        """All parameters: the given ones, nominal for the rest."""
+        return {p.name: float((given or {}).get(p.name, p.nominal)) for p in self.parameters}
+
+    def is_off(self, values: Mapping[str, float]) -> bool:
+        return all(values[parameter.name] == parameter.off for parameter in self.amplitudes)
+
+    def __str__(self) -> str:
+        lines = [f"{self.id}: {self.sentence}", f"  {self.equation}", f"  signature: {self.signature}"]
+        lines += [
+            f"  {p.name} [{p.unit}]  nominal {p.nominal:g}, {p.lower:g} … {p.upper:g}"
+            + (f", off at {p.off:g}" if p.off is not None else "")
+            + (f"  {p.meaning}" if p.meaning else "")
+            for p in self.parameters
+        ]
+        return "\n".join([*lines, f"  seen in: {', '.join(self.experiments)}", f"  source: {self.source}"])

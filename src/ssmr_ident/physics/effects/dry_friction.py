@@ -1,0 +1,45 @@
+"""Coulomb friction beside the spring, with the small elastic travel that real contacts have."""
+
+from __future__ import annotations
+
+import math
+
+from ssmr_ident.core.kernel import kernel
+from ssmr_ident.core.parameter import Parameter
+from ssmr_ident.physics.effect import Effect, Site
+
+
+@kernel
+def force(z, stiffness):
+    """k·z [N] of the elastic-plastic element; z : float [m], k : float [N/m]."""
+    return stiffness * z
+
+
+@kernel
+def advance(z, v, step, friction, stiffness):
+    """Dahl's law dz/dt = v - |v| k z/F_c over one step at constant v, exactly.
+
+    z : float [m], v : float [m/s], friction : float [N], stiffness : float [N/m].
+    """
+    speed = abs(v)
+    if speed == 0.0:
+        return z
+    end = math.copysign(friction / stiffness, v)
+    return end + (z - end) * math.exp(-speed * step * stiffness / friction)
+
+
+EFFECT = Effect(
+    id="dry_friction",
+    sentence="Dry friction opposes every motion with the same force, however slow it is.",
+    equation=r"F = k z,\quad \dot z = v - |v|\,k z/F_c",
+    source="P. R. Dahl, A solid friction model, Aerospace Corp. TOR-0158, 1968; "
+    "Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30(7), 1994",
+    signature="a decay falls along a straight line and stops dead; damping ratio grows as the amplitude falls",
+    parameters=(
+        Parameter("F_c_N", "N", 1.0, 0.0, 200.0, "friction of one tire and axis, or of the rig", off=0.0),
+        Parameter("element_stiffness_N_m", "N/m", 3e5, 1e2, 1e8, "elastic travel before it slides"),
+    ),
+    experiments=("free_response", "forced"),
+    acts={Site.ELEMENT: force, Site.STATE: advance},
+    rig=True,
+)

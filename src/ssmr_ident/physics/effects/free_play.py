@@ -1,0 +1,43 @@
+"""Play: a joint or gear without stiffness within a gap."""
+
+from __future__ import annotations
+
+from ssmr_ident.core.kernel import kernel
+from ssmr_ident.core.parameter import Parameter
+from ssmr_ident.physics.effect import Effect, Site
+
+
+@kernel
+def force(s, stiffness, gap, rounding):
+    """What the gap takes off the elastic K·s [N].
+
+    Inside ± gap/2 the spring does nothing; the corners are rounded over ``rounding``·gap.
+    s, gap : float [m], stiffness : float [N/m].
+    """
+    half = 0.5 * gap
+    width = rounding * gap
+    beyond = abs(s) - half
+    if beyond <= -width:
+        taken = abs(s)
+    elif beyond >= width:
+        taken = half
+    else:
+        taken = abs(s) - (beyond + width) ** 2 / (4.0 * width)
+    return -stiffness * (taken if s >= 0.0 else -taken)
+
+
+EFFECT = Effect(
+    id="free_play",
+    sentence="A joint has play: within a gap nothing holds it.",
+    equation=r"F = K\,\mathrm{dz}(s),\quad \mathrm{dz}(s) = s - \mathrm{sign}(s)\min(|s|, g/2)",
+    source="Nayfeh and Mook, Nonlinear Oscillations, Wiley 1979, section 2.1 (piecewise linear springs)",
+    signature="natural frequency falls as the amplitude comes down to the gap; a flat middle in the restoring force",
+    parameters=(
+        Parameter("gap_m", "m", 2e-4, 0.0, 0.02, "full width", off=0.0),
+        Parameter("rounding", "1", 0.1, 1e-3, 0.5, "share of the gap over which its corners are rounded"),
+        Parameter("share_x", "1", 1.0, 0.0, 1.0, "gap along x as a share of that along y (robot)"),
+    ),
+    experiments=("free_response", "forced", "pull"),
+    acts={Site.ELEMENT: force},
+    rig=True,
+)

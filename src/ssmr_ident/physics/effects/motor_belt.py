@@ -1,0 +1,31 @@
+"""Drive belts that stretch."""
+
+from __future__ import annotations
+
+import math
+
+from ssmr_ident.core.kernel import kernel
+from ssmr_ident.core.parameter import Parameter
+from ssmr_ident.physics.effect import Effect, Site
+
+
+@kernel
+def force(stretch, rate, stiffness, damping):
+    """-K_b·b - D_b·b' [N] at the rim of one side's wheels; stretch b : float [m], rate : float [m/s]."""
+    return -stiffness * stretch - damping * rate
+
+
+EFFECT = Effect(
+    id="motor_belt",
+    sentence="The belt between motor and wheels stretches, on each side of the robot.",
+    equation=r"m_b\ddot b = -K_b b - D_b\dot b + \sum_{side} F_x",
+    source="Thesis eq (3.8), (4.14): tire and belt in series",
+    signature="softer along x, in pitch and in longitudinal pulls, with a resonance of the wheels on the belt",
+    parameters=(
+        Parameter("K_b_N_m", "N/m", 2e4, 500.0, math.inf, "of one side, seen at the rim", off=math.inf),
+        Parameter("D_b_N_s_m", "N s/m", 50.0, 0.0, 1e4, "of one side"),
+        Parameter("rim_mass_kg", "kg", 1.0, 0.05, 20.0, "inertia of one side's wheels over radius squared"),
+    ),
+    experiments=("free_response", "pull", "swivel"),
+    acts={Site.BODY: force},
+)

@@ -1,0 +1,26 @@
+"""Stiffness that changes with deflection: hardening or softening."""
+
+from __future__ import annotations
+
+from ssmr_ident.core.kernel import kernel
+from ssmr_ident.core.parameter import Parameter
+from ssmr_ident.physics.effect import Effect, Site
+
+
+@kernel
+def force(s, k3):
+    """k3·s³ [N]; s : float [m], k3 : float [N/m^3]. Duffing's spring, thesis section 3.3 (15 to 21 kN/m)."""
+    return k3 * s * s * s
+
+
+EFFECT = Effect(
+    id="nonlinear_stiffness",
+    sentence="The tires (or the rig's spring) stiffen or soften as they are pressed.",
+    equation=r"F = K s + k_3 s^3",
+    source="Thesis section 3.3; Kovacic and Brennan, The Duffing Equation, Wiley 2011",
+    signature="natural frequency rises (hardening) or falls (softening) with amplitude; third harmonic",
+    parameters=(Parameter("k3_N_m3", "N/m^3", 5e8, -1e10, 1e11, "cubic stiffness of one spring", off=0.0),),
+    experiments=("free_response", "pull", "wheel_drag", "vertical_compression", "forced"),
+    acts={Site.ELEMENT: force},
+    rig=True,
+)

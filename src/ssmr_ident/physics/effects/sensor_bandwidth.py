@@ -1,0 +1,32 @@
+"""A sensor slower than its sheet says."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from ssmr_ident.core.parameter import Parameter
+from ssmr_ident.physics.effect import Effect, Site
+
+if TYPE_CHECKING:
+    from ssmr_ident.physics.robot import Robot
+
+
+def change(robot: Robot, bandwidth_hz: float) -> Robot:
+    """The slower of two sensors decides."""
+    sensor = robot.accelerometer
+    return robot.with_changes(accelerometer=replace(sensor, bandwidth_hz=min(sensor.bandwidth_hz, bandwidth_hz)))
+
+
+EFFECT = Effect(
+    id="sensor_bandwidth",
+    sentence="The accelerometer is slower than its data sheet says.",
+    equation=r"H(s) = \frac{1}{1 + \sqrt{2}\,s/\omega_b + (s/\omega_b)^2}",
+    source="Data sheet SCA620 (80 Hz); second-order Butterworth",
+    signature="high frequencies smaller and late: phase and amplitude fall together",
+    parameters=(Parameter("bandwidth_hz", "Hz", 40.0, 1.0, math.inf, "-3 dB point", off=math.inf),),
+    experiments=("free_response", "swivel", "forced"),
+    acts={Site.ROBOT: change},
+    rig=True,
+)

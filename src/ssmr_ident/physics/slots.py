@@ -1,0 +1,86 @@
+"""Where each kernel-level effect parameter sits in the simulator's effect vector."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from ssmr_ident.core.errors import InputError, did_you_mean
+from ssmr_ident.physics.effects import CATALOGUE
+
+SLOTS = (
+    "nonlinear_stiffness.k3_N_m3",
+    "quadratic_damping.d2_N_s2_m2",
+    "dry_friction.F_c_N",
+    "dry_friction.element_stiffness_N_m",
+    "hysteresis.alpha",
+    "hysteresis.yield_m",
+    "viscoelastic_relaxation.K_m_N_m",
+    "viscoelastic_relaxation.tau_s",
+    "free_play.gap_m",
+    "free_play.rounding",
+    "free_play.share_x",
+    "stribeck.kinetic_share",
+    "stribeck.stribeck_velocity_m_s",
+    "load_sensitive_friction.exponent",
+    "rolling_resistance.c_rr",
+    "ground_joints.depth_m",
+    "ground_joints.pitch_m",
+    "ground_joints.width_m",
+    "wheel_eccentricity.eccentricity_m",
+    "ground_roughness.height_m",
+    "wheel_lift.active",
+    "coriolis.share",
+    "flexible_mast.f_mast_Hz",
+    "flexible_mast.mass_kg",
+    "flexible_mast.height_above_com_m",
+    "flexible_mast.damping_ratio",
+    "motor_belt.K_b_N_m",
+    "motor_belt.D_b_N_s_m",
+    "motor_belt.rim_mass_kg",
+)
+CUBIC, QUADRATIC, FRICTION_FORCE, FRICTION_STIFFNESS, ALPHA, YIELD = range(6)
+RELAXATION_STIFFNESS, RELAXATION_TIME, GAP, GAP_ROUNDING, GAP_SHARE_X = range(6, 11)
+KINETIC_SHARE, STRIBECK_SPEED, LOAD_EXPONENT, ROLLING = range(11, 15)
+JOINT_DEPTH, JOINT_PITCH, JOINT_WIDTH, ECCENTRICITY, ROUGHNESS = range(15, 20)
+LIFT, CORIOLIS, MAST_HZ, MAST_MASS, MAST_HEIGHT, MAST_DAMPING = range(20, 26)
+BELT_STIFFNESS, BELT_DAMPING, RIM_MASS = range(26, 29)
+
+Effects = Mapping[str, Mapping[str, float]]
+
+
+def checked(effects: Effects) -> dict[str, dict[str, float]]:
+    """All parameters of the given effects, nominal where none is given.
+
+    Raises
+    ------
+    InputError
+        An unknown effect or parameter, or a value out of bounds.
+    """
+    result = {}
+    for effect_id, given in effects.items():
+        if effect_id not in CATALOGUE:
+            raise InputError(f"effects: {effect_id}", "is no known effect", did_you_mean(effect_id, CATALOGUE))
+        effect = CATALOGUE[effect_id]
+        bounds = {p.name: p for p in effect.parameters}
+        for name, value in given.items():
+            if name not in bounds:
+                where = f"effects: {effect_id}.{name}"
+                raise InputError(where, "is no parameter of this effect", did_you_mean(name, bounds))
+            if not bounds[name].lower <= value <= bounds[name].upper:
+                limits = f"{bounds[name].lower:g} … {bounds[name].upper:g} {bounds[name].unit}"
+                raise InputError(f"effects: {effect_id}.{name}", f"is {value:g}, expected {limits}")
+        result[effect_id] = effect.values(given)
+    return result
+
+
+def effect_vector(effects: Mapping[str, Mapping[str, float]]) -> np.ndarray:
+    """(len(SLOTS),) float: everything off but the given effects, whose values are complete."""
+    vector = np.empty(len(SLOTS))
+    for index, slot in enumerate(SLOTS):
+        effect_id, name = slot.split(".")
+        parameter = next(p for p in CATALOGUE[effect_id].parameters if p.name == name)
+        off = parameter.nominal if parameter.off is None else parameter.off
+        vector[index] = effects[effect_id][name] if effect_id in effects else off
+    return vector
