@@ -122,7 +122,7 @@ def take_apart(position: Array, force: Array) -> Pull:
     noise = noise_of(force)
     first = first_rise(ramps, noise)
     peak = float(np.max(median_filter(force, size=5)))
-    teeth = _teeth(ramps, first, noise, force)
+    teeth = _teeth(ramps, first, noise, position, force)
     slides_from = _sliding_start(ramps, first, noise)
     zero, zero_std = _before(ramps, first, force)
     tail = force[slides_from:]
@@ -177,16 +177,25 @@ def first_rise(ramps: tuple[Ramp, ...], noise: float) -> Ramp:
     return max(rising, key=lambda ramp: ramp.force_end - ramp.force_start)
 
 
-def _teeth(ramps: tuple[Ramp, ...], first: Ramp, noise: float, force: Array) -> tuple[Tooth, ...]:
+def _teeth(
+    ramps: tuple[Ramp, ...], first: Ramp, noise: float, position: Array, force: Array
+) -> tuple[Tooth, ...]:
     after = [ramp for ramp in ramps if ramp.first >= first.first]
     # A stretch that falls faster than the spring rises is the letting go itself.
     steady = [ramp for ramp in after if ramp.slope > -first.slope and ramp.samples >= 4]
     found = []
-    for before, following in pairwise(steady):
-        peak, trough = before.force_end, following.force_start
-        gap = force[max(before.last - 2, 0) : following.first + 3]
-        if len(gap):
-            peak, trough = max(peak, float(np.max(gap)) - 2 * noise), min(trough, float(np.min(gap)) + 2 * noise)
+    for before, following in zip(steady[:-1], steady[1:], strict=True):
+        begin, end = max(before.last - 2, 0), min(following.first + 3, len(force))
+        gap = force[begin:end]
+        # A drop of one sample still makes a stretch of three, which takes samples off its neighbours: both lines
+        # are carried on to where the force falls most, halfway between two samples.
+        fall = begin + int(np.argmin(np.diff(gap)))
+        at = float(position[fall] + position[fall + 1]) / 2
+        peak = before.force_end + before.slope * (at - before.x_end)
+        trough = following.force_start + following.slope * (at - following.x_start)
+        peak = float(np.clip(peak, np.max(gap) - 2 * noise, np.max(gap) + 2 * noise))
+        # no upper limit here: a single low sample is the body's swing, not the friction it grips again at
+        trough = max(trough, float(np.min(gap)) - 2 * noise)
         grips = 0.4 * first.slope < following.slope < 2.5 * first.slope
         # 2 % of the level: below it a tooth says nothing about two friction coefficients.
         if before.force_end - following.force_start > max(5 * noise, 0.02 * abs(peak)) and grips:
