@@ -184,7 +184,7 @@ def _teeth(
     # A stretch that falls faster than the spring rises is the letting go itself.
     steady = [ramp for ramp in after if ramp.slope > -first.slope and ramp.samples >= 4]
     found = []
-    for before, following in zip(steady[:-1], steady[1:], strict=True):
+    for before, following in pairwise(steady):
         begin, end = max(before.last - 2, 0), min(following.first + 3, len(force))
         gap = force[begin:end]
         # A drop of one sample still makes a stretch of three, which takes samples off its neighbours: both lines
