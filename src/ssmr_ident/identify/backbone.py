@@ -53,9 +53,7 @@ class Backbone:
         return "\n".join(lines)
 
 
-def backbone(
-    time: Array, samples: Array, fit: DecayFit, periods: float = 2.5, channel: int = 0
-) -> Backbone | None:
+def backbone(time: Array, samples: Array, fit: DecayFit, periods: float = 2.5, channel: int = 0) -> Backbone | None:
     """Local frequency and damping of the dominant mode.
 
     Parameters
@@ -105,11 +103,7 @@ def backbone(
         local = fit_poles([block], np.array([rate]), np.array([frequency]))
         size = float(np.hypot(*local.coefficients[0][:2, 0]))
         turn, fall = float(local.frequencies[0]), float(local.rates[0])
-        if (
-            not local.converged
-            or size * np.exp(-fall * width * step) < 3 * noise
-            or not 0.3 < turn / frequency < 3
-        ):
+        if not local.converged or size * np.exp(-fall * width * step) < 3 * noise or not 0.3 < turn / frequency < 3:
             break
         residual = block.samples - modelled(block, local, 0)
         variance = max(float(np.sum(residual**2)) / (width - 4), noise**2)
@@ -150,9 +144,7 @@ def _to_zero(amplitude: Array, value: Array, std: Array) -> tuple[float, float]:
         solution = inverse @ columns.T @ (value / std)
         left = value / std - columns @ solution
         excess = float(left @ left) / max(len(value) - degree - 1, 1)
-        score = len(value) * np.log(max(float(left @ left), 1e-12) / len(value)) + (degree + 1) * np.log(
-            len(value)
-        )
+        score = len(value) * np.log(max(float(left @ left), 1e-12) / len(value)) + (degree + 1) * np.log(len(value))
         if score < best[0]:
             best = (score, float(solution[0]), float(np.sqrt(inverse[0, 0] * max(2.0, 2.0 * excess))))
     return best[1], best[2]

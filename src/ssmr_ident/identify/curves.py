@@ -78,7 +78,7 @@ def load_curve(position: Array, force: Array) -> LoadCurve:
     bend = 2 * abs(slopes[1] - slopes[0]) / np.sqrt(12.0)
     bent = choice.best.name != "linear" and choice.decisive
     std = float(np.hypot(line.stds["stiffness"], bend if bent else 0.0))
-    before = force[: max(begin - len(force) // 50, 0)]
+    before = force[: begin // 2]
     zero = float(np.mean(before)) if len(before) > 10 and float(np.ptp(before)) < 12 * noise else np.nan
     return LoadCurve(line.values["stiffness"], std, choice, float(y[0]), float(y[-1]), zero)
 
@@ -148,9 +148,7 @@ def block_pull(time: Array, force: Array) -> BlockPull:
     slides = min(int(high + 0.75 * (high - low) + 1), len(force) - 10)
     begin = force[slides : slides + max(10, len(force) // 50)]
     level, level_std, wander = _level(force[slides:])
-    return BlockPull(
-        rate, std, float(np.median(begin)), level, level_std, wander, zero, abs(zero) < 5 * noise, slides
-    )
+    return BlockPull(rate, std, float(np.median(begin)), level, level_std, wander, zero, abs(zero) < 5 * noise, slides)
 
 
 def _level(force: Array) -> tuple[float, float, float]:

@@ -95,8 +95,7 @@ def fit_decays(
         for number, (time, samples) in enumerate(records)
     ]
     silent = [
-        [AutoregressiveNoise(np.ones(1), spread(r.samples[:, c])) for c in range(r.samples.shape[1])]
-        for r in prepared
+        [AutoregressiveNoise(np.ones(1), spread(r.samples[:, c])) for c in range(r.samples.shape[1])] for r in prepared
     ]
     top = modes or max_modes
     first = ladder(prepared, silent, top, wanted=modes)

@@ -44,12 +44,12 @@ def prepare(time: Array, samples: Array, start_s: float | None, mains_hz: float 
         raise InputError(where, f"{len(time)} times and {len(samples)} samples; at least 64 of each are needed")
     if not np.all(np.isfinite(samples)):
         raise InputError(where, "samples hold NaN or infinity", "Cut the record, or read it without the gap.")
+    if np.any(np.ptp(samples, axis=0) == 0):
+        raise InputError(where, "a channel is constant", "Take it out, or look whether the sensor was connected.")
     step = float(time[-1] - time[0]) / (len(time) - 1)
     uneven = float(np.max(np.abs(time - time[0] - step * np.arange(len(time))))) / step
     if uneven > 1.0:
-        raise InputError(
-            where, f"the time grid is uneven by {uneven:.1f} samples", "Resample it, or cut out the gap."
-        )
+        raise InputError(where, f"the time grid is uneven by {uneven:.1f} samples", "Resample it, or cut out the gap.")
     lines: tuple[float, ...] = ()
     if mains_hz is not None:
         found = mains_frequency(samples[len(samples) // 3 :], step, mains_hz)
@@ -57,13 +57,9 @@ def prepare(time: Array, samples: Array, start_s: float | None, mains_hz: float 
     if lines and lines[0] * 2 < 0.45 / step:
         harmonic = mains_frequency(samples[len(samples) // 3 :], step, 2 * lines[0])
         lines += () if harmonic is None else (2 * lines[0],)
-    start = (
-        find_release(samples, step, lines) if start_s is None else int(np.searchsorted(time, start_s - step / 2))
-    )
+    start = find_release(samples, step, lines) if start_s is None else int(np.searchsorted(time, start_s - step / 2))
     if len(time) - start < 64:
-        raise InputError(
-            where, f"only {len(time) - start} samples follow the start of the decay", "Log for longer."
-        )
+        raise InputError(where, f"only {len(time) - start} samples follow the start of the decay", "Log for longer.")
     return Record(samples[start:], step, start, float(time[start]), lines)
 
 

@@ -117,9 +117,7 @@ class DecayFit:
         tried = ", ".join(f"{count} mode(s) {score:.1f}" for count, score in sorted(self.evidence.items()))
         lines.append(f"    Schwarz criterion: {tried}")
         verdict = "white" if self.adequate else "NOT white: standard deviations from a sandwich"
-        lines.append(
-            f"    residual/noise variance {self.misfit:.3g}; residual {verdict} (p = {self.whiteness_p:.2g})"
-        )
+        lines.append(f"    residual/noise variance {self.misfit:.3g}; residual {verdict} (p = {self.whiteness_p:.2g})")
         lines.append("[[Variables]]")
         for number, mode in enumerate(self.modes, 1):
             percent = 100 * mode.omega_n_std / mode.omega_n
@@ -146,9 +144,7 @@ class DecayFit:
         lines.append("[[Correlations]]")
         scale = np.sqrt(np.maximum(np.diag(self.covariance), 1e-300))
         names = [f"{name}_{k + 1}" for k in range(len(self.modes)) for name in ("omega_n", "xi")]
-        pairs = [
-            (abs(self.covariance[i, j] / scale[i] / scale[j]), i, j) for i in range(len(names)) for j in range(i)
-        ]
+        pairs = [(abs(self.covariance[i, j] / scale[i] / scale[j]), i, j) for i in range(len(names)) for j in range(i)]
         for size, i, j in sorted(pairs, reverse=True)[:4]:
             if size > 0.1:
                 lines.append(f"    C({names[j]}, {names[i]}) = {self.covariance[i, j] / scale[i] / scale[j]:+.3f}")

@@ -54,9 +54,7 @@ def ladder(
         if count < top and wanted is None and not (warm and count + 1 in warm) and not _something_left(residual):
             break
     if not fits:
-        raise InputError(
-            "decay", "no oscillation stands out of the noise", "Look at the record with ident inspect."
-        )
+        raise InputError("decay", "no oscillation stands out of the noise", "Look at the record with ident inspect.")
     return fits
 
 
@@ -89,9 +87,7 @@ def _lines_only(block: Block) -> Array:
 
 def _inside(poles: Array, block: Block) -> Array:
     """Start poles moved to where a mode can be: it decays, and it oscillates."""
-    frequency = np.clip(
-        np.abs(poles.imag), 2 * np.pi / (len(block.samples) * block.step), 0.9 * np.pi / block.step
-    )
+    frequency = np.clip(np.abs(poles.imag), 2 * np.pi / (len(block.samples) * block.step), 0.9 * np.pi / block.step)
     rate = np.clip(-poles.real, 2e-3 * frequency, 0.5 * frequency)
     return -rate + 1j * frequency
 

@@ -150,8 +150,6 @@ def _linear_parts(
             offsets[index, channel] = coefficients[2 * modes] * noise.std / float(np.sum(noise.filter))
             if record.lines:
                 size = float(np.hypot(*coefficients[2 * modes + 1 : 2 * modes + 3]))
-                lines[index, channel] = size / abs(
-                    noise.gain(np.array([2j * np.pi * record.lines[0]]), record.step)[0]
-                )
+                lines[index, channel] = size / abs(noise.gain(np.array([2j * np.pi * record.lines[0]]), record.step)[0])
                 lines[index, channel] *= noise.std
     return amplitudes, stds, phases, offsets, lines

@@ -23,9 +23,7 @@ def posterior_findings(posterior: Posterior) -> list[str]:
                 f"{unknown.prior_std:.2g} before, {value:.4g} {unknown.unit} fitted, {abs(pull):.1f} sigma away"
             )
         if "damping" in unknown.name and value < 0:
-            found.append(
-                f"{unknown.name} = {value:.3g} {unknown.unit} is negative: no passive tire or damper has that"
-            )
+            found.append(f"{unknown.name} = {value:.3g} {unknown.unit} is negative: no passive tire or damper has that")
         if at_bound(unknown, value):
             found.append(f"{unknown.name} ended on its bound; its standard deviation says little")
     for name, miss in posterior.misfits.items():
@@ -45,9 +43,7 @@ def posterior_findings(posterior: Posterior) -> list[str]:
             size = float(posterior.correlations[i, j])
             if abs(size) > TRADE_OFF:
                 how = "rise together" if size > 0 else "trade off"
-                found.append(
-                    f"{names[j]} and {names[i]} {how} (correlation {size:+.3f}): only one is told by the data"
-                )
+                found.append(f"{names[j]} and {names[i]} {how} (correlation {size:+.3f}): only one is told by the data")
     for direction in posterior.flat[:2]:
         parts = ", ".join(f"{share:+.2f} {name}" for name, share in direction[:4])
         found.append(f"flat direction, known from the prior only (in prior standard deviations): {parts}")
@@ -99,8 +95,7 @@ def table_5_2(trials: Mapping[str, list[tuple[float, float]]]) -> str:
     trials : mapping of motion to a list of (f, λ)
     """
     lines = [
-        f"{'motion':<7} {'f mean':>8} {'std':>8} {'lambda':>8} {'std':>8} {'omega_n':>9} {'xi':>8}   "
-        "f by trial [Hz]"
+        f"{'motion':<7} {'f mean':>8} {'std':>8} {'lambda':>8} {'std':>8} {'omega_n':>9} {'xi':>8}   f by trial [Hz]"
     ]
     for motion, rows in trials.items():
         table = np.array(rows)

@@ -98,9 +98,7 @@ def fit_drive(
         damping=float(solution[1]),
         stiffness=0.0,
         covariance=covariance,
-        unexplained_percent={
-            "force": 100 * float(np.linalg.norm(residual) / np.linalg.norm(target - target.mean()))
-        },
+        unexplained_percent={"force": 100 * float(np.linalg.norm(residual) / np.linalg.norm(target - target.mean()))},
         whiteness_p=whiteness(residual),
         method=f"inverse dynamics below {corner:.3g} Hz: {chosen}",
         friction=float(solution[2]) if full else 0.0,

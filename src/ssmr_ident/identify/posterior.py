@@ -201,9 +201,7 @@ def most_probable(
     values = {u.name: u.value(s) for u, s in zip(unknowns, point, strict=True)}
     for observation in observations:
         difference = observation.values - observation.predict(values)
-        for label, miss, variance in zip(
-            observation.labels, difference, np.diag(observation.covariance), strict=True
-        ):
+        for label, miss, variance in zip(observation.labels, difference, np.diag(observation.covariance), strict=True):
             misfits[f"{observation.name}: {label}"] = float(miss / math.sqrt(variance))
         at += len(observation.values)
     share = 1.0 - np.clip(scaled_stds, 0, 1) ** 2

@@ -138,10 +138,7 @@ def find_ramps(position: Array, force: Array) -> tuple[Ramp, ...]:
         starts = partition(np.arange(len(y), dtype=float), y, variance)
         edges = [*starts, len(y)]
         residual = np.concatenate(
-            [
-                y[a:b] - np.polyval(np.polyfit(np.arange(b - a), y[a:b], 1), np.arange(b - a))
-                for a, b in pairwise(edges)
-            ]
+            [y[a:b] - np.polyval(np.polyfit(np.arange(b - a), y[a:b], 1), np.arange(b - a)) for a, b in pairwise(edges)]
         )
         power = float(residual @ residual)
         correlation = float(np.clip(residual[1:] @ residual[:-1] / power, 0.0, 0.9)) if power > 0 else 0.0

@@ -77,9 +77,7 @@ def _continued_back(
         starts = [spectral_poles(left, step, 1, bins) for bins in (4, 12)]
         starts = [np.concatenate([poles, pole]) for pole in starts if len(pole) and pole[0].imag > 0]
         fits = [
-            fit_poles(
-                [block], np.clip(-pole.real, 1e-3 * pole.imag, 0.5 * pole.imag), pole.imag, max_iterations=12
-            )
+            fit_poles([block], np.clip(-pole.real, 1e-3 * pole.imag, 0.5 * pole.imag), pole.imag, max_iterations=12)
             for pole in starts
         ]
         if not fits:

@@ -96,9 +96,7 @@ class RobotBuilder:
             stiffness=np.array(
                 [values.get(f"tire.stiffness_{a}_N_m", robot.stiffness[i]) for i, a in enumerate("xyz")]
             ),
-            damping=np.array(
-                [values.get(f"tire.damping_{a}_N_s_m", robot.damping[i]) for i, a in enumerate("xyz")]
-            ),
+            damping=np.array([values.get(f"tire.damping_{a}_N_s_m", robot.damping[i]) for i, a in enumerate("xyz")]),
             mu_static=values.get("tire.mu_static", robot.mu_static),
             mu_kinetic=values.get("tire.mu_kinetic", robot.mu_kinetic),
             cable_stiffness=values.get("cable.stiffness_N_m", robot.cable_stiffness),

@@ -177,9 +177,7 @@ def first_rise(ramps: tuple[Ramp, ...], noise: float) -> Ramp:
     return max(rising, key=lambda ramp: ramp.force_end - ramp.force_start)
 
 
-def _teeth(
-    ramps: tuple[Ramp, ...], first: Ramp, noise: float, position: Array, force: Array
-) -> tuple[Tooth, ...]:
+def _teeth(ramps: tuple[Ramp, ...], first: Ramp, noise: float, position: Array, force: Array) -> tuple[Tooth, ...]:
     after = [ramp for ramp in ramps if ramp.first >= first.first]
     # A stretch that falls faster than the spring rises is the letting go itself.
     steady = [ramp for ramp in after if ramp.slope > -first.slope and ramp.samples >= 4]
@@ -220,9 +218,7 @@ def _sliding_start(ramps: tuple[Ramp, ...], first: Ramp, noise: float) -> int:
 def _before(ramps: tuple[Ramp, ...], first: Ramp, force: Array) -> tuple[float, float]:
     """Force before the first rise, where there is a level stretch; otherwise nan."""
     level = [
-        ramp
-        for ramp in ramps
-        if ramp.last < first.first and abs(ramp.slope) < 0.1 * first.slope and ramp.samples >= 10
+        ramp for ramp in ramps if ramp.last < first.first and abs(ramp.slope) < 0.1 * first.slope and ramp.samples >= 10
     ]
     if not level:
         return np.nan, np.nan

@@ -134,22 +134,20 @@ def compare_laws(deflection: Array, force: Array) -> StiffnessChoice:
         widened = np.sqrt((1 + correlation) / (1 - correlation))
         stds = dict(zip(keys, map(float, np.sqrt(np.diag(spread)) * widened), strict=True))
         if knee is not None:
-            change, change_std = values.pop("change"), stds.pop("change")
+            change = values.pop("change")
+            stds.pop("change")
             values |= {"stiffness_2": values["stiffness"] + change, "knee": knee}
             both = spread[1, 1] + spread[2, 2] + 2 * spread[1, 2]
             scatter = np.sqrt(rss / max(len(force) - 4, 1))
-            # The knee's own spread: two lines that cross at an angle `change`, each known to about its level's std.
+            # Two lines that cross at an angle `change`, each known to about the std of its level.
             level_std = scatter / np.sqrt(effective / 2)
             stds |= {
                 "stiffness_2": float(np.sqrt(both) * widened),
                 "knee": float(level_std / max(abs(change), 1e-12)),
             }
-            del change_std
         evidence = effective * np.log(max(rss, 1e-300) / len(force)) + parameters * np.log(effective)
         laws.append(
-            StiffnessLaw(
-                name, values, stds, float(evidence), float(np.sqrt(rss / max(len(force) - parameters, 1)))
-            )
+            StiffnessLaw(name, values, stds, float(evidence), float(np.sqrt(rss / max(len(force) - parameters, 1))))
         )
     return StiffnessChoice(tuple(sorted(laws, key=lambda law: law.evidence)))
 

@@ -125,9 +125,7 @@ def damping_as_printed(
     return TireParameters(inertia, damping, not_passive(damping))
 
 
-def solve_damping(
-    natural: np.ndarray, xi: np.ndarray, stiffness: np.ndarray, geometry: Geometry
-) -> TireParameters:
+def solve_damping(natural: np.ndarray, xi: np.ndarray, stiffness: np.ndarray, geometry: Geometry) -> TireParameters:
     """The three damping equations of (5.3), linear in D, solved exactly. Parameters as above."""
     inertia = rotation_inertia(natural, stiffness, geometry)
     damping = np.linalg.solve(rotation_matrix(geometry), 2 * inertia * np.asarray(natural) * np.asarray(xi))

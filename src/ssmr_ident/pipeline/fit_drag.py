@@ -1,4 +1,4 @@
-"""A dragged block's session (``baseline: drag``): friction coefficients, stiffness of the drive, no false teeth."""
+"""A dragged block's session (``baseline: drag``): friction, stiffness of the drive, no false teeth."""
 
 from __future__ import annotations
 

@@ -31,9 +31,7 @@ def fit_rig_session(campaign: Campaign, chosen: tuple[Measurement, ...], coulomb
     rig = rig_from_parameters(parameters)
     keys = RIG_KEYS[rig.rotary]
     unknowns = tuple(
-        Unknown(
-            key, parameters[key].unit, float(parameters[key].value), parameters[key].std, positive=key == keys[0]
-        )
+        Unknown(key, parameters[key].unit, float(parameters[key].value), parameters[key].std, positive=key == keys[0])
         for key in keys
         if not parameters[key].fixed
     )
@@ -49,11 +47,7 @@ def fit_rig_session(campaign: Campaign, chosen: tuple[Measurement, ...], coulomb
             lines[measurement.name] = (f"{measurement.entry.experiment}: not fitted on a rig",)
     if forced:
         drive = rig.stiffness == 0.0 and keys[2] in fixed
-        fit = (
-            _drive(forced, coulomb)
-            if drive
-            else _forced(forced, parameters, (rig.mass, rig.damping, rig.stiffness))
-        )
+        fit = _drive(forced, coulomb) if drive else _forced(forced, parameters, (rig.mass, rig.damping, rig.stiffness))
         observations += _forced_result(forced, fit, keys, fixed, lines, results, findings)
         if not drive:
             findings += _modes_after_a_hit(forced, lines, results)

@@ -259,9 +259,7 @@ def _wheel(measurement: Measurement, gathered: _Gathered) -> None:
         ) from None
     vertical = entry.experiment == "vertical_compression"
     key = "tire.stiffness_z_N_m" if vertical else "tire.stiffness_y_N_m"
-    gathered.observations.append(
-        single_wheel_observation(measurement.name, key, curve.stiffness, curve.stiffness_std)
-    )
+    gathered.observations.append(single_wheel_observation(measurement.name, key, curve.stiffness, curve.stiffness_std))
     best = curve.choice.best
     law = ", ".join(f"{name} {value:.4g} ± {best.stds[name]:.2g}" for name, value in best.values.items())
     lines = [
