@@ -15,6 +15,7 @@ from ssmr_ident.readers.assemble import recordings_of
 from ssmr_ident.readers.blocks import Block, blocks_of
 from ssmr_ident.readers.dialect import sniff
 from ssmr_ident.readers.headings import quantity_of, split_header
+from ssmr_ident.readers.last_line import without_cut_line
 from ssmr_ident.readers.numeric_run import TextRow, walk
 from ssmr_ident.readers.options import ReadOptions
 from ssmr_ident.readers.source import Source
@@ -40,6 +41,7 @@ def read(source: Source, options: ReadOptions) -> list[Recording]:
     """
     text = text_of(source)
     dialect = sniff(source, text, options)
+    text = without_cut_line(source, text, dialect.delimiter)
     items = list(walk(text, dialect))
     blocks = _data_blocks(source, blocks_of(source, items, options.on_bad))
     _refuse_split_decimals(source, items, blocks)
@@ -93,8 +95,6 @@ def _recordings_of_block(
     source: Source, block: Block, part: str, dialect: str, options: ReadOptions
 ) -> list[Recording]:
     notes = [Note("info", f"{len(block.values)} rows, {dialect}", part)]
-    if block.short:
-        block = _without_cut_row(block, notes)
     columns = [
         Column(label, unit, np.ascontiguousarray(block.values[:, index]), index in block.timed)
         for index, (label, unit) in enumerate(zip(block.labels, block.units, strict=True))
@@ -124,14 +124,6 @@ def _recordings_of_block(
     clocks.onto_one_clock(source, table, options)
     reader = "mtestquattro" if _is_testing_machine(columns) else "csv"
     return recordings_of(source, reader, table, options)
-
-
-def _without_cut_row(block: Block, notes: list[Note]) -> Block:
-    """A last row with too few cells was being written when the log ended."""
-    if block.short[-1] == block.lines[-1] and len(block.values) > 1:
-        notes.append(Note("warning", "the last row is cut off and was dropped", f"line {block.lines[-1]}"))
-        block.values, block.lines = block.values[:-1], block.lines[:-1]
-    return block
 
 
 def _is_graph_export(labels: list[str]) -> bool:

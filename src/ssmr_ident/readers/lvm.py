@@ -8,6 +8,7 @@ from ssmr_ident.core.recording import Note, Recording
 from ssmr_ident.readers import clocks, lvm_packets
 from ssmr_ident.readers.assemble import recordings_of
 from ssmr_ident.readers.headings import split_header
+from ssmr_ident.readers.last_line import without_cut_line
 from ssmr_ident.readers.lvm_data import Rows, read_rows
 from ssmr_ident.readers.lvm_header import MAGIC, Header, Lines, is_segment_start, read_header, separator_of
 from ssmr_ident.readers.numbers import Dialect, evidence_for_decimal, number
@@ -41,6 +42,7 @@ def read(source: Source, options: ReadOptions) -> list[Recording]:
         source.warn(f"Separator is empty; {'tab' if used == chr(9) else repr(used)} used", "header")
     elif _SEPARATORS.get(declared.lower(), declared) != used:
         source.warn(f"Separator says {declared}, the rows are separated by {used!r}; that is used", "header")
+    text = without_cut_line(source, text, used)
     lines = Lines(text, Dialect(used))
     recordings: list[Recording] = []
     segments = 0

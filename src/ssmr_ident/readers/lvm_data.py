@@ -86,9 +86,6 @@ def read_rows(source: Source, lines: Lines, decimal: str, width: int | None, opt
         values = _values(source, cells, width, decimal, number_of_line, options, notes)
         if values is None:
             continue
-        if lines.ended and not lines.text.data.endswith(b"\n") and _cut(cells, width, pending, parts):
-            notes.append(Note("warning", "the last row is cut off and was dropped", f"line {number_of_line}"))
-            continue
         pending.append(values)
         pending_lines.append(number_of_line)
     flush()
@@ -130,11 +127,3 @@ def _values(
             continue
         values[index] = value
     return values
-
-
-def _cut(cells: list[str], width: int, pending: list[list[float]], parts: list[np.ndarray]) -> bool:
-    """True for a last row without line end that has too few cells, or a last number with fewer decimals."""
-    if len(cells) < width:
-        return bool(pending or parts)
-    decimals = [len(cell.partition("." if "." in cell else ",")[2]) for cell in cells[1:width] if cell]
-    return len(decimals) > 1 and decimals[-1] < min(decimals[:-1]) and len(set(decimals[:-1])) == 1
