@@ -11,6 +11,7 @@ from ssmr_ident.readers.text import Text
 _CANDIDATES = [
     Dialect(d, m) for d, m in (("\t", "."), ("\t", ","), (";", "."), (";", ","), (",", "."), (" ", "."), (" ", ","))
 ]
+LONGEST_LINE = 20_000  # bytes; no log has such rows, so a longer line is taken as text
 _HEAD_LINES = (120, 5000)  # first look, second look when the first found hardly any numbers
 
 
@@ -47,7 +48,8 @@ def sniff(source: Source, text: Text, options: ReadOptions, *, delimiters: str =
         When there are no rows of numbers, or the numbers can be read with either decimal sign.
     """
     for count in _HEAD_LINES:
-        lines = [text.decode(line) for line in text.data[: count * 400].split(b"\n", count)[:count]]
+        head = text.data[: count * 400].split(b"\n", count)[:count]
+        lines = [text.decode(line) for line in head if len(line) <= LONGEST_LINE]
         best, length, rows = None, 0, []
         for dialect in _CANDIDATES:
             if dialect.delimiter not in delimiters or (options.decimal or dialect.decimal) != dialect.decimal:

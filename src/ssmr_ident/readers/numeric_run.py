@@ -13,13 +13,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ssmr_ident.readers.dialect import is_number_row, value_of
+from ssmr_ident.readers.dialect import LONGEST_LINE, is_number_row, value_of
 from ssmr_ident.readers.numbers import Dialect
 from ssmr_ident.readers.text import Text
 
 LONG = 200_000  # bytes from which on compiling pays
 VERY_LONG = 4_000_000  # bytes from which on a second thread pays
-LONGEST_LINE = 1_000_000  # bytes; no log has such rows
 
 
 @dataclass
@@ -75,7 +74,7 @@ def walk(
         line, following = _line_at(data, position)
         raw = text.decode(line)
         cells = dialect.cells(raw)
-        if not cells or not is_number_row(cells, dialect.decimal):
+        if not cells or len(line) > LONGEST_LINE or not is_number_row(cells, dialect.decimal):
             yield TextRow(line_number, cells, raw)
             position, line_number = following, line_number + 1
             continue
@@ -86,7 +85,7 @@ def walk(
 def _line_at(data: bytes, position: int) -> tuple[bytes, int]:
     newline = data.find(b"\n", position)
     stop = len(data) if newline < 0 else newline
-    line = data[position : min(stop, position + LONGEST_LINE)]
+    line = data[position : min(stop, position + LONGEST_LINE + 1)]
     return line, stop + 1
 
 
@@ -115,7 +114,7 @@ def _run(text: Text, dialect: Dialect, position: int, line_number: int, width: i
                 continue
         line, following = _line_at(data, position)
         cells = dialect.cells(text.decode(line))
-        if not cells or len(cells) > width or not is_number_row(cells, dialect.decimal):
+        if not cells or len(cells) > width or len(line) > LONGEST_LINE or not is_number_row(cells, dialect.decimal):
             break
         row = [np.nan] * width
         for index, cell in enumerate(cells):

@@ -61,7 +61,8 @@ def _scan(text):
             return False, 0, 0
         if text[p] == 99:  # c
             if text[p + 1] != 32:
-                if text[p + 1] == 62 or text[p + 1] == 47:  # <c> and <c/> have no reference
+                # <c> and <c/> have no reference; a line end or a tab behind the name may hide one
+                if text[p + 1] == 62 or text[p + 1] == 47 or text[p + 1] < 32:
                     return False, 0, 0
                 continue
         else:

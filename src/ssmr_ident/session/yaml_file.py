@@ -55,7 +55,11 @@ def load_mapping(path: Path) -> dict[str, Any]:
     if path.stat().st_size > _SIZE_LIMIT:
         raise InputError(str(path), f"{path.stat().st_size} bytes is too large for a parameter or session file")
     try:
-        content = yaml.load(path.read_text(encoding="utf-8-sig"), Loader=_Loader)
+        loader = _Loader(path.read_text(encoding="utf-8-sig"))
+        try:
+            content = loader.get_single_data()
+        finally:
+            loader.dispose()
     except UnicodeDecodeError as error:
         raise InputError(str(path), "is not UTF-8 text", "Save it as UTF-8") from error
     except yaml.MarkedYAMLError as error:
