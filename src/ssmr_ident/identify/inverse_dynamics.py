@@ -2,8 +2,8 @@
 
 F = m·a + d·v + F_c·sign(v) − F_0 is linear. Position is differentiated after a zero-phase low-pass that keeps what
 stands above the encoder's noise, force passes the same filter, and both are decimated (Gautier, Janot and
-Vandanjon, IEEE Trans. Control Systems Technology 21, 2013). Under closed-loop control an output-error fit of the plain model
-goes astray; the regressors here hold hardly any noise, so least squares does not.
+Vandanjon, IEEE Trans. Control Systems Technology 21, 2013). Under closed-loop control an output-error fit of the
+plain model goes astray; the regressors here hold hardly any noise, so least squares does not.
 """
 
 from __future__ import annotations
@@ -76,12 +76,12 @@ def fit_drive(
     table, target = np.vstack(rows), np.concatenate(targets)
     models = {"mass and viscous damper": (0, 1), "with Coulomb friction and force offset": (0, 1, 2, 3)}
     evidence, fits = {}, {}
-    for name, columns in models.items():
-        part = table[:, columns]
+    for name, chosen_columns in models.items():
+        part = table[:, chosen_columns]
         solution = np.linalg.lstsq(part, target, rcond=None)[0]
         residual = target - part @ solution
         evidence[name] = float(len(target) * np.log(float(residual @ residual) / len(target)))
-        evidence[name] += len(columns) * np.log(len(target))
+        evidence[name] += len(chosen_columns) * np.log(len(target))
         fits[name] = (solution, residual, part)
     chosen = min(evidence, key=lambda name: evidence[name]) if coulomb else "mass and viscous damper"
     solution, residual, part = fits[chosen]

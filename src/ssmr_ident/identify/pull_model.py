@@ -6,6 +6,7 @@ import numpy as np
 
 from ssmr_ident.physics.linear import linear_robot
 from ssmr_ident.physics.robot import Robot
+from ssmr_ident.simulate.scenarios import FIXTURE, fixture_needed
 
 
 def pull_stiffness(
@@ -31,7 +32,8 @@ def pull_stiffness(
     Notes
     -----
     1/K = cᵀ S⁻¹ c + 1/K_cable (3.9), with S the stiffness about rest and c the cable's unit force and moment:
-    the body tilts and yaws while it is pulled, which makes it softer than 4·K_tire.
+    the body tilts and yaws while it is pulled, which makes it softer than 4·K_tire. One gripping wheel alone would
+    let the body turn about it, so such a pull is made in a fixture.
     """
     stiffness = linear_robot(robot).stiffness.copy()
     for wheel in range(1, 5):
@@ -39,6 +41,9 @@ def pull_stiffness(
             x, y, z = robot.contact_points[wheel - 1]
             motion = np.array([[1, 0, 0, 0, z, -y], [0, 1, 0, -z, 0, x]], float)
             stiffness -= motion.T @ (robot.stiffness[:2, None] * motion)
+    if fixture_needed(gripping):
+        stiffness[0, 0] += FIXTURE[0]
+        stiffness[5, 5] += FIXTURE[1]
     if direction == "lateral":
         force, hook = np.array([0.0, 1.0, 0.0]), np.array([0.0, robot.half_track, height - robot.height])
     else:

@@ -117,18 +117,20 @@ def predicted_modes(robot: Robot, decoupled: bool) -> dict[str, tuple[float, flo
 
 
 def pick_mode(fit: DecayFit, expected: tuple[float, float] | None) -> Mode:
-    """The mode a motion is known by: the dominant one, or of comparable ones that nearest to the expected.
+    """The mode a motion is known by: that of the largest displacement, or of comparable ones the expected one.
 
-    Roll and yaw lie close together and each shows in the other's log, so energy alone may confuse them; modes
-    with at least a third of the dominant one's energy count as comparable.
+    Accelerometers show fast modes ω² times larger than they move the body, so the energy of the displacement
+    decides: A²/(ω⁴λ). Roll and yaw lie close together and each shows in the other's log; modes with at least a
+    third of the largest energy count as comparable, and then the nearest to the expected frequency is taken.
     """
-    if expected is None:
-        return fit.dominant
 
     def energy(mode: Mode) -> float:
-        return float(np.sum(mode.amplitudes**2)) / max(mode.decay_rate, 1e-9)
+        return float(np.sum(mode.amplitudes**2)) / mode.omega_n**4 / max(mode.decay_rate, 1e-9)
 
-    strong = [mode for mode in fit.modes if energy(mode) > energy(fit.dominant) / 3]
+    largest = max(fit.modes, key=energy)
+    if expected is None:
+        return largest
+    strong = [mode for mode in fit.modes if energy(mode) > energy(largest) / 3]
     return min(strong, key=lambda mode: abs(math.log(mode.omega_n / expected[0])))
 
 

@@ -107,7 +107,7 @@ def compare_laws(deflection: Array, force: Array) -> StiffnessChoice:
     deflection, force = np.asarray(deflection, float), np.asarray(force, float)
     offset = deflection - deflection[0]
     ones = np.ones(len(offset))
-    fits = {
+    fits: dict[str, tuple[tuple[Array, Array, float, Array], tuple[str, ...], int, float | None]] = {
         "linear": (_solve(np.column_stack([ones, offset]), force), ("force_zero", "stiffness"), 2, None),
         "cubic": (
             _solve(np.column_stack([ones, offset, offset**3]), force),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -88,7 +89,7 @@ def fit_drag_session(campaign: Campaign, chosen: tuple[Measurement, ...]) -> Ses
                     (key,),
                     np.array([level / weight]),
                     np.array([[(std / weight) ** 2]]),
-                    lambda values, key=key: np.array([values[key]]),
+                    _reads(key),
                 )
             )
     # Run differs from run by more than each wanders: each then counts with the scatter between them.
@@ -127,6 +128,11 @@ def fit_drag_session(campaign: Campaign, chosen: tuple[Measurement, ...]) -> Ses
         findings=tuple(findings),
         conflicts=tuple(conflicts(posterior)),
     )
+
+
+def _reads(key: str) -> Callable[[Mapping[str, float]], np.ndarray]:
+    """A prediction that is the parameter itself."""
+    return lambda values: np.array([values[key]])
 
 
 def _with_scatter(observations: list[Observation]) -> list[Observation]:

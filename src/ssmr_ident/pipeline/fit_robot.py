@@ -76,6 +76,7 @@ def fit_robot_session(campaign: Campaign, chosen: tuple[Measurement, ...]) -> Se
             gathered.lines[measurement.name] = (f"{experiment}: not fitted here, its parameters keep their prior",)
             gathered.results[measurement.name] = {"experiment": experiment, "fitted": False}
     gathered.observations += modal_observations(gathered.modes, builder, decoupled)
+    gathered.findings += _structure_left(gathered.results)
     unknowns = robot_unknowns(campaign.parameters)
     if gathered.rope:
         unknowns = (*unknowns, Unknown(ROPE, "N/m", ROPE_STIFFNESS, None))
@@ -103,6 +104,19 @@ def fit_robot_session(campaign: Campaign, chosen: tuple[Measurement, ...]) -> Se
         findings=tuple(gathered.findings),
         conflicts=tuple(conflicts(posterior)),
     )
+
+
+def _structure_left(results: dict[str, dict[str, Any]]) -> list[str]:
+    """One sentence on the decays that a sum of modes does not explain; a few percent above the noise is not named."""
+    decays = {name: result for name, result in results.items() if "residual_white" in result}
+    left = {name: r["misfit"] for name, r in decays.items() if not r["residual_white"] and r["misfit"] > 2.0}
+    if not left:
+        return []
+    worst = max(left, key=lambda name: left[name])
+    return [
+        f"{len(left)} of {len(decays)} decays leave more than noise behind (up to {left[worst]:.1f} times its "
+        f"variance, {worst}): decaying modes alone do not explain them"
+    ]
 
 
 def _path(name: str) -> str:

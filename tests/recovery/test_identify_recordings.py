@@ -1,0 +1,76 @@
+"""Real recordings, where they are there: figures that others published or that were checked by hand."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from ssmr_ident.pipeline.fit import fit_session
+
+pytestmark = pytest.mark.shared
+
+
+def test_pendulum_small_angles(shared: Path) -> None:
+    fit = fit_session(shared / "recordings" / "reaction_pendulum")
+    result = fit.results["swing-early.csv"]
+    assert result["small_amplitude_omega_n_rad_s"] == pytest.approx(2.11, abs=0.01)
+    assert any("softening" in text for text in fit.findings)
+
+
+def test_hammer_two_modes(shared: Path) -> None:
+    fit = fit_session(shared / "recordings" / "lvm_hammer")
+    modes = fit.results["hit-1.csv after the hit"]["modes"][:2]
+    assert [mode["frequency_Hz"] for mode in modes] == pytest.approx([19.76, 21.15], abs=0.01)
+    assert [mode["xi"] for mode in modes] == pytest.approx([0.0026, 0.0020], abs=0.00005)
+    assert any("2 modes close together" in text for text in fit.findings)
+
+
+def test_friction_pulls_have_no_teeth(shared: Path) -> None:
+    fit = fit_session(shared / "recordings" / "friction_pull")
+    assert set(fit.results) == {"run-4.csv", "run-6.csv"}  # run-7 is held out
+    for name, begin in (("run-4.csv", 0.39), ("run-6.csv", 0.25)):
+        result = fit.results[name]
+        assert result["mu_begin"] == pytest.approx(begin, abs=0.015)
+        assert 13.9 < result["force_rate_N_s"] < 16.5
+        assert 70e3 < result["rise_stiffness_N_m"] < 85e3
+        assert not result["stick_slip"]
+        assert not result["zero_known"]
+    assert sum("cannot be trusted" in text for text in fit.findings) == 2
+
+
+def test_unnumbered_pull_claims_nothing(shared: Path) -> None:
+    fit = fit_session(shared / "recordings" / "friction_pull_unnumbered")
+    assert not fit.results["run.csv"]["stick_slip"]
+    assert any("cannot be trusted" in text for text in fit.findings)
+
+
+def test_drive_against_published_numbers(shared: Path) -> None:
+    """Published by inverse dynamics on the whole record: 95.109 kg, 203.50 N s/m, 20.394 N, −3.165 N."""
+    result = fit_session(shared / "recordings" / "emps").results["all forced"]
+    for key, truth in (
+        ("mass_kg", 95.109),
+        ("damping_N_s_m", 203.5),
+        ("coulomb_friction_N", 20.394),
+        ("force_offset_N", 3.165),
+    ):
+        std_key = f"{key}_std" if key[-1] != "N" else key.replace("_N", "_std_N")
+        assert abs(result[key] - truth) < 3 * result[std_key]
+    assert result["mass_kg"] == pytest.approx(95.109, rel=0.01)
+
+
+@pytest.mark.parametrize("name", ["practice-07", "practice-08", "practice-12"])
+def test_known_robots_come_back(shared: Path, name: str) -> None:
+    import json
+
+    truth = json.loads((shared / "practice" / name / "truth.json").read_text())["true_robot"]
+    fit = fit_session(shared / "practice" / name / "session")
+    keys = {"m": "mass_kg"}
+    keys |= {f"I{axis}{axis}": f"inertia_kg_m2.{axis}{axis}" for axis in "xyz"}
+    keys |= {f"K{axis}": f"tire.stiffness_{axis}_N_m" for axis in "xyz"}
+    keys |= {f"D{axis}": f"tire.damping_{axis}_N_s_m" for axis in "xyz"}
+    for short, path in keys.items():
+        estimate = fit.parameters[path]
+        assert estimate.std is not None
+        assert abs(float(estimate.value) - truth[short]) < 3 * estimate.std, path
+    assert not fit.conflicts

@@ -1,0 +1,147 @@
+"""Ramps, teeth, springs and friction on forces that are known in closed form."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from ssmr_ident.identify.curves import block_pull, load_curve
+from ssmr_ident.identify.friction import speed_knee
+from ssmr_ident.identify.ramps import find_ramps
+from ssmr_ident.identify.sawtooth import take_apart
+from ssmr_ident.identify.stiffness import behind_cable, belt_stiffness, compare_laws, in_series
+
+
+def saw(position: np.ndarray, stiffness: float, peak: float, trough: float) -> np.ndarray:
+    """Relay friction without inertia: rises with the spring to the peak, falls at once to the trough."""
+    force, level = np.empty(len(position)), 0.0
+    steps = np.diff(position, prepend=position[0])
+    for index, step in enumerate(steps):
+        level += stiffness * step
+        if level > peak:
+            level = trough
+        force[index] = level
+    return force
+
+
+POSITION = np.linspace(0, 0.1, 6000)
+
+
+def test_teeth_of_a_saw() -> None:
+    rng = np.random.default_rng(0)
+    pull = take_apart(POSITION, saw(POSITION, 6000.0, 190.0, 150.0) + rng.normal(size=len(POSITION)))
+    assert pull.stick_slip
+    expected = (600.0 - 190.0) // 40.0 + 1
+    assert len(pull.teeth) == pytest.approx(expected, abs=1)
+    assert abs(pull.first.slope - 6000.0) < 3.5 * pull.first.slope_std
+    assert np.mean([tooth.peak for tooth in pull.teeth]) == pytest.approx(190.0, rel=0.01)
+    assert np.mean([tooth.trough for tooth in pull.teeth]) == pytest.approx(150.0, rel=0.02)
+    assert "teeth" in str(pull)
+
+
+def test_slope_intervals_cover() -> None:
+    rng = np.random.default_rng(1)
+    misses = []
+    for _ in range(30):
+        force = np.minimum(7000.0 * POSITION[::3], 250.0) + rng.normal(size=2000)
+        first = take_apart(POSITION[::3], force).first
+        misses.append((first.slope - 7000.0) / first.slope_std)
+    # 30 runs of a unit normal: std 1 ± 0.26 and mean 0 ± 0.36 at 95 %
+    assert 0.6 < np.std(misses) < 1.5
+    assert abs(np.mean(misses)) < 0.6
+
+
+def test_plateau_makes_no_claim() -> None:
+    rng = np.random.default_rng(2)
+    wander = 6.0 * np.sin(2 * np.pi * POSITION / 0.02) + np.cumsum(0.05 * rng.normal(size=len(POSITION)))
+    force = np.minimum(7000.0 * POSITION, 250.0) + np.where(POSITION > 0.04, wander, 0)
+    pull = take_apart(POSITION, force + rng.normal(size=6000))
+    assert not pull.stick_slip
+    assert pull.slides
+    assert pull.level == pytest.approx(250.0, abs=5 * max(pull.level_std, 0.5))
+
+
+def test_knees_and_holds() -> None:
+    """Two wheels let go before the others; the machine holds still for a while in the middle of the first rise."""
+    rng = np.random.default_rng(3)
+    position = np.concatenate([np.linspace(0, 0.015, 900), np.full(700, 0.015), np.linspace(0.015, 0.07, 3300)])
+    force = np.interp(position, [0, 0.03, 0.05, 0.07], [0, 210, 280, 280]) + rng.normal(size=len(position))
+    pull = take_apart(position, force)
+    assert pull.first.slope == pytest.approx(7000, rel=0.01)
+    assert pull.level == pytest.approx(280, abs=1)
+
+
+def test_ramps_find_every_piece() -> None:
+    rng = np.random.default_rng(4)
+    x = np.linspace(0, 1, 900)
+    y = np.select([x < 0.3, x < 0.6], [100 * x, 10 + 0 * x], 40 - 50 * x) + 0.2 * rng.normal(size=len(x))
+    ramps = [ramp for ramp in find_ramps(x, y) if ramp.samples > 20]
+    assert [round(ramp.slope, -1) for ramp in ramps] == [100, 0, -50]
+
+
+def test_springs() -> None:
+    assert behind_cable(in_series(22500.0, 6000.0), 6000.0) == pytest.approx(22500.0)
+    assert belt_stiffness(6000.0) == 3000.0
+    with pytest.raises(ValueError, match="not below"):
+        behind_cable(7000.0, 6000.0)
+
+
+def test_laws_are_told_apart() -> None:
+    rng = np.random.default_rng(5)
+    x = np.linspace(0, 0.008, 500)
+    noise = 0.8 * rng.normal(size=len(x))
+    assert compare_laws(x, 18000 * x + noise).best.name == "linear"
+    # section 3.3: 15 kN/m up to 90 N, 21 kN/m beyond
+    two = compare_laws(x, np.where(x < 0.006, 15000 * x, 90 + 21000 * (x - 0.006)) + noise).best
+    assert two.name == "two slopes"
+    assert abs(two.values["stiffness"] - 15000) < 4 * two.stds["stiffness"]
+    assert abs(two.values["stiffness_2"] - 21000) < 4 * two.stds["stiffness_2"]
+    assert two.values["knee"] == pytest.approx(0.006, abs=5e-4)
+    cubic = compare_laws(x, 15000 * x + 3e8 * x**3 + noise).best
+    assert cubic.name == "cubic"
+    assert abs(cubic.values["k3"] - 3e8) < 4 * cubic.stds["k3"]
+
+
+def test_load_curve_of_a_press() -> None:
+    rng = np.random.default_rng(6)
+    position = np.linspace(0, 0.004, 2000)
+    force = np.maximum(80000.0 * (position - 0.001), 0) + 0.7 * rng.normal(size=len(position))
+    curve = load_curve(position, force)
+    assert abs(curve.stiffness - 80000.0) < 3.5 * curve.stiffness_std
+    assert curve.choice.best.name == "linear"
+    assert curve.zero == pytest.approx(0.0, abs=0.3)
+    with pytest.raises(ValueError, match="hardly moves"):
+        load_curve(np.zeros(100), force[:100])
+
+
+def test_block_pull_says_when_the_zero_is_unknown() -> None:
+    rng = np.random.default_rng(7)
+    time = np.linspace(0, 60, 6000)
+    force = np.minimum(15.0 * np.maximum(time - 0.5, 0), 4.0) + 0.02 * rng.normal(size=len(time))
+    known, unknown = block_pull(time, force), block_pull(time, force + 0.9)
+    assert known.zero_known
+    assert not unknown.zero_known
+    assert known.force_rate == pytest.approx(15.0, rel=0.05)
+    assert unknown.level - unknown.zero == pytest.approx(4.0, abs=0.05)
+
+
+def test_speed_knee() -> None:
+    """Section 3.3: a nearly linear fall, flat from 0.04 m/s on."""
+    rng = np.random.default_rng(8)
+    speed = np.linspace(0.002, 0.09, 24)
+    clean = 25 + 170 * np.maximum(0, 1 - speed / 0.04)
+    misses = []
+    for _ in range(60):
+        knee = speed_knee(speed, clean + 2 * rng.normal(size=len(speed)))
+        misses.append(
+            [
+                (knee.at_rest - 195) / knee.at_rest_std,
+                (knee.flat - 25) / knee.flat_std,
+                (knee.knee - 0.04) / knee.knee_std,
+            ]
+        )
+    # 60 runs of a unit normal: std 1 ± 0.18, mean 0 ± 0.25 at 95 %
+    assert np.all(np.abs(np.std(misses, axis=0) - 1) < 0.35)
+    assert np.all(np.abs(np.mean(misses, axis=0)) < 0.4)
+    with pytest.raises(ValueError, match="5 different"):
+        speed_knee(speed[:4], clean[:4])
