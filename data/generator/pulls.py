@@ -17,7 +17,7 @@ from ssmr_ident.readers.writers import write_mtestquattro
 from ssmr_ident.simulate import Scenario, simulate
 from ssmr_ident.simulate.bench import compress_wheel, drag_wheel
 from ssmr_ident.simulate.measure import load_cell_log
-from ssmr_ident.simulate.scenarios import cable_properties
+from ssmr_ident.simulate.scenarios import cable_properties, fixture_needed
 
 STEP = 0.01  # s; the machine logs at 100 Hz
 SOFT_START = 0.3  # s until the head has its speed
@@ -117,8 +117,7 @@ def force_of(robot: Robot, entry: dict[str, Any], head: np.ndarray, random: np.r
         wheels_gripping=entry["wheels_gripping"],
         cable_stiffness=stiffness,
         cable_damping=damping,
-        # spinning wheels would drive off; one gripping wheel lets the body turn about it
-        held=rate != 0.0 or len(entry["wheels_gripping"]) == 1,
+        held=fixture_needed(entry["wheels_gripping"], rate),
     )
     return simulate(robot, scenario, sample_rate=1.0 / STEP)["force"]
 

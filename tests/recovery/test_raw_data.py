@@ -138,7 +138,7 @@ def test_table_5_2_by_its_own_method_lies_within_its_grid(decays: Campaign, robo
 
 
 @pytest.mark.parametrize("stem", ["concrete-lateral-steel", "carpet-lateral-steel", "concrete-lateral-rope",
-                                  "carpet-lateral-rope", "concrete-lateral-high", "concrete-lateral-left-wheels",
+                                  "carpet-lateral-rope", "concrete-lateral-high", "concrete-lateral-left-wheels", "concrete-lateral-one-wheel",
                                   "concrete-longitudinal", "carpet-longitudinal"])  # fmt: skip
 def test_first_rise_is_that_of_tires_body_and_cable_in_series(pulls: Campaign, robot: Robot, stem: str) -> None:
     for measurement in named(pulls, stem):

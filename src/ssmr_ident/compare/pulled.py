@@ -15,7 +15,7 @@ from ssmr_ident.physics.rig import block_from_parameters
 from ssmr_ident.physics.robot import robot_from_parameters
 from ssmr_ident.signals.grid import even_samples
 from ssmr_ident.simulate.bench import compress_wheel, drag_wheel, pull_block
-from ssmr_ident.simulate.scenarios import Scenario, cable_properties
+from ssmr_ident.simulate.scenarios import Scenario, cable_properties, fixture_needed
 from ssmr_ident.simulate.simulation import simulate
 
 
@@ -38,7 +38,7 @@ def predict_robot(parameters: ParameterSet, measurement: Measurement) -> Predict
             cable_stiffness=stiffness,
             cable_damping=damping,
             wheel_rates=rates,
-            held=bool(entry.wheel_rate_rad_s),
+            held=fixture_needed(entry.wheels_gripping, entry.wheel_rate_rad_s or 0.0),
         )
         return simulate(robot, scenario, 1.0 / step, step=2e-4)["force"]
 

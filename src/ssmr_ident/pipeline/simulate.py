@@ -122,7 +122,7 @@ def _run(parameters: ParameterSet, request: Request) -> Recording:
             height=request.height_m,
             wheels_gripping=_wheels(request.wheels_gripping),
             wheel_rates=np.full((1, 2), request.wheel_rate_rad_s),
-            held=request.wheel_rate_rad_s != 0.0,
+            held=scenarios.fixture_needed(_wheels(request.wheels_gripping), request.wheel_rate_rad_s),
         )
         result = simulate(robot, scenario, request.rate)
         return _recording(result.time, "pull", position=(result["head"], "m"), force=(result["force"], "N"))

@@ -12,6 +12,7 @@ from ssmr_ident.core.errors import InputError
 ROPE_STIFFNESS = 6430.0  # N/m; (3.9) with 5 kN/m measured over a rope and 22.5 kN/m of tire
 STEEL_STIFFNESS = 1e6  # N/m; thesis section 4
 OILED = 0.0  # friction share of a wheel that stands on oiled plates
+FIXTURE = (1e6, 1e5)  # N/m along x and N m/rad about z of the fixture that holds the robot (robot_kernel.py)
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,6 +100,11 @@ def pull(
         cable_damping=damping,
         **fields,  # type: ignore[arg-type]
     )
+
+
+def fixture_needed(wheels_gripping: tuple[int, ...], wheel_rate: float = 0.0) -> bool:
+    """Whether a pull is made in the fixture: spinning wheels drive off, and about one gripping wheel the body turns."""
+    return wheel_rate != 0.0 or len(wheels_gripping) == 1
 
 
 def cable_properties(cable: str | Mapping[str, float] | None) -> tuple[float | None, float | None]:
