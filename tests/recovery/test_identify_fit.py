@@ -134,6 +134,27 @@ def test_robot_parameters_come_back(robot_session: Path) -> None:
     assert not fit.conflicts
 
 
+def test_rope_is_told_from_the_tires(tmp_path: Path) -> None:
+    """A rope of 6 kN/m in series (3.9): with a steel-cable pull beside it, both stiffnesses come out."""
+    robot = known_robot(tmp_path)
+    rng = np.random.default_rng(14)
+    rows: list[dict[str, object]] = []
+    for cable, stiffness in (("steel", robot.cable_stiffness), ("rope", 6000.0)):
+        slope = pull_stiffness(robot, "lateral", 0.05, cable_stiffness=stiffness)
+        position = np.linspace(0, 1.5 * 0.83 * 30.4 * 9.8 / slope, 2000)
+        force = np.minimum(slope * position, 0.83 * 30.4 * 9.8) + 0.7 * rng.normal(size=len(position))
+        write_csv(tmp_path / f"{cable}.csv", "time [s],position [m],force [N]", position * 1e3, position, force)
+        row: dict[str, object] = {"file": f"{cable}.csv", "experiment": "pull", "direction": "lateral"}
+        rows.append({**row, "speed_mm_s": 1.0, "height_m": 0.05, "cable": cable})
+    write_session(tmp_path, rows)
+    fit = fit_session(tmp_path)
+    (sentence,) = [text for text in fit.findings if "rope stretches" in text]
+    assert float(sentence.split()[3]) == pytest.approx(6000.0, rel=0.02)
+    estimate = fit.parameters["tire.stiffness_y_N_m"]
+    assert estimate.std is not None
+    assert abs(float(estimate.value) - 19200.0) < 3 * estimate.std
+
+
 def test_command_writes_the_same_file_twice(robot_session: Path, tmp_path: Path) -> None:
     runner = CliRunner()
     for name in ("one.yaml", "two.yaml"):

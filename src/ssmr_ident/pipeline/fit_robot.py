@@ -9,19 +9,16 @@ import numpy as np
 
 from ssmr_ident.campaign import Campaign, Measurement
 from ssmr_ident.core.errors import InputError
-from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.identify.backbone import backbone
 from ssmr_ident.identify.curves import load_curve
 from ssmr_ident.identify.decay import fit_decay
 from ssmr_ident.identify.decay_result import Mode
-from ssmr_ident.identify.findings import amplitude_findings, at_bound, conflicts, posterior_findings, table_5_2
+from ssmr_ident.identify.findings import amplitude_findings, conflicts, posterior_findings
 from ssmr_ident.identify.friction import friction_of, gripping_load
-from ssmr_ident.identify.posterior import Observation, Posterior, Unknown, most_probable
+from ssmr_ident.identify.posterior import Observation, Unknown, most_probable
 from ssmr_ident.identify.robot_map import (
-    HEIGHT,
     RobotBuilder,
     friction_observation,
-    geometry_of,
     modal_observations,
     pick_mode,
     predicted_modes,
@@ -29,9 +26,10 @@ from ssmr_ident.identify.robot_map import (
     single_wheel_observation,
     slope_observation,
 )
-from ssmr_ident.identify.sawtooth import take_apart
-from ssmr_ident.identify.tire_parameters import MOTIONS, damping_as_printed, solve_damping
+from ssmr_ident.identify.sawtooth import mean_with_wander, take_apart
 from ssmr_ident.pipeline.fit import SessionFit
+from ssmr_ident.pipeline.fit_robot_result import ROPE, path_of, strongest, tables, updated
+from ssmr_ident.pipeline.fit_speeds import AtSpeed, rate_findings, slip_findings
 from ssmr_ident.simulate.scenarios import ROPE_STIFFNESS
 
 SEEN_BY = {"roll": ("ay", "wx"), "pitch": ("ax", "wy"), "yaw": ("ay", "wz")}
@@ -39,11 +37,6 @@ SEEN_BY = {"roll": ("ay", "wx"), "pitch": ("ax", "wy"), "yaw": ("ay", "wz")}
 
 MOST_MODES = 3
 """A robot's log may hold its own mode, the neighbour it is coupled to, and the faster one of the pair."""
-
-UNINFORMED = 0.19
-"""Share of information below which the posterior std is above 0.9 of the prior's: then the source is the prior."""
-
-ROPE = "rope_stiffness_N_m"
 
 
 @dataclass
@@ -55,6 +48,8 @@ class _Gathered:
     lines: dict[str, tuple[str, ...]] = field(default_factory=dict)
     results: dict[str, dict[str, Any]] = field(default_factory=dict)
     findings: list[str] = field(default_factory=list)
+    slipping: list[AtSpeed] = field(default_factory=list)
+    springs: dict[str, list[AtSpeed]] = field(default_factory=dict)
     rope: bool = False
 
 
@@ -68,6 +63,8 @@ def fit_robot_session(campaign: Campaign, chosen: tuple[Measurement, ...]) -> Se
         experiment = measurement.entry.experiment
         if experiment == "free_response":
             _decay(measurement, expected, gathered)
+        elif experiment == "pull" and measurement.entry.wheel_rate_rad_s:
+            _spinning(measurement, builder, gathered)
         elif experiment == "pull":
             _pull(measurement, builder, gathered)
         elif experiment in ("vertical_compression", "wheel_drag"):
@@ -76,17 +73,22 @@ def fit_robot_session(campaign: Campaign, chosen: tuple[Measurement, ...]) -> Se
             gathered.lines[measurement.name] = (f"{experiment}: not fitted here, its parameters keep their prior",)
             gathered.results[measurement.name] = {"experiment": experiment, "fitted": False}
     gathered.observations += modal_observations(gathered.modes, builder, decoupled)
-    gathered.findings += _structure_left(gathered.results)
+    gathered.findings += _structure_left(gathered.results) + slip_findings(gathered.slipping)
+    for what, springs in gathered.springs.items():
+        gathered.findings += rate_findings(springs, what)
     unknowns = robot_unknowns(campaign.parameters)
     if gathered.rope:
         unknowns = (*unknowns, Unknown(ROPE, "N/m", ROPE_STIFFNESS, None))
     if not gathered.observations:
         gathered.findings.append("no recording here tells a parameter: all keep what robot.yaml says")
     posterior = most_probable(unknowns, gathered.observations)
-    fitted = _updated(campaign.parameters, posterior)
-    tables = _tables(gathered.modes, builder)
-    gathered.findings += posterior_findings(posterior) + tables[1]
-    changed = tuple(_path(u.name) for u in unknowns if u.name != ROPE)
+    fitted = updated(campaign.parameters, posterior)
+    if gathered.rope:
+        value, std = posterior[ROPE]
+        gathered.findings.append(f"the rope stretches: {value:.4g} ± {std:.2g} N/m in series with the tires (3.9)")
+    chapter_5 = tables(gathered.modes, builder)
+    gathered.findings += posterior_findings(posterior) + chapter_5[1]
+    changed = tuple(path_of(u.name) for u in unknowns if u.name != ROPE)
     numbers = sum(len(o.values) for o in gathered.observations)
     return SessionFit(
         session=campaign.session.name,
@@ -99,8 +101,8 @@ def fit_robot_session(campaign: Campaign, chosen: tuple[Measurement, ...]) -> Se
         ),
         recordings=gathered.lines,
         results=gathered.results,
-        tables=tuple(tables[0]),
-        correlations=_strongest(posterior),
+        tables=tuple(chapter_5[0]),
+        correlations=strongest(posterior),
         findings=tuple(gathered.findings),
         conflicts=tuple(conflicts(posterior)),
     )
@@ -117,10 +119,6 @@ def _structure_left(results: dict[str, dict[str, Any]]) -> list[str]:
         f"{len(left)} of {len(decays)} decays leave more than noise behind (up to {left[worst]:.1f} times its "
         f"variance, {worst}): decaying modes alone do not explain them"
     ]
-
-
-def _path(name: str) -> str:
-    return "contact_points_m" if name == HEIGHT else name
 
 
 def _decay(measurement: Measurement, expected: dict[str, tuple[float, float]], gathered: _Gathered) -> None:
@@ -263,6 +261,26 @@ def _pull(measurement: Measurement, builder: RobotBuilder, gathered: _Gathered) 
     gathered.results[name] = result
 
 
+def _spinning(measurement: Measurement, builder: RobotBuilder, gathered: _Gathered) -> None:
+    """A pull whose wheels spin: the level of its second half over the load, at slip speed r·ω."""
+    entry, force = measurement.entry, measurement.recording["force"]
+    robot = builder({})
+    level, std = mean_with_wander(force[len(force) // 2 :])
+    direction, height = entry.direction or "lateral", entry.height_m or 0.0
+    load = gripping_load(robot, entry.wheels_gripping, direction, height, level)
+    speed = abs(float(entry.wheel_rate_rad_s or 0.0)) * robot.radius
+    gathered.slipping.append(AtSpeed(measurement.name, speed, level / load, std / load))
+    gathered.lines[measurement.name] = (
+        f"{direction} pull with wheels spinning at {speed:.3g} m/s: mu {level / load:.3f} ± {std / load:.2g}",
+    )
+    gathered.results[measurement.name] = {
+        "experiment": entry.experiment,
+        "slip_speed_m_s": speed,
+        "mu_kinetic": level / load,
+        "mu_kinetic_std": std / load,
+    }
+
+
 def _wheel(measurement: Measurement, gathered: _Gathered) -> None:
     entry, recording = measurement.entry, measurement.recording
     try:
@@ -274,6 +292,11 @@ def _wheel(measurement: Measurement, gathered: _Gathered) -> None:
     vertical = entry.experiment == "vertical_compression"
     key = "tire.stiffness_z_N_m" if vertical else "tire.stiffness_y_N_m"
     gathered.observations.append(single_wheel_observation(measurement.name, key, curve.stiffness, curve.stiffness_std))
+    line = next(law for law in curve.choice.laws if law.name == "linear")
+    speed = np.nan if entry.speed_mm_s is None else entry.speed_mm_s * 1e-3
+    gathered.springs.setdefault("pressed down" if vertical else "dragged sideways", []).append(
+        AtSpeed(measurement.name, speed, curve.stiffness, line.stds["stiffness"])
+    )
     best = curve.choice.best
     law = ", ".join(f"{name} {value:.4g} ± {best.stds[name]:.2g}" for name, value in best.values.items())
     lines = [
@@ -291,79 +314,3 @@ def _wheel(measurement: Measurement, gathered: _Gathered) -> None:
         "law": best.name,
         **{f"law_{name}": value for name, value in best.values.items()},
     }
-
-
-def _updated(parameters: ParameterSet, posterior: Posterior) -> ParameterSet:
-    """The parameter set with values, stds and sources of the fit."""
-    changes: dict[str, Estimate] = {}
-    for index, unknown in enumerate(posterior.unknowns):
-        if unknown.name == ROPE:
-            continue
-        path = _path(unknown.name)
-        before = parameters[path]
-        informed = posterior.information_share[index] > UNINFORMED
-        source = "fit of the recordings" if informed else _prior_source(before)
-        value = float(posterior.values[index])
-        # An unknown std stays unknown where nothing was learnt: the wide prior's own width is no knowledge.
-        std = float(posterior.stds[index]) if informed or before.std is not None else None
-        if unknown.name == HEIGHT:
-            points = np.asarray(before.value, float).copy()
-            points[:, 2] -= value - unknown.prior
-            changes[path] = replace(before, value=points, std=std, source=source)
-        else:
-            bound = at_bound(unknown, value)
-            changes[path] = replace(before, value=value, std=std, source=source, at_bound=bound)
-    return parameters.updated(changes)
-
-
-def _prior_source(before: Estimate) -> str:
-    return (
-        "prior"
-        if not before.source
-        else before.source
-        if before.source.startswith("prior")
-        else f"prior: {before.source}"
-    )
-
-
-def _strongest(posterior: Posterior) -> tuple[tuple[str, str, float], ...]:
-    names = [unknown.name for unknown in posterior.unknowns]
-    pairs = [
-        (names[j], names[i], float(posterior.correlations[i, j]))
-        for i in range(len(names))
-        for j in range(i)
-        if abs(posterior.correlations[i, j]) > 0.5
-    ]
-    return tuple(sorted(pairs, key=lambda pair: -abs(pair[2]))[:8])
-
-
-def _tables(modes: dict[str, list[Mode]], builder: RobotBuilder) -> tuple[list[str], list[str]]:
-    """Table 5.2 of these recordings, and (5.10) with its findings where all three motions were recorded."""
-    if not modes:
-        return [], []
-    ordered = {motion: modes[motion] for motion in MOTIONS if motion in modes}
-    table = table_5_2({k: [(m.frequency_hz, m.decay_rate) for m in rows] for k, rows in ordered.items()})
-    if set(ordered) != set(MOTIONS):
-        return [table], []
-    natural = np.array([np.mean([m.omega_n for m in rows]) for rows in ordered.values()])
-    xi = np.array([np.mean([m.xi for m in rows]) for rows in ordered.values()])
-    robot = builder({})
-    geometry = geometry_of(robot)
-    printed = damping_as_printed(natural, xi, robot.stiffness, geometry)
-    exact = solve_damping(natural, xi, robot.stiffness, geometry)
-    ratio = printed.inertia / np.diag(robot.inertia)
-    lines = [
-        "pure rotations, for comparison: what (5.3) and (5.10) make of these modes",
-        "I_x, I_y, I_z = "
-        + ", ".join(f"{value:.3f}" for value in printed.inertia)
-        + " kg m^2, "
-        + ", ".join(f"{value:.1f}" for value in ratio)
-        + " times robot.yaml's",
-        "D_x, D_y, D_z as printed "
-        + ", ".join(f"{value:.0f}" for value in printed.damping)
-        + "; solved exactly "
-        + ", ".join(f"{value:.0f}" for value in exact.damping)
-        + " N s/m",
-    ]
-    findings = [f"pure rotations (5.3), solved exactly: {text}" for text in exact.findings]
-    return [table, "\n".join(lines)], findings
