@@ -42,7 +42,17 @@ TOKENS = (
 def seeds(folders: list[Path]) -> list[tuple[str, bytes]]:
     """Name and bytes of the logs to begin with."""
     files = sorted(f for folder in folders for f in folder.iterdir() if f.is_file() and f.stat().st_size < 200_000)
-    return [(file.name, file.read_bytes()) for file in files] or own_logs()
+    return ([(file.name, file.read_bytes()) for file in files] or own_logs()) + long_logs()
+
+
+def long_logs() -> list[tuple[str, bytes]]:
+    """Logs long enough for the compiled loops."""
+    rng = np.random.default_rng(1)
+    rows = [f"{k / 1000:.3f},{f:.6f}" for k, f in enumerate(rng.standard_normal(15_000))]
+    text = "\n".join(["Time (s),Load (N)", *rows]) + "\n"
+    head = "LabVIEW Measurement\nWriter_Version,2\nSeparator,Comma\n***End_of_Header***\n\nChannels,1\nDelta_X,0.001\n"
+    lvm = f"{head}***End_of_Header***\nX_Value,Voltage_0\n" + "\n".join(rows) + "\n"
+    return [("long.csv", text.encode()), ("long.lvm", lvm.encode())]
 
 
 def own_logs() -> list[tuple[str, bytes]]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -70,6 +71,12 @@ def blocks_of(source: Source, items: list[NumberRun | TextRow], on_bad: str) -> 
             pending.append(item)
             continue
         filled = [row for row in pending if row.cells]
+        if blocks and not pending and item.values.shape[1] != blocks[-1].values.shape[1]:
+            raise source.error(
+                f"row has {item.values.shape[1]} cells, {blocks[-1].values.shape[1]} are expected",
+                "Mend the row.",
+                f"line {item.lines[0]}",
+            )
         labels, units, used = _header(filled, item.values.shape[1])
         facts = facts | _facts(filled[: len(filled) - used])
         previous = blocks[-1] if blocks else None
@@ -143,10 +150,9 @@ def _header(rows: list[TextRow], width: int) -> tuple[list[str], list[str | None
         unit_cells = last.cells
         used = 1
     names = rows[-1 - used] if len(rows) > used else None
-    if names is None or not (len(names.cells) == width or (width > 1 and len(names.cells) == width + 1)):
-        # one name too many is the Comment column of a table whose comments are empty
-        if names is None or len(names.cells) < 2 or width < 2:
-            return [""] * width, [None] * width, 0
+    # one name too many is the Comment column of a table whose comments are empty
+    fits = names is not None and (len(names.cells) == width or (width > 1 and len(names.cells) == width + 1))
+    if names is None or not fits or any(_is_number(cell) for cell in names.cells):
         return [""] * width, [None] * width, 0
     split = [split_header(cell) for cell in names.cells[:width]]
     labels = [label for label, _ in split]
@@ -157,6 +163,11 @@ def _header(rows: list[TextRow], width: int) -> tuple[list[str], list[str | None
             for cell, unit in zip([*unit_cells, *[""] * (width - len(unit_cells))], units, strict=True)
         ]
     return labels, units, used + 1
+
+
+def _is_number(cell: str) -> bool:
+    """True for what begins like a number, even a spoilt one: such a row is damaged data, no header."""
+    return bool(re.match(r"[+-]?[.,]?\d", cell))
 
 
 def _facts(rows: list[TextRow]) -> dict[str, str]:

@@ -67,7 +67,9 @@ def _data_blocks(source: Source, blocks: list[Block]) -> list[Block]:
         dropped += short
         kept = [block for block in kept if len(block.values) >= 0.1 * longest]
     for block in dropped:
-        source.inform(
+        # a table with a header of its own is a results table; bare numbers may be what the user wanted
+        tell = source.inform if block.results or any(block.labels) else source.warn
+        tell(
             f"{len(block.values)} row(s) of numbers without a time column (results, not data) left out",
             f"line {block.lines[0]}",
         )

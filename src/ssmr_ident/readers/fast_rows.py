@@ -110,6 +110,11 @@ def parse_rows(buffer, position, delimiter, decimal, out):
                     p += 1
                 scale = begin - p
                 digits -= scale
+            if digits > LONGEST:  # zeros in front do not count: 0.00012 has two digits
+                begin = p - digits - (1 if scale < 0 else 0)
+                while buffer[begin] == _ZERO or buffer[begin] == decimal:
+                    digits -= buffer[begin] == _ZERO
+                    begin += 1
             if digits == 0 or digits > LONGEST:
                 good = False
                 break

@@ -68,7 +68,7 @@ class Dialect:
             cells = line.split()
         elif '"' in line and len(line) < 100_000:
             try:
-                cells = next(csv.reader([line], delimiter=self.delimiter), [])
+                cells = next(csv.reader([line], delimiter=self.delimiter, skipinitialspace=True), [])
             except csv.Error:
                 cells = line.split(self.delimiter)
         else:
