@@ -17,11 +17,7 @@ _TEMPLATES = Path(__file__).resolve().parent / "templates"
 _SHOWN = (
     "mass_kg",
     *(f"inertia_kg_m2.{axis}" for axis in ("xx", "yy", "zz", "xz")),
-    *(
-        f"tire.{kind}_{axis}_{unit}"
-        for kind, unit in (("stiffness", "N_m"), ("damping", "N_s_m"))
-        for axis in "xyz"
-    ),
+    *(f"tire.{kind}_{axis}_{unit}" for kind, unit in (("stiffness", "N_m"), ("damping", "N_s_m")) for axis in "xyz"),
     *("tire.mu_static", "tire.mu_kinetic", "tire.lambda_max", "accelerometer.volts_per_m_s2"),
 )
 
@@ -38,8 +34,7 @@ def _table(lab: ParameterSet, true: ParameterSet) -> str:
 def _floors() -> str:
     rows = ["| floor | mu_static | mu_kinetic | lambda_max |", "| --- | --- | --- | --- |"]
     rows += [
-        f"| {name} | " + " | ".join(f"{v:g}" for v in floor.values()) + " |"
-        for name, floor in truth.TRUE_FLOOR.items()
+        f"| {name} | " + " | ".join(f"{v:g}" for v in floor.values()) + " |" for name, floor in truth.TRUE_FLOOR.items()
     ]
     return "\n".join(rows)
 
@@ -50,8 +45,7 @@ def _modes() -> str:
     names = ("pitch with x", "roll with y", "yaw", "pitch above x", "z", "roll above y")
     rows = ["| mode | Hz | omega_n rad/s | xi |", "| --- | --- | --- | --- |"]
     rows += [
-        f"| {name} | {m[0] / (2 * np.pi):.3f} | {m[0]:.4f} | {m[1]:.5f} |"
-        for name, m in zip(names, modes, strict=True)
+        f"| {name} | {m[0] / (2 * np.pi):.3f} | {m[0]:.4f} | {m[1]:.5f} |" for name, m in zip(names, modes, strict=True)
     ]
     return "\n".join(rows)
 

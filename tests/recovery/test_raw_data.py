@@ -137,9 +137,14 @@ def test_table_5_2_by_its_own_method_lies_within_its_grid(decays: Campaign, robo
             assert abs(peak - damped) < 1000 / 2048, (motion, trial.name)
 
 
-@pytest.mark.parametrize("stem", ["concrete-lateral-steel", "carpet-lateral-steel", "concrete-lateral-rope",
-                                  "carpet-lateral-rope", "concrete-lateral-high", "concrete-lateral-left-wheels", "concrete-lateral-one-wheel",
-                                  "concrete-longitudinal", "carpet-longitudinal"])  # fmt: skip
+RISES = (
+    *(f"{floor}-lateral-{cable}" for floor in ("concrete", "carpet") for cable in ("steel", "rope")),
+    *(f"concrete-lateral-{pull}" for pull in ("high", "left-wheels", "one-wheel")),
+    *("concrete-longitudinal", "carpet-longitudinal"),
+)
+
+
+@pytest.mark.parametrize("stem", RISES)
 def test_first_rise_is_that_of_tires_body_and_cable_in_series(pulls: Campaign, robot: Robot, stem: str) -> None:
     for measurement in named(pulls, stem):
         entry, rise = measurement.entry, taken_apart(measurement).first
