@@ -10,7 +10,7 @@ import typer
 
 from ssmr_ident.core.errors import InputError, SimulationError
 
-VERBS = ("inspect", "spectrum", "fit", "simulate", "compare", "demo")
+VERBS = ("inspect", "spectrum", "fit", "simulate", "compare", "effects", "demo")
 
 app = typer.Typer(
     name="ident",

@@ -1,0 +1,50 @@
+"""``ident effects``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def command(
+    effect_id: Annotated[
+        str | None, typer.Argument(metavar="[ID]", help="One effect; left out, the whole list.", show_default=False)
+    ] = None,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="Figure to draw: .png, .svg or .pdf.", show_default=False)
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print as JSON; infinite numbers as text.")] = False,
+    quiet: Annotated[bool, typer.Option("-q", "--quiet", help="Print nothing but errors.")] = False,
+) -> None:
+    """The physics that a model may have left out: equation, parameters, signature, and what each does to a recording.
+
+    Example: ident effects dry_friction -o dry_friction.png
+    """
+    from ssmr_ident.core.errors import InputError
+    from ssmr_ident.physics.effects import CATALOGUE
+    from ssmr_ident.pipeline.effects import catalogue_text, draw, effect_text, effect_values, find
+
+    if effect_id is None:
+        if output is not None:
+            raise InputError("--output", "a figure shows one effect", "Name it: ident effects ID -o FIGURE.png")
+        if as_json:
+            _print_json([effect_values(effect) for effect in CATALOGUE.values()])
+        elif not quiet:
+            typer.echo(catalogue_text())
+        return
+    effect = find(effect_id)
+    written = None if output is None else draw(effect, output)
+    if as_json:
+        _print_json({**effect_values(effect), "figure": None if written is None else str(written)})
+    elif not quiet:
+        typer.echo(effect_text(effect))
+        hint = f"figure: {written}" if written else f"a figure of it: ident effects {effect.id} -o {effect.id}.png"
+        typer.echo(f"\n  {hint}")
+
+
+def _print_json(answer: object) -> None:
+    import json
+
+    typer.echo(json.dumps(answer, ensure_ascii=False, allow_nan=False))
