@@ -6,9 +6,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.stats import chi2
 
 from ssmr_ident.readers import ReadOptions, read
-from ssmr_ident.readers.lvm_packets import rounded_step
+from ssmr_ident.readers.lvm_packets import _fisher, rounded_step
 
 HEADER = (
     "LabVIEW Measurement\t\nWriter_Version\t2\nSeparator\tTab\nDecimal_Separator\t.\nMulti_Headings\tNo\n"
@@ -83,3 +84,9 @@ def test_rounded_steps() -> None:
     assert "1024 Hz prints the same" in rounded_step("0.000977", 0.000977).text
     assert "3000 Hz prints the same" in rounded_step("0.000333", 0.000333).text
     assert rounded_step("3.906250E-5", 3.90625e-5) is None
+
+
+def test_fisher_agrees_with_scipy() -> None:
+    for chances in ([0.003], [0.5, 0.01, 0.2], [0.9] * 30, [1e-4] * 80):
+        expected = chi2.sf(-2 * np.log(chances).sum(), 2 * len(chances))
+        assert _fisher(chances) == pytest.approx(expected, rel=1e-9, abs=1e-300)

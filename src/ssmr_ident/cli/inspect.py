@@ -13,9 +13,7 @@ def command(
     paths: Annotated[list[Path], typer.Argument(metavar="FILE...", help="Logs, or folders with logs in them.")],
     reader: Annotated[
         str | None,
-        typer.Option(
-            "--reader", help="labview-xlsx, lvm, tdms, mtestquattro or csv; left out, the content decides."
-        ),
+        typer.Option("--reader", help="labview-xlsx, lvm, tdms, mtestquattro or csv; left out, the content decides."),
     ] = None,
     columns: Annotated[
         str | None, typer.Option("--columns", metavar="QUANTITY=COLUMN,...", help="Such as time=0,force=2.")

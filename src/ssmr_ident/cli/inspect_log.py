@@ -113,9 +113,7 @@ def logs_in(paths: Iterable[Path]) -> tuple[list[Path], list[InputError]]:
         found = sorted(
             entry
             for entry in path.iterdir()
-            if entry.suffix.lower() in LOG_EXTENSIONS
-            and not entry.name.startswith(("~$", "."))
-            and entry.is_file()
+            if entry.suffix.lower() in LOG_EXTENSIONS and not entry.name.startswith(("~$", ".")) and entry.is_file()
         )
         if not found:
             kinds = ", ".join(sorted(LOG_EXTENSIONS))

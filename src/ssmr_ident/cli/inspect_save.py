@@ -47,20 +47,20 @@ def save_choices(session: Path, log: Path, options: ReadOptions) -> None:
     entry = _entry(session, log, root)
     lines = text.splitlines()
     spans = {
-        key.value: (key.start_mark.line, _last_line(value, key.start_mark.line))
+        key.value: (key.start_mark.line, _last_line(lines, value))
         for key, value in entry.value
         if isinstance(key, yaml.ScalarNode)
     }
     column = entry.value[0][0].start_mark.column
-    for key, value in sorted(choices.items(), key=lambda item: -spans.get(item[0], (10**9, 0))[0]):
+    edits = []
+    for key, value in choices.items():
         # JSON is YAML as well, and quotes what needs quoting
         new = f"{key}: {json.dumps(value, ensure_ascii=False)}"
-        if key in spans:
-            first, last = spans[key]
-            dash = first == entry.start_mark.line  # the entry's first key stands behind its dash
-            lines[first : last + 1] = [(lines[first][:column] if dash else " " * column) + new]
-        else:
-            lines.insert(spans["file"][1] + 1, " " * column + new)
+        first, last = spans.get(key, (spans["file"][1] + 1, spans["file"][1]))
+        dash = first == entry.start_mark.line  # the entry's first key stands behind its dash
+        edits.append((first, last, (lines[first][:column] if dash else " " * column) + new))
+    for first, last, new in sorted(edits, key=lambda edit: -edit[0]):
+        lines[first : last + 1] = [new]
     result = "\n".join(lines) + "\n"
     _check(session, log, result, choices)
     write_bytes(session, result.encode())
@@ -80,12 +80,15 @@ def _entry(session: Path, log: Path, root: Any) -> yaml.MappingNode:
     raise InputError(str(session), f"has no recording with file: {log.name}", "Add the entry first, then save.")
 
 
-def _last_line(value: yaml.Node, line: int) -> int:
-    """Last line of a value; the end mark of a block stands at the beginning of the line behind it."""
-    end = value.end_mark
+def _last_line(lines: list[str], value: yaml.Node) -> int:
+    """Last line of a value; the end mark of a block stands behind the blanks and comments that follow it."""
+    end = int(value.end_mark.line)
     if isinstance(value, yaml.ScalarNode) or getattr(value, "flow_style", False):
-        return int(end.line)
-    return max(line, int(end.line) - (1 if end.column <= value.start_mark.column else 0))
+        return end
+    last = min(end - (1 if value.end_mark.column <= value.start_mark.column else 0), len(lines) - 1)
+    while last > value.start_mark.line and lines[last].lstrip()[:1] in ("", "#"):
+        last -= 1
+    return last
 
 
 def _check(session: Path, log: Path, result: str, choices: dict[str, Any]) -> None:

@@ -13,6 +13,7 @@ from ssmr_ident.core.recording import Channel, Note, Recording
 VOLTS_LOW, VOLTS_HIGH = 0.1, 5.0
 _RAIL_TOLERANCE = 1e-3  # V, below the step of a 12-bit card over 5 V
 _SATURATED = 50  # equal samples at the largest value, see ``saturated``
+_AMPLIFIED = ("N", "N m", "m/s^2", "Pa", "V")
 AXES = ("ax", "ay", "az")
 
 
@@ -157,7 +158,8 @@ def warnings_of(channels: tuple[Channel, ...]) -> list[Note]:
     for channel in channels:
         name = channel.label if channel.label and channel.label != channel.name else channel.name
         rails = at_rails(channel)
-        flat = 0 if rails else saturated(channel.samples)
+        # a carriage may well stand still and a speed be held; an amplifier's signal does not
+        flat = 0 if rails or channel.unit not in _AMPLIFIED else saturated(channel.samples)
         if rails:
             notes.append(
                 Note("warning", f"{name} clipped: {rails} sample(s) at the rails, ±1.7 g exceeded", channel.name)
