@@ -132,15 +132,19 @@ def saturated(samples: np.ndarray) -> int:
     An amplifier that has come to its end gives the same largest number again and again. A channel that never
     leaves one value is not counted here.
     """
-    finite = samples[np.isfinite(samples)]
-    if len(finite) < _SATURATED or finite.min() == finite.max():
+    finite = samples
+    if len(finite) and not np.isfinite(finite.max() - finite.min()):  # copy a long channel only when it must be
+        finite = samples[np.isfinite(samples)]
+    if len(finite) < _SATURATED:
         return 0
     high, low = float(finite.max()), float(finite.min())
+    if high == low:
+        return 0
     extreme = high if abs(high) >= abs(low) else low
     if extreme == 0:
         return 0
     at = finite == extreme
-    if int(at.sum()) < _SATURATED:
+    if np.count_nonzero(at) < _SATURATED:
         return 0
     edges = np.flatnonzero(np.diff(np.r_[False, at, False]))
     longest = int((edges[1::2] - edges[::2]).max())
@@ -168,7 +172,8 @@ def warnings_of(channels: tuple[Channel, ...]) -> list[Note]:
             notes.append(
                 Note("warning", f"{name} stands at its largest value for {flat} samples: saturated?", channel.name)
             )
-        if len(channel.samples) >= _SATURATED and np.ptp(channel.samples) == 0:
-            text = "zero throughout" if channel.samples[0] == 0 else "one value throughout"
+        first = channel.samples[0] if len(channel.samples) >= _SATURATED else np.nan
+        if first == channel.samples[-1] and bool((channel.samples == first).all()):
+            text = "zero throughout" if first == 0 else "one value throughout"
             notes.append(Note("warning", f"{name} is {text}: not connected?", channel.name))
     return notes

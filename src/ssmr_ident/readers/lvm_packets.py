@@ -63,7 +63,7 @@ def _fisher(chances: list[float]) -> float:
     for k in range(1, len(chances)):
         term *= half / k
         total += term
-    return min(1.0, math.exp(-half) * total) if half < 700 else 0.0
+    return min(1.0, math.exp(math.log(total) - half))
 
 
 def _chance(columns: list[Column], end: int, samples: int) -> float:
