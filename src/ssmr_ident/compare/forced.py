@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from ssmr_ident.campaign import MOTIONS, UNITS, Measurement
 from ssmr_ident.compare.outcome import Prediction
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.physics.rig import rig_from_parameters
+from ssmr_ident.physics.slots import Effects, effect_values
 from ssmr_ident.signals.grid import even_samples
 from ssmr_ident.simulate.rig import simulate_rig
 
@@ -18,10 +21,11 @@ INPUTS = ("force", "torque")
 def predict(parameters: ParameterSet, measurement: Measurement) -> Prediction:
     """Simulate a rig under its measured force; starting state, force zero and sensor zeros are fitted.
 
-    All of these enter linearly, so one least-squares solution finds them. A second accelerometer elsewhere on
-    the structure moves in proportion to the first: its gain is fitted as well.
+    Without effects all of these enter linearly and one least-squares solution finds them; with effects the linear
+    model's derivatives are used until they no longer help. A second accelerometer elsewhere on the structure
+    moves in proportion to the first: its gain is fitted as well.
     """
-    rig = rig_from_parameters(parameters)
+    rig, effects = rig_from_parameters(parameters), effect_values(parameters)
     recording = measurement.recording
     outputs = tuple(name for name in (*MOTIONS, "acceleration_2") if name in recording)
     drive = next((name for name in INPUTS if name in recording), None)
@@ -35,44 +39,69 @@ def predict(parameters: ParameterSet, measurement: Measurement) -> Prediction:
         # the force comes through a sensor and a converter of the same kind: what both delay alike cancels
         bandwidth = float("inf")
 
-    def run(force: np.ndarray, position: float = 0.0, velocity: float = 0.0) -> np.ndarray:
-        return simulate_rig(rig, force, even.sample_rate, position, velocity, bandwidth_hz=bandwidth)[:, columns]
+    def run(force: np.ndarray, start: np.ndarray, effects: Effects | None = None) -> np.ndarray:
+        rate = even.sample_rate
+        return simulate_rig(rig, force, rate, *start, bandwidth_hz=bandwidth, effects=effects)[:, columns]
 
     rest = np.zeros_like(force)
-    driven = run(force) if drive else np.zeros_like(measured)
-    parts = {"start_position": run(rest, position=1.0), "start_velocity": run(rest, velocity=1.0)}
+    names = ["start_position", "start_velocity"] + (["force_zero"] if drive else [])
+    parts = [run(rest, np.array([1.0, 0.0])), run(rest, np.array([0.0, 1.0]))]
     if drive:
-        parts["force_zero"] = run(rest + 1.0)
-    simulated, nuisances = _fit(measured, driven, parts, outputs)
+        parts.append(run(rest + 1.0, np.zeros(2)))
+
+    def full(found: np.ndarray) -> np.ndarray:
+        return run(force + (found[2] if drive else 0.0), found[:2], effects)
+
+    simulated, nuisances = _fit(measured, full, np.stack(parts, axis=-1), names, outputs)
     units = tuple(UNITS[name] for name in outputs)
     return Prediction(even.time, outputs, units, measured, simulated, nuisances=nuisances)
 
 
 def _fit(
-    measured: np.ndarray, driven: np.ndarray, parts: dict[str, np.ndarray], outputs: tuple[str, ...]
+    measured: np.ndarray,
+    full: Callable[[np.ndarray], np.ndarray],
+    parts: np.ndarray,
+    names: list[str],
+    outputs: tuple[str, ...],
 ) -> tuple[np.ndarray, dict[str, float]]:
-    """Each channel counts by its own size, so that metres and m/s^2 weigh alike."""
+    """Nuisances by least squares; each channel counts by its own size, so that metres and m/s^2 weigh alike.
+
+    ``parts`` is the linear model's answer to a unit of each nuisance, (n, c, k). Sensor zeros are eliminated by
+    taking means off.
+    """
     scale = measured.std(axis=0)
     scale[scale == 0.0] = 1.0
     main = [index for index, name in enumerate(outputs) if name != "acceleration_2"]
-    columns = [(part[:, main] / scale[main]).T.ravel() for part in parts.values()]
-    names = list(parts)
-    for position, index in enumerate(main):
-        column = np.zeros((len(main), len(measured)))
-        column[position] = 1.0
-        columns.append(column.ravel())
-        names.append(f"zero_{outputs[index]}")
-    design = np.column_stack(columns)
+
+    def stacked(signal: np.ndarray) -> np.ndarray:
+        part = signal[:, main] / scale[main].reshape((-1,) + (1,) * (signal.ndim - 2))
+        return np.concatenate(list(np.moveaxis(part - part.mean(axis=0), 1, 0)))
+
+    design, target = stacked(parts), stacked(measured)
     size = np.linalg.norm(design, axis=0)
     size[size == 0.0] = 1.0
-    aim = ((measured - driven)[:, main] / scale[main]).T.ravel()
-    # the cut-off leaves out what the record cannot tell from another nuisance (a force zero from a sensor zero)
-    found = np.linalg.lstsq(design / size, aim, rcond=1e-6)[0] / size
-    simulated = driven + sum(value * parts[name] for name, value in zip(names, found, strict=False) if name in parts)
+    found = np.zeros(len(names))
+    simulated = full(found)
+    rest = target - stacked(simulated)
+    for _ in range(12):
+        # the cut-off leaves out what the record cannot tell from another nuisance (a force zero from a sensor zero)
+        move = np.linalg.lstsq(design / size, rest, rcond=1e-6)[0] / size
+        gain = 0.0
+        for share in (1.0, 0.3, 0.1):
+            trial = full(found + share * move)
+            trial_rest = target - stacked(trial)
+            if np.sum(trial_rest**2) < np.sum(rest**2):
+                gain = 1.0 - np.sum(trial_rest**2) / np.sum(rest**2)
+                found, simulated, rest = found + share * move, trial, trial_rest
+                break
+        if gain < 1e-4:
+            break
     nuisances = dict(zip(names, map(float, found), strict=True))
-    for position, index in enumerate(main):
-        simulated[:, index] += found[len(parts) + position] * scale[index]
-        nuisances[f"zero_{outputs[index]}"] *= float(scale[index])
+    simulated = simulated.copy()
+    for index in main:
+        zero = float(np.mean(measured[:, index] - simulated[:, index]))
+        simulated[:, index] += zero
+        nuisances[f"zero_{outputs[index]}"] = zero
     if "acceleration_2" in outputs:
         second = outputs.index("acceleration_2")
         gain, zero = np.polyfit(simulated[:, second], measured[:, second], 1)

@@ -13,6 +13,7 @@ from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.physics.rig import block_from_parameters
 from ssmr_ident.physics.robot import robot_from_parameters
+from ssmr_ident.physics.slots import effect_values
 from ssmr_ident.signals.grid import even_samples
 from ssmr_ident.simulate.bench import compress_wheel, drag_wheel, pull_block
 from ssmr_ident.simulate.scenarios import Scenario, cable_properties, fixture_needed
@@ -21,7 +22,7 @@ from ssmr_ident.simulate.simulation import simulate
 
 def predict_robot(parameters: ParameterSet, measurement: Measurement) -> Prediction:
     """A robot pulled by a cable."""
-    robot = robot_from_parameters(parameters)
+    robot, effects = robot_from_parameters(parameters), effect_values(parameters)
     entry = measurement.entry
     stiffness, damping = cable_properties(entry.cable)
     rates = np.full((1, 2), entry.wheel_rate_rad_s or 0.0)
@@ -40,24 +41,24 @@ def predict_robot(parameters: ParameterSet, measurement: Measurement) -> Predict
             wheel_rates=rates,
             held=fixture_needed(entry.wheels_gripping, entry.wheel_rate_rad_s or 0.0),
         )
-        return simulate(robot, scenario, 1.0 / step, step=2e-4)["force"]
+        return simulate(robot, scenario, 1.0 / step, step=2e-4, effects=effects)["force"]
 
     return _fitted(measurement, run)
 
 
 def predict_wheel(parameters: ParameterSet, measurement: Measurement) -> Prediction:
     """One wheel dragged sideways or pressed down."""
-    robot = robot_from_parameters(parameters)
+    robot, effects = robot_from_parameters(parameters), effect_values(parameters)
     if measurement.entry.experiment == "vertical_compression":
-        return _fitted(measurement, lambda head, step: compress_wheel(robot, head, step))
+        return _fitted(measurement, lambda head, step: compress_wheel(robot, head, step, effects=effects))
     free = measurement.entry.free_normal
-    return _fitted(measurement, lambda head, step: drag_wheel(robot, head, step, free))
+    return _fitted(measurement, lambda head, step: drag_wheel(robot, head, step, free, effects))
 
 
 def predict_block(parameters: ParameterSet, measurement: Measurement) -> Prediction:
     """A block pulled over a surface."""
-    block = block_from_parameters(parameters)
-    return _fitted(measurement, lambda head, step: pull_block(block, head, step))
+    block, effects = block_from_parameters(parameters), effect_values(parameters)
+    return _fitted(measurement, lambda head, step: pull_block(block, head, step, effects))
 
 
 def _fitted(measurement: Measurement, run: Callable[[np.ndarray, float], np.ndarray]) -> Prediction:

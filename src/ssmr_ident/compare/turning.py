@@ -11,6 +11,7 @@ from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.core.recording import Recording
 from ssmr_ident.physics.motor import wheel_rates
 from ssmr_ident.physics.robot import Robot, robot_from_parameters
+from ssmr_ident.physics.slots import effect_values
 from ssmr_ident.signals.grid import even_samples
 from ssmr_ident.simulate.scenarios import Scenario
 from ssmr_ident.simulate.simulation import simulate
@@ -34,7 +35,7 @@ def predict(parameters: ParameterSet, measurement: Measurement) -> Prediction:
     rates, rate_step, settling = _wanted(robot, measurement)
     duration = len(even.samples) / even.sample_rate
     scenario = Scenario(measurement.entry.experiment, duration + settling, wheel_rates=rates, wheel_rate_step=rate_step)
-    simulation = simulate(robot, scenario, even.sample_rate)
+    simulation = simulate(robot, scenario, even.sample_rate, effects=effect_values(parameters))
     skip = len(simulation.time) - len(even.samples)
     simulated = simulation.values[skip:][:, [AXES.index(name) for name in names]]
     # a mounting that is not quite level shows as a constant: it is the sensor's, not the motion's

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from ssmr_ident.core.errors import InputError, did_you_mean
+from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.physics.effects import CATALOGUE
 
 SLOTS = (
@@ -73,6 +74,24 @@ def checked(effects: Effects) -> dict[str, dict[str, float]]:
                 raise InputError(f"effects: {effect_id}.{name}", f"is {value:g}, expected {limits}")
         result[effect_id] = effect.values(given)
     return result
+
+
+def effect_values(parameters: ParameterSet) -> dict[str, dict[str, float]]:
+    """The effects block of a parameter file as plain numbers, checked against the catalogue.
+
+    Raises
+    ------
+    InputError
+        An unknown effect or parameter, or a value out of bounds; names the file.
+    """
+    plain = {
+        effect_id: {name: float(estimate.value) for name, estimate in block.items()}
+        for effect_id, block in parameters.effects.items()
+    }
+    try:
+        return checked(plain)
+    except InputError as error:
+        raise InputError(f"{parameters.file or parameters.name}: {error.where}", error.problem, error.mend) from None
 
 
 def effect_vector(effects: Mapping[str, Mapping[str, float]]) -> np.ndarray:

@@ -14,6 +14,7 @@ from ssmr_ident.physics.motor import wheel_rates
 from ssmr_ident.physics.rig import rig_from_parameters
 from ssmr_ident.physics.robot import accelerometer_from_parameters, robot_from_parameters
 from ssmr_ident.physics.sensor import Noise
+from ssmr_ident.physics.slots import effect_values
 from ssmr_ident.readers import ReadOptions, read_one, writers
 from ssmr_ident.session import read_parameters
 from ssmr_ident.simulate import bench, scenarios
@@ -104,14 +105,14 @@ def _write(output: Path, recording: Recording, parameters: ParameterSet) -> None
 def _run(parameters: ParameterSet, request: Request) -> Recording:
     if request.experiment == "forced":
         return _forced(parameters, request)
-    robot = robot_from_parameters(parameters)
+    robot, effects = robot_from_parameters(parameters), effect_values(parameters)
     if request.experiment in ("wheel_drag", "vertical_compression"):
         time = np.arange(round(request.duration * request.rate)) / request.rate
         head = request.speed_mm_s * 1e-3 * time
         if request.experiment == "wheel_drag":
-            force = bench.drag_wheel(robot, head, 1.0 / request.rate, request.free_normal)
+            force = bench.drag_wheel(robot, head, 1.0 / request.rate, request.free_normal, effects)
         else:
-            force = bench.compress_wheel(robot, head, 1.0 / request.rate)
+            force = bench.compress_wheel(robot, head, 1.0 / request.rate, effects=effects)
         return _recording(time, request.experiment, position=(head, "m"), force=(force, "N"))
     if request.experiment == "pull":
         scenario = scenarios.pull(
@@ -124,7 +125,7 @@ def _run(parameters: ParameterSet, request: Request) -> Recording:
             wheel_rates=np.full((1, 2), request.wheel_rate_rad_s),
             held=scenarios.fixture_needed(_wheels(request.wheels_gripping), request.wheel_rate_rad_s),
         )
-        result = simulate(robot, scenario, request.rate)
+        result = simulate(robot, scenario, request.rate, effects=effects)
         return _recording(result.time, "pull", position=(result["head"], "m"), force=(result["force"], "N"))
     if request.experiment == "free_response":
         scenario = scenarios.free_response(request.motion, request.amplitude_mm * 1e-3, request.duration)
@@ -133,7 +134,7 @@ def _run(parameters: ParameterSet, request: Request) -> Recording:
         scenario = scenarios.swivel(rates, request.duration)
     else:
         scenario = scenarios.straight(wheel_rates(robot, request.speed_m_s, 0.0), request.duration)
-    return simulate(robot, scenario, request.rate).recording("ax", "ay", "az")
+    return simulate(robot, scenario, request.rate, effects=effects).recording("ax", "ay", "az")
 
 
 def _forced(parameters: ParameterSet, request: Request) -> Recording:
@@ -143,7 +144,8 @@ def _forced(parameters: ParameterSet, request: Request) -> Recording:
     if "force" not in log:
         raise InputError(request.force, f"has no force; found {', '.join(log.names)}", "Head the column 'force (N)'")
     bandwidth = parameters.number("accelerometer.bandwidth_hz", float("inf"))
-    motion = simulate_rig(rig_from_parameters(parameters), log["force"], log.sample_rate, bandwidth_hz=bandwidth)
+    rig, effects = rig_from_parameters(parameters), effect_values(parameters)
+    motion = simulate_rig(rig, log["force"], log.sample_rate, bandwidth_hz=bandwidth, effects=effects)
     position, velocity, acceleration = motion.T
     return _recording(
         log.time,

@@ -7,12 +7,22 @@ import math
 import numpy as np
 
 from ssmr_ident.core.kernel import kernel
+from ssmr_ident.physics.effect import Site
+from ssmr_ident.physics.effects import CATALOGUE, stribeck
+from ssmr_ident.physics.element import STATES, element_advance, element_force
 from ssmr_ident.physics.rig import Block
 from ssmr_ident.physics.robot import GRAVITY, Robot
+from ssmr_ident.physics.slots import KINETIC_SHARE, STRIBECK_SPEED, Effects, checked, effect_vector
 from ssmr_ident.physics.tire import contact_force
+from ssmr_ident.simulate.sensed import sensed
+
+_LONGEST_STEP = 2e-4  # s; a tenth of the carcass' time constant D/K
+_friction_law = stribeck.coefficient
 
 
-def drag_wheel(robot: Robot, head: np.ndarray, step: float, free_normal: bool = True) -> np.ndarray:
+def drag_wheel(
+    robot: Robot, head: np.ndarray, step: float, free_normal: bool = True, effects: Effects | None = None
+) -> np.ndarray:
     """Lateral force on one wheel whose hub follows the machine's head (section 3.3).
 
     The wheel carries a quarter of the weight. Held at a fixed height (``free_normal`` false) it wedges and does
@@ -24,21 +34,27 @@ def drag_wheel(robot: Robot, head: np.ndarray, step: float, free_normal: bool = 
     head : (n,) float [m]
         Position of the head at multiples of ``step``.
     step : float [s]
+    effects : mapping of effect id to parameters
 
     Returns
     -------
     (n,) float [N]
         What the load cell reads, pull positive.
     """
+    active = checked(effects or {})
     load = robot.mass * GRAVITY / 4.0
     grip = (robot.mu_static * load, robot.mu_kinetic * load) if free_normal else (math.inf, math.inf)
     force = np.empty(len(head))
-    substeps = max(1, math.ceil(step / 2e-4))
-    _drag(robot.stiffness[1], robot.damping[1], robot.effective_mass, *grip, head - head[0], step, substeps, force)
-    return force
+    substeps = max(1, math.ceil(step / _LONGEST_STEP))
+    cable = _cable(math.inf, active)
+    tire = (robot.stiffness[1], robot.damping[1], robot.effective_mass)
+    _drag(*tire, *grip, load, cable, effect_vector(active), head - head[0], step, substeps, force)
+    return _read(force, step, active)
 
 
-def compress_wheel(robot: Robot, head: np.ndarray, step: float, gap: float = 0.0) -> np.ndarray:
+def compress_wheel(
+    robot: Robot, head: np.ndarray, step: float, gap: float = 0.0, effects: Effects | None = None
+) -> np.ndarray:
     """Vertical force on one wheel pressed down by ``head`` (4.15); it touches after ``gap`` [m].
 
     Returns
@@ -46,12 +62,15 @@ def compress_wheel(robot: Robot, head: np.ndarray, step: float, gap: float = 0.0
     (n,) float [N]
         Compression positive.
     """
+    active = checked(effects or {})
+    force = np.empty(len(head))
+    ratio = robot.stiffness[2] / robot.stiffness[1]
     depth = head - head[0] - gap
-    force = robot.stiffness[2] * depth + robot.damping[2] * np.gradient(head, step)
-    return np.where(depth > 0.0, np.maximum(force, 0.0), 0.0)
+    _press(robot.stiffness[2], robot.damping[2], ratio, effect_vector(active), depth, step, force)
+    return _read(force, step, active)
 
 
-def pull_block(block: Block, head: np.ndarray, step: float) -> np.ndarray:
+def pull_block(block: Block, head: np.ndarray, step: float, effects: Effects | None = None) -> np.ndarray:
     """Force in the cable of a block whose cable end follows the machine's head.
 
     A stiff cable (infinite stiffness) carries the kinetic friction as long as the head moves; a compliant one
@@ -61,40 +80,82 @@ def pull_block(block: Block, head: np.ndarray, step: float) -> np.ndarray:
     -------
     (n,) float [N]
     """
+    active = checked(effects or {})
     weight = block.mass * GRAVITY
-    if math.isinf(block.cable_stiffness):
-        return np.where(np.gradient(head, step) > 0.0, block.mu_kinetic * weight, 0.0)
+    stiffness = _cable(block.cable_stiffness, active)
+    if math.isinf(stiffness):
+        force = np.where(np.gradient(head, step) > 0.0, block.mu_kinetic * weight, 0.0)
+        return _read(force, step, active)
     force = np.empty(len(head))
-    omega = math.sqrt(block.cable_stiffness / block.mass)
+    omega = math.sqrt(stiffness / block.mass)
     substeps = max(1, math.ceil(step * omega / 0.05))
     # a cable that rings is damped like the thesis' cable (section 4)
-    damping = 4.0 * math.sqrt(block.mass * block.cable_stiffness)
-    _block(
-        block.mass, block.cable_stiffness, damping, block.mu_static * weight, block.mu_kinetic * weight,
-        head - head[0], step, substeps, force,
-    )  # fmt: skip
-    return force
+    cable = (stiffness, 4.0 * math.sqrt(block.mass * stiffness))
+    limits = (block.mu_static * weight, block.mu_kinetic * weight)
+    _block(block.mass, *cable, *limits, effect_vector(active), head - head[0], step, substeps, force)
+    return _read(force, step, active)
+
+
+def _cable(stiffness: float, active: Effects) -> float:
+    for effect_id, values in active.items():
+        change = CATALOGUE[effect_id].acts.get(Site.PULL)
+        if change:
+            stiffness = change(stiffness, **values)
+    return stiffness
+
+
+def _read(force: np.ndarray, step: float, active: Effects) -> np.ndarray:
+    return sensed(np.arange(len(force)) * step, {"force": force}, active)["force"]
 
 
 @kernel
-def _drag(stiffness, damping, mass, breakaway, grip, head, step, substeps, out):
-    deflection, velocity, sliding = 0.0, 0.0, False
+def _drag(stiffness, damping, mass, breakaway, grip, load, cable, e, head, step, substeps, out):
+    deflection, velocity, sliding, hub_position = 0.0, 0.0, False, 0.0
+    hidden = np.zeros(STATES)
     h = step / substeps
+    series, falling = math.isfinite(cable), e[KINETIC_SHARE] != 1.0 and math.isfinite(grip)
     for n in range(out.shape[0]):
-        hub = (head[n + 1] - head[n]) / step if n + 1 < out.shape[0] else 0.0
+        rate = (head[n + 1] - head[n]) / step if n + 1 < out.shape[0] else 0.0
         for m in range(substeps):
+            beside = element_force(deflection, rate - velocity, hidden, stiffness, 1.0, 1.0, True, e)
+            hub = rate
+            if series:  # the hub is light: cable and tire carry the same force, taken implicitly
+                target = head[n] + rate * (m + 1) * h
+                hub = (
+                    cable * (target - hub_position) - stiffness * deflection - beside
+                    + (stiffness * h + damping) * velocity
+                ) / (cable * h + stiffness * h + damping)  # fmt: skip
+            drag = 0.0
+            if falling:
+                grip = load * _friction_law(breakaway / load, e[KINETIC_SHARE], abs(velocity), e[STRIBECK_SPEED])
+                drag = grip
             sliding, velocity, force = contact_force(
-                deflection, sliding, velocity, hub, 0.0, stiffness, damping, mass, breakaway, grip, 0.0, h
+                deflection, sliding, velocity, hub, beside, stiffness, damping, mass, breakaway, grip, drag, h
             )
             if m == 0:
                 out[n] = -force
             deflection += h * (hub - velocity)
+            hub_position += h * hub
+            element_advance(hidden, hub - velocity, h, True, e)
 
 
 @kernel
-def _block(mass, stiffness, damping, breakaway, kinetic, head, step, substeps, out):
+def _press(stiffness, damping, ratio, e, depth, step, out):
+    hidden = np.zeros(STATES)
+    for n in range(out.shape[0]):
+        rate = (depth[min(n + 1, out.shape[0] - 1)] - depth[n]) / step
+        out[n] = 0.0
+        if depth[n] > 0.0:
+            beside = element_force(depth[n], rate, hidden, stiffness, ratio, 0.0, False, e)
+            out[n] = max(0.0, stiffness * depth[n] + damping * rate + beside)
+            element_advance(hidden, rate, step, False, e)
+
+
+@kernel
+def _block(mass, stiffness, damping, breakaway, kinetic, e, head, step, substeps, out):
     x, v = 0.0, 0.0
     h = step / substeps
+    falling = e[KINETIC_SHARE] != 1.0
     for n in range(out.shape[0]):
         rate = (head[n + 1] - head[n]) / step if n + 1 < out.shape[0] else 0.0
         for m in range(substeps):
@@ -104,6 +165,8 @@ def _block(mass, stiffness, damping, breakaway, kinetic, head, step, substeps, o
                 out[n] = tension
             if v == 0.0 and tension <= breakaway:
                 continue
+            if falling:
+                kinetic = _friction_law(breakaway, e[KINETIC_SHARE], v, e[STRIBECK_SPEED])
             # implicit in the velocity, so that a stiff damper needs no short step
             driving = mass * v + h * (stiffness * (position - x) + damping * rate - kinetic)
             v = max(0.0, driving / (mass + h * damping))

@@ -8,10 +8,14 @@ import numpy as np
 from scipy.linalg import expm
 from scipy.signal import resample
 
-from ssmr_ident.core.errors import SimulationError
+from ssmr_ident.core.errors import InputError, SimulationError
 from ssmr_ident.core.kernel import kernel
+from ssmr_ident.physics.effects import CATALOGUE
+from ssmr_ident.physics.element import STATES, element_advance, element_force
 from ssmr_ident.physics.rig import Rig
 from ssmr_ident.physics.sensor import filter_step, low_pass_coefficients
+from ssmr_ident.physics.slots import Effects, checked, effect_vector
+from ssmr_ident.simulate.sensed import sensed
 
 
 def simulate_rig(
@@ -22,12 +26,14 @@ def simulate_rig(
     velocity: float = 0.0,
     oversampling: int = 4,
     bandwidth_hz: float = math.inf,
+    effects: Effects | None = None,
 ) -> np.ndarray:
     """Motion of the rig under a sampled force.
 
     The mass, spring and damper are propagated exactly over a step with the force in a straight line across it; the
     force is first made ``oversampling`` times finer within its band, because straight lines between the samples
-    of a force near half the sampling rate are not what acted.
+    of a force near half the sampling rate are not what acted. Effects kick the mass before and after each step
+    (Strang splitting, second order), and are passed over when there are none.
 
     Parameters
     ----------
@@ -40,26 +46,45 @@ def simulate_rig(
         At least; more is taken where the accelerometer's bandwidth asks for it.
     bandwidth_hz : float
         Of the accelerometer, a second-order low-pass; it acts on the acceleration alone.
+    effects : mapping of effect id to parameters
 
     Returns
     -------
     (n, 3) float
         Position, velocity, acceleration at the samples.
+
+    Raises
+    ------
+    SimulationError
+        A state was no longer finite.
+    InputError
+        An unknown effect or parameter, or one that no rig has.
     """
     n = len(force)
+    active = checked(effects or {})
+    for effect_id in active:
+        if not CATALOGUE[effect_id].rig:
+            known = ", ".join(name for name, effect in CATALOGUE.items() if effect.rig)
+            raise InputError(f"effects: {effect_id}", "does not act on a rig with one mass", f"Those that do: {known}")
+    if "sensor_bandwidth" in active:
+        bandwidth_hz = min(bandwidth_hz, active["sensor_bandwidth"]["bandwidth_hz"])
     if math.isfinite(bandwidth_hz):  # the bilinear low-pass is true to 0.1 % in phase from here on
         oversampling = max(oversampling, math.ceil(8.0 * bandwidth_hz / sample_rate))
     fine = force if oversampling == 1 else band_limited(force, oversampling)
     step = 1.0 / (sample_rate * oversampling)
     out = np.empty((n, 3))
-    laws = (rig.mass, rig.damping, rig.stiffness, low_pass_coefficients(bandwidth_hz, step))
-    _run(*_propagators(rig, step), *laws, fine, position, velocity, oversampling, out)
+    e = effect_vector(active)
+    beside = not np.array_equal(e, effect_vector({}))
+    laws = (rig.mass, rig.damping, rig.stiffness, e, beside, low_pass_coefficients(bandwidth_hz, step))
+    _run(*_propagators(rig, step), *laws, fine, position, velocity, step, oversampling, out)
     if not np.isfinite(out[-1]).all():
         row = int(np.flatnonzero(~np.isfinite(out).all(axis=1))[0])
         raise SimulationError(
-            f"the rig left the finite numbers at t = {row / sample_rate:.4g} s; mass {rig.mass:g}, "
-            f"damping {rig.damping:g}, stiffness {rig.stiffness:g}"
+            f"the rig left the finite numbers at t = {row / sample_rate:.4g} s with effects {active or 'none'}; "
+            f"mass {rig.mass:g}, damping {rig.damping:g}, stiffness {rig.stiffness:g}"
         )
+    channels = sensed(np.arange(n) / sample_rate, {"acceleration": out[:, 2]}, active)
+    out[:, 2] = channels["acceleration"]
     return out
 
 
@@ -87,20 +112,30 @@ def _propagators(rig: Rig, step: float) -> tuple[np.ndarray, np.ndarray, np.ndar
 
 @kernel
 def _run(
-    transition, weight_now, weight_next, mass, damping, stiffness, low_pass, force, position, velocity, every, out
-):
+    transition, weight_now, weight_next, mass, damping, stiffness, e, beside, low_pass,
+    force, position, velocity, step, every, out,
+):  # fmt: skip
     x, v = position, velocity
-    first = (force[0] - damping * v - stiffness * x) / mass
+    hidden = np.zeros(STATES)
+    extra = element_force(x, v, hidden, stiffness, 1.0, 1.0, True, e) if beside else 0.0
+    first = (force[0] - damping * v - stiffness * x - extra) / mass
     history = np.full(4, first)
     steps = (out.shape[0] - 1) * every
     for n in range(steps + 1):
-        acceleration = filter_step(history, (force[n] - damping * v - stiffness * x) / mass, low_pass)
+        acceleration = filter_step(history, (force[n] - damping * v - stiffness * x - extra) / mass, low_pass)
         if n % every == 0:
             row = out[n // every]
             row[0], row[1], row[2] = x, v, acceleration
         if n < steps:
-            now, later = force[n], force[n + 1]
+            if beside:
+                v -= 0.5 * step / mass * extra
+            now, later, start = force[n], force[n + 1], x
             x, v = (
                 transition[0, 0] * x + transition[0, 1] * v + weight_now[0] * now + weight_next[0] * later,
                 transition[1, 0] * x + transition[1, 1] * v + weight_now[1] * now + weight_next[1] * later,
             )
+            if beside:
+                element_advance(hidden, (x - start) / step, step, True, e)
+                extra = element_force(x, v, hidden, stiffness, 1.0, 1.0, True, e)
+                v -= 0.5 * step / mass * extra
+                extra = element_force(x, v, hidden, stiffness, 1.0, 1.0, True, e)

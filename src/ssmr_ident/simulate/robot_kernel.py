@@ -60,7 +60,8 @@ MASS, KX, KY, KZ, DX, DY, DZ, PATCH_MASS, RADIUS = range(9)
 MU_STATIC, MU_KINETIC, LAMBDA_MAX, SLIP_COUPLING, MOTOR_GAIN, GRAVITY_G, RELEASE_DRAG = range(9, 16)
 SENSOR, POINTS, INVERSE_INERTIA, INERTIA, GRIPPING, PARAMETERS = 16, 19, 31, 40, 49, 53
 
-START = 22  # x y z roll pitch yaw | u v w p q r | left right | carcass deflections (x, y) of each wheel
+# x y z roll pitch yaw | u v w p q r | left right | carcass deflections (x, y) of each wheel | sway and its rate (x, y)
+START = 26
 OUTPUTS = ("ax", "ay", "az", "wx", "wy", "wz", "x", "y", "z", "roll", "pitch", "yaw", "vx", "vy", "force", "head",
            "rate_left", "rate_right", "sliding", "load_1", "load_2", "load_3", "load_4")  # fmt: skip
 
@@ -153,6 +154,7 @@ def run(
     arm, load, path, ground_rate = np.zeros((4, 3)), np.zeros(4), np.zeros(4), np.zeros(4)
     belt, belt_rate, belt_pull = np.zeros(2), np.zeros(2), np.zeros(2)
     sway, sway_rate, sway_acceleration = np.zeros(2), np.zeros(2), np.zeros(2)
+    sway[0], sway[1], sway_rate[0], sway_rate[1] = start[22], start[23], start[24], start[25]
     right_side, solved = np.zeros(8), np.zeros(8)
     history = np.zeros((3, 4))  # of the accelerometer's low-pass: u', u'', y', y'' per axis
     decay = math.exp(-gain * step)

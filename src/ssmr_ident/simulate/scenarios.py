@@ -25,9 +25,10 @@ class Scenario:
         ``free_response``, ``pull``, ``swivel`` or ``straight``.
     duration : float [s]
     offset : mapping
-        Start away from rest: ``x``, ``y``, ``z`` [m], ``roll``, ``pitch``, ``yaw`` [rad].
+        Start away from rest: ``x``, ``y``, ``z`` [m], ``roll``, ``pitch``, ``yaw`` [rad]; with a flexible mast also
+        ``sway_x``, ``sway_y`` [m].
     velocity : mapping
-        Start velocities: ``x``, ``y``, ``z`` [m/s], ``roll``, ``pitch``, ``yaw`` [rad/s].
+        Start velocities: ``x``, ``y``, ``z`` [m/s], ``roll``, ``pitch``, ``yaw`` [rad/s], ``sway_x``, ``sway_y`` [m/s].
     wheel_rates : (k, 2) float [rad/s]
         Wanted rates of the left and right wheels at multiples of ``wheel_rate_step``, held in between.
     wheel_rate_step : float [s]

@@ -29,6 +29,7 @@ from ssmr_ident.simulate.pulling import (
     PULLING,
 )
 from ssmr_ident.simulate.scenarios import Scenario
+from ssmr_ident.simulate.sensed import sensed
 
 _UNITS = ["m/s^2"] * 3 + ["rad/s"] * 3 + ["m"] * 3 + ["rad"] * 3 + ["m/s"] * 2
 _UNITS += ["N", "m", "rad/s", "rad/s", "1"] + ["N"] * 4
@@ -136,17 +137,10 @@ def simulate(
             f"damping {robot.damping.tolist()} N s/m. Check these values, or take a shorter step"
         )
     time = np.arange(samples) / sample_rate
-    return Simulation(time, _sensed(time, out, active), k.OUTPUTS, scenario, step)
-
-
-def _sensed(time: np.ndarray, out: np.ndarray, active: Effects) -> np.ndarray:
-    """What the sensor effects make of the motion, in the order of the catalogue."""
-    for effect_id, values in active.items():
-        change = CATALOGUE[effect_id].acts.get(Site.OUTPUT)
-        if change and not CATALOGUE[effect_id].is_off(values):
-            channels = {name: out[:, index] for index, name in enumerate(k.OUTPUTS)}
-            out = np.column_stack(list(change(time, channels, **values).values()))
-    return out
+    if any(Site.OUTPUT in CATALOGUE[effect_id].acts for effect_id in active):
+        channels = {name: out[:, index] for index, name in enumerate(k.OUTPUTS)}
+        out = np.column_stack(list(sensed(time, channels, active).values()))
+    return Simulation(time, out, k.OUTPUTS, scenario, step)
 
 
 def pack_robot(robot: Robot, scenario: Scenario, release_drag: float = 0.0) -> np.ndarray:
@@ -229,4 +223,5 @@ def _start(robot: Robot, scenario: Scenario, cubic: float) -> np.ndarray:
     heading = np.array([[math.cos(pose[5]), -math.sin(pose[5])], [math.sin(pose[5]), math.cos(pose[5])]])
     now = (robot.contact_points @ tilt(pose[3], pose[4]).T)[:, :2] @ heading.T + pose[:2]
     deflection = (now - set_down[:, :2]) @ heading
-    return np.concatenate([pose, rates, np.zeros(2), deflection.ravel()])
+    sway = [part.get(name, 0.0) for part in (offset, velocity) for name in ("sway_x", "sway_y")]
+    return np.concatenate([pose, rates, np.zeros(2), deflection.ravel(), sway])
