@@ -1,0 +1,1 @@
+"""Proving ground: the same robot in engines that nobody here wrote."""
