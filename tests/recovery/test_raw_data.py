@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import hashlib
+import importlib
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from ssmr_ident.campaign import Campaign, Measurement, load
+from ssmr_ident.compare.prediction import predict
 from ssmr_ident.identify.curves import load_curve
 from ssmr_ident.identify.decay import fit_decays
 from ssmr_ident.identify.friction import friction_of
@@ -18,7 +20,10 @@ from ssmr_ident.identify.stiffness import behind_cable, belt_stiffness
 from ssmr_ident.physics.linear import linear_robot
 from ssmr_ident.physics.robot import GRAVITY, Robot, robot_from_parameters
 from ssmr_ident.physics.statics import rest_loads
+from ssmr_ident.pipeline.fit import fit_session
+from ssmr_ident.readers import ReadOptions, read_one
 from ssmr_ident.session import read_parameters, read_session
+from ssmr_ident.simulate.measure import Converter
 from ssmr_ident.simulate.scenarios import ROPE_STIFFNESS, STEEL_STIFFNESS
 
 SIGMAS = 3.0
@@ -125,6 +130,37 @@ def test_natural_frequency_and_damping_come_back(decays: Campaign, robot: Robot,
     assert mode.xi_std < 1e-2 * xi
 
 
+@pytest.mark.parametrize("motion", WHERE)
+def test_truth_leaves_noise_and_mains_and_nothing_else(raw: Path, decays: Campaign, motion: str) -> None:
+    truth = read_parameters(raw / "free_response" / "truth.yaml")
+    trial = decays.of("free_response", motion=motion)[0]
+    prediction = predict(decays, trial, truth)
+    rest = prediction.measured - prediction.simulated
+    rest -= rest.mean(axis=0)
+    white, hum = truth.number("noise.white_m_s2"), truth.number("noise.hum_m_s2")
+    known = decays.parameters.number("accelerometer.volts_per_m_s2")
+    gain = truth.number("accelerometer.volts_per_m_s2") / known  # the lab's calibration is 1 % off
+    rounding = Converter().quantum / known / np.sqrt(12)
+    expected = np.hypot(gain * np.hypot(white, hum / np.sqrt(2)), rounding)
+    # the fitted start has 12 numbers in 3 x 4096 samples; a deviation of 3 % would be 5 standard deviations
+    np.testing.assert_allclose(rest.std(axis=0), expected, rtol=0.03)
+
+
+def test_the_generator_still_makes_these_files(raw: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.syspath_prepend(raw.parent)
+    releases = importlib.import_module("generator.releases")
+    monkeypatch.setattr(releases, "TRIALS", 1)
+    releases.make(tmp_path / "free_response", importlib.import_module("make_raw").SEED)
+    for motion in WHERE:
+        kept, made = (
+            read_one(folder / "free_response" / f"{motion}-1.xlsx", ReadOptions()) for folder in (raw, tmp_path)
+        )
+        for name in ("ax", "ay", "az"):
+            # another processor may round a sample to the neighbouring code, no more
+            assert np.abs(kept[name] - made[name]).max() < 1.5 * Converter().quantum
+            assert np.mean(kept[name] != made[name]) < 1e-3
+
+
 def test_table_5_2_by_its_own_method_lies_within_its_grid(decays: Campaign, robot: Robot) -> None:
     for motion, (channel, place) in WHERE.items():
         omega_n, xi = linear_robot(robot).modes()[place, :2]
@@ -186,6 +222,17 @@ def test_vertical_tire_stiffness_comes_back_from_compression(pulls: Campaign, ro
         curve = load_curve(measurement.recording["position"], measurement.recording["force"])
         assert agrees(curve.stiffness, curve.stiffness_std, robot.stiffness[2]), measurement.name
         assert curve.stiffness_std < 1e-3 * robot.stiffness[2]
+
+
+@pytest.mark.parametrize("floor", ["concrete", "carpet"])
+def test_ident_fit_gives_the_stiffnesses_back(raw: Path, floor: str) -> None:
+    fit = fit_session(raw / "pulls" / f"{floor}.yaml")
+    truth = read_parameters(raw / "pulls" / f"truth-{floor}.yaml")
+    for axis, tightness in (("x", 0.01), ("y", 0.01), *((("z", 0.01),) if floor == "concrete" else ())):
+        estimate = fit.parameters[f"tire.stiffness_{axis}_N_m"]
+        exact = truth.number(f"tire.stiffness_{axis}_N_m")
+        assert agrees(float(estimate.value), estimate.std, exact), f"K_{axis}: {estimate}, truth {exact}"
+        assert estimate.std < tightness * exact
 
 
 def test_static_friction_comes_back_from_a_single_wheel(pulls: Campaign, robot: Robot) -> None:
