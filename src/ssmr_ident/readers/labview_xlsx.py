@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 
 from ssmr_ident.core.recording import Channel, Note, Recording
@@ -51,7 +53,7 @@ def _single_table(sheets: list[Sheet], options: ReadOptions) -> Sheet | None:
     filled = [sheet for sheet in sheets if is_filled(sheet)]
     if len(filled) != 1:
         return None
-    widths = [sum(isinstance(cell, float) for cell in row) for row in filled[0].rows[-3:]]
+    widths = [sum(cell != "" for cell in row) for row in filled[0].rows[-3:]]
     headers = [split_header(cell) for row in filled[0].rows[:60] for cell in row if isinstance(cell, str) and cell]
     united = any(unit and find_unit(unit) for _, unit in headers)
     return filled[0] if widths and (max(widths) > 2 or (united and max(widths) == 2)) else None
@@ -150,6 +152,7 @@ def _recording(
         label, _ = split_header(numbers[axis].labels[-1])
         name = "a" + axis.removeprefix("a")
         channels.append(Channel(name, np.ascontiguousarray(values[axis]), "V", label or axes[axis].name))
+    _compare_with_name(source, time, notes)
     part = ", ".join(f"{c.name} = sheet {axes[a].name}" for a, c in zip(order, channels, strict=True))
     return Recording(
         np.ascontiguousarray(time),
@@ -158,6 +161,19 @@ def _recording(
         (*source.notes, *notes, *warnings_of(tuple(channels))),
         {},
     )
+
+
+def _compare_with_name(source: Source, time: np.ndarray, notes: list[Note]) -> None:
+    """The thesis' names say how long a run was: ``v0-w90-t20-…`` is 20 s."""
+    match = re.search(r"-t(\d+)(?:-|$)", source.path.stem)
+    length = float(time[-1] - time[0]) + float(time[1] - time[0])
+    if match and abs(length - int(match[1])) > 0.02 * int(match[1]):
+        notes.append(
+            Note(
+                "warning",
+                f"holds {length:.4g} s, its name says {match[1]} s; a graph export holds what was visible",
+            )
+        )
 
 
 def _check_axis(

@@ -153,4 +153,4 @@ def _special(source: Source, lines: Lines, begin: int) -> None:
 
 
 def is_segment_start(cells: list[str]) -> bool:
-    return bool(cells) and (cells[0] in _SEGMENT_TAGS or cells[0].startswith("***Start_Special"))
+    return bool(cells) and (cells[0] in _SEGMENT_TAGS or cells[0].startswith(("***Start_Special", END)))

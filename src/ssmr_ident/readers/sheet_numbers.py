@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from datetime import UTC, datetime, time, timedelta
+from datetime import UTC, date, datetime, time, timedelta
 from itertools import chain
 from typing import Any
 
@@ -43,7 +43,7 @@ def _is_number(cell: Any) -> bool:
 
 
 def _is_stamp(cell: Any) -> bool:
-    return _is_number(cell) or isinstance(cell, (datetime, time, timedelta))
+    return _is_number(cell) or isinstance(cell, (date, time, timedelta))
 
 
 def numbers_of(source: Source, sheet: Sheet, what: str, options: ReadOptions) -> SheetNumbers:
@@ -199,7 +199,7 @@ def _mixed(
             if _is_number(cell) and math.isfinite(cell):
                 line.append(float(cell))
                 continue
-            if position == 0 and isinstance(cell, (datetime, time, timedelta)):
+            if position == 0 and isinstance(cell, (date, time, timedelta)):
                 line.append(_seconds(cell))
                 dated = True
                 continue
@@ -231,8 +231,9 @@ def _mixed(
 
 
 def _seconds(cell: Any) -> float:
-    if isinstance(cell, datetime):
-        return cell.replace(tzinfo=UTC).timestamp()
+    if isinstance(cell, date):  # midnight to the millisecond arrives as a bare date
+        moment = cell if isinstance(cell, datetime) else datetime(cell.year, cell.month, cell.day)
+        return moment.replace(tzinfo=UTC).timestamp()
     if isinstance(cell, time):
         return cell.hour * 3600 + cell.minute * 60 + cell.second + cell.microsecond * 1e-6
     return cell.total_seconds()
