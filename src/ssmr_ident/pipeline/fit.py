@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -85,7 +85,9 @@ def _plain(value: Any) -> Any:
     return value.tolist() if hasattr(value, "tolist") else value
 
 
-def fit_session(path: str | Path, seed: int = 0, coulomb: bool = True) -> SessionFit:
+def fit_session(
+    path: str | Path, seed: int = 0, coulomb: bool = True, parameters: ParameterSet | None = None
+) -> SessionFit:
     """Fit a session folder.
 
     Parameters
@@ -95,6 +97,8 @@ def fit_session(path: str | Path, seed: int = 0, coulomb: bool = True) -> Sessio
         Written into the result; nothing here is left to chance.
     coulomb : bool
         Allow dry friction and a force offset where a drive without a spring is fitted.
+    parameters : ParameterSet or None
+        What is known beforehand; None takes the session's robot file.
 
     Returns
     -------
@@ -106,6 +110,8 @@ def fit_session(path: str | Path, seed: int = 0, coulomb: bool = True) -> Sessio
         Names the file, the place and the mend.
     """
     campaign = load(path)
+    if parameters is not None:
+        campaign = replace(campaign, parameters=parameters)
     chosen = fitted_measurements(campaign)
     if campaign.session.baseline == "sdof":
         from ssmr_ident.pipeline.fit_rig import fit_rig_session

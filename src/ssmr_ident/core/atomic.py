@@ -33,3 +33,14 @@ def write_bytes(path: str | Path, data: bytes) -> Path:
         Path(temporary).unlink(missing_ok=True)
         raise
     return path
+
+
+def write_text(path: str | Path, text: str) -> Path:
+    """Write UTF-8 text with plain line ends at once.
+
+    Raises
+    ------
+    InputError
+        When the folder is missing or may not be written to.
+    """
+    return write_bytes(path, text.encode())

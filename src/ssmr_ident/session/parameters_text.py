@@ -1,0 +1,101 @@
+"""Parameter files written: bit for bit what was known, each key explained."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import yaml
+
+from ssmr_ident.core.atomic import write_text
+from ssmr_ident.core.parameter import Estimate, ParameterSet
+from ssmr_ident.session.schema import KEYS
+
+SCHEMA = "ssmr-ident/parameters/1"
+
+
+def write_parameters(path: str | Path, parameters: ParameterSet) -> None:
+    """Write a parameter file; reading it back gives the same numbers bit for bit.
+
+    Each key is followed by a comment with its meaning. The file appears at once or not at all.
+    """
+    write_text(path, parameters_text(parameters))
+
+
+def parameters_text(parameters: ParameterSet) -> str:
+    """The YAML text of a parameter set."""
+    lines = [f"schema: {SCHEMA}", f"name: {_scalar(parameters.name)}"]
+    open_blocks: list[str] = []
+    for key, estimate in _grouped(parameters):
+        parts = key.split(".")
+        while open_blocks and parts[: len(open_blocks)] != open_blocks:
+            open_blocks.pop()
+        while len(open_blocks) < len(parts) - 1:
+            lines.append(f"{'  ' * len(open_blocks)}{parts[len(open_blocks)]}:")
+            open_blocks.append(parts[len(open_blocks)])
+        indent = "  " * (len(parts) - 1)
+        meaning = f"  # {KEYS[key].meaning}" if key in KEYS else ""
+        lines.append(f"{indent}{parts[-1]}: {_flow(estimate)}{meaning}")
+    if parameters.effects:
+        lines.append("effects:")
+        for effect, entries in parameters.effects.items():
+            lines.append(f"  {effect}:" if entries else f"  {effect}: {{}}")
+            lines += [f"    {key}: {_flow(estimate)}" for key, estimate in entries.items()]
+    text = "\n".join(lines) + "\n"
+    if parameters.provenance:
+        text += yaml.safe_dump({"provenance": _plain(parameters.provenance)}, sort_keys=False, allow_unicode=True)
+    return text
+
+
+def _grouped(parameters: ParameterSet) -> list[tuple[str, Estimate]]:
+    """Keys of one block side by side, blocks in the order of their first key."""
+    order: dict[str, int] = {}
+    for key in parameters:
+        parts = key.split(".")
+        for depth in range(1, len(parts) + 1):
+            order.setdefault(".".join(parts[:depth]), len(order))
+    path_order = lambda key: [order[".".join(key.split(".")[: d + 1])] for d in range(len(key.split(".")))]  # noqa: E731
+    return [(key, parameters[key]) for key in sorted(parameters, key=path_order)]
+
+
+def _flow(estimate: Estimate) -> str:
+    fields: dict[str, Any] = {"value": estimate.value}
+    if estimate.std is not None:
+        fields["std"] = estimate.std
+    fields["unit"] = estimate.unit
+    if estimate.fixed:
+        fields["fixed"] = True
+    if estimate.at_bound:
+        fields["at_bound"] = True
+    if estimate.source:
+        fields["source"] = estimate.source
+    return "{" + ", ".join(f"{name}: {_scalar(_plain(value))}" for name, value in fields.items()) + "}"
+
+
+def _scalar(value: Any) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, float):
+        if math.isinf(value):
+            return ".inf" if value > 0 else "-.inf"
+        return repr(value)  # the shortest text that reads back to the same bits
+    if isinstance(value, list):
+        return "[" + ", ".join(_scalar(item) for item in value) + "]"
+    text = yaml.safe_dump(value, allow_unicode=True, default_style='"', width=10**6)
+    return text.strip()
+
+
+def _plain(value: Any) -> Any:
+    """numpy numbers and arrays as Python's own."""
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    if isinstance(value, np.generic):
+        return value.item()
+    if isinstance(value, Mapping):
+        return {str(key): _plain(inner) for key, inner in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(inner) for inner in value]
+    return value
