@@ -59,11 +59,13 @@ def load_curve(position: Array, force: Array) -> LoadCurve:
     width = max(1, len(force) // 300)
     smooth = np.convolve(force, np.ones(width) / width, mode="same")
     inner = slice(width, len(force) - width)
-    top = int(np.argmax(smooth[inner])) + width
+    highest = int(np.argmax(smooth[inner])) + width
     start_level = float(np.median(force[: max(5, len(force) // 100)]))
-    span = smooth[top] - start_level
+    span = smooth[highest] - start_level
     if span < 10 * noise:
         raise ValueError("the force never leaves the noise")
+    # Where the wheel slides at last the force stays at its top, and that is no spring any more.
+    top = int(np.argmax(smooth[: highest + 1] >= start_level + 0.97 * span))
     # From a twentieth of the range on: the first touch of a tire is no spring yet.
     begin = int(np.flatnonzero(smooth[: top + 1] < start_level + 0.05 * span)[-1]) + 1
     x, y = position[begin : top - width], force[begin : top - width]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 
 import numpy as np
 
@@ -13,8 +13,15 @@ CONFLICT_SIGMAS = 3.0
 TRADE_OFF = 0.95
 
 
-def posterior_findings(posterior: Posterior) -> list[str]:
-    """Sentences on conflicts with the prior, what is not explained, bounds, trade-offs and flat directions."""
+def posterior_findings(posterior: Posterior, hidden: Collection[str] = ()) -> list[str]:
+    """Sentences on conflicts with the prior, what is not explained, bounds, trade-offs and flat directions.
+
+    Parameters
+    ----------
+    posterior : Posterior
+    hidden : collection of str
+        Unknowns of the method alone: no trade-off or flat direction is told for them.
+    """
     found = []
     for unknown, value, pull in zip(posterior.unknowns, posterior.values, posterior.pulls, strict=True):
         if abs(pull) > CONFLICT_SIGMAS and unknown.prior_std is not None:
@@ -41,10 +48,11 @@ def posterior_findings(posterior: Posterior) -> list[str]:
     for i in range(len(names)):
         for j in range(i):
             size = float(posterior.correlations[i, j])
-            if abs(size) > TRADE_OFF:
+            if abs(size) > TRADE_OFF and not {names[i], names[j]} & set(hidden):
                 how = "rise together" if size > 0 else "trade off"
                 found.append(f"{names[j]} and {names[i]} {how} (correlation {size:+.3f}): only one is told by the data")
-    for direction in posterior.flat[:2]:
+    told = [direction for direction in posterior.flat if not {name for name, _ in direction} & set(hidden)]
+    for direction in told[:2]:
         parts = ", ".join(f"{share:+.2f} {name}" for name, share in direction[:4])
         found.append(f"flat direction, known from the prior only (in prior standard deviations): {parts}")
     return found

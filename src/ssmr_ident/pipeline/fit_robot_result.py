@@ -10,14 +10,22 @@ from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.identify.decay_result import Mode
 from ssmr_ident.identify.findings import at_bound, table_5_2
 from ssmr_ident.identify.posterior import Posterior
-from ssmr_ident.identify.robot_map import HEIGHT, RobotBuilder, geometry_of
+from ssmr_ident.identify.robot_map import HEIGHT, SHARES, RobotBuilder, geometry_of
 from ssmr_ident.identify.tire_parameters import MOTIONS, damping_as_printed, solve_damping
 
 UNINFORMED = 0.19
 """Share of information below which the posterior std is above 0.9 of the prior's: then the source is the prior."""
 
+ON_FLOOR = " on "
+"""Between a friction coefficient's key and the floor, for floors beside the one that the file gets."""
+
 ROPE = "rope_stiffness_N_m"
 """An unknown beside those of the file: the rope between machine and robot."""
+
+
+def in_file(name: str) -> bool:
+    """True for the unknowns that a parameter file has a key for."""
+    return name != ROPE and name not in SHARES and ON_FLOOR not in name
 
 
 def path_of(name: str) -> str:
@@ -28,7 +36,7 @@ def updated(parameters: ParameterSet, posterior: Posterior) -> ParameterSet:
     """The parameter set with values, stds and sources of the fit."""
     changes: dict[str, Estimate] = {}
     for index, unknown in enumerate(posterior.unknowns):
-        if unknown.name == ROPE:
+        if not in_file(unknown.name):
             continue
         path = path_of(unknown.name)
         before = parameters[path]

@@ -28,26 +28,29 @@ class AtSpeed:
     std: float
 
 
-def slip_findings(levels: Sequence[AtSpeed]) -> list[str]:
+def slip_findings(levels: Sequence[AtSpeed], floor: str = "") -> list[str]:
     """Friction coefficient over slip speed: its fall, and the knee from which it is flat (section 3.3).
 
     Parameters
     ----------
     levels : sequence of AtSpeed
         Coefficient of each pull whose wheels spun.
+    floor : str
+        That all of them were made on.
     """
     if not levels:
         return []
+    on = f" on {floor}" if floor else ""
     speeds = np.array([level.speed for level in levels])
     values = np.array([level.value for level in levels])
     if len(np.unique(speeds)) < 5:
         order = np.argsort(speeds)
         listed = ", ".join(f"{values[k]:.3f} at {speeds[k]:.3g} m/s" for k in order)
-        return [f"friction over slip speed: {listed}; five speeds or more would tell the knee"]
+        return [f"friction over slip speed{on}: {listed}; five speeds or more would tell the knee"]
     knee = speed_knee(speeds, values)
     return [
-        f"friction falls with slip speed from {knee.at_rest:.3f} ± {knee.at_rest_std:.2g} to a flat {knee.flat:.3f} ± "
-        f"{knee.flat_std:.2g} beyond {knee.knee:.3g} ± {knee.knee_std:.2g} m/s"
+        f"friction{on} falls with slip speed from {knee.at_rest:.3f} ± {knee.at_rest_std:.2g} to a flat "
+        f"{knee.flat:.3f} ± {knee.flat_std:.2g} beyond {knee.knee:.3g} ± {knee.knee_std:.2g} m/s"
     ]
 
 
