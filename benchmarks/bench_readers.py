@@ -73,9 +73,7 @@ def main() -> int:
         book, log = Path(folder, "book.xlsx"), Path(folder, "log.csv")
         make_workbook(book)
         make_log(log)
-        print(
-            f"book {book.stat().st_size / 1e6:.2f} MB, log {log.stat().st_size / 1e6:.1f} MB, median of {repeats}"
-        )
+        print(f"book {book.stat().st_size / 1e6:.2f} MB, log {log.stat().st_size / 1e6:.1f} MB, median of {repeats}")
         good = side_by_side(
             "workbook: calamine to lists / Recording",
             lambda: bare_calamine(book),

@@ -109,6 +109,16 @@ def test_two_clocks_in_one_table(tmp_path: Path) -> None:
     assert len([note for note in recording.warnings if "clock" in note.text]) == 2
 
 
+def test_clocks_may_be_named_among_the_units(tmp_path: Path) -> None:
+    rows = [f"{1000 * k},{k},{1000 * (k - k % 2)},{k - k % 2}" for k in range(40)]
+    units = {"p_timestamp": "us", "f_timestamp": "us", "P": "mm", "F": "N"}
+    (recording,) = log(tmp_path, "p_timestamp,P,f_timestamp,F", rows, units=units)
+    np.testing.assert_allclose(recording.time, 2e-3 * np.arange(20), atol=1e-15)
+    np.testing.assert_allclose(recording["P"], 2e-3 * np.arange(20), atol=1e-15)
+    with pytest.raises(InputError, match="clocks in different units: ms, us"):
+        log(tmp_path, "p_timestamp,P,f_timestamp,F", rows, units=units | {"f_timestamp": "ms"})
+
+
 def test_friction_originals_agree_with_the_clean_files(shared: Path) -> None:
     """Somebody else's clean version of the same recording: each force once, the position interpolated there."""
     folder = shared / "recordings" / "friction_pull"

@@ -8,9 +8,9 @@ from typing import Any
 
 import yaml
 
+from ssmr_ident.core.atomic import write_bytes
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.readers.options import ReadOptions
-from ssmr_ident.core.atomic import write_bytes
 
 
 def save_choices(session: Path, log: Path, options: ReadOptions) -> None:

@@ -11,12 +11,12 @@ from ssmr_ident.core.errors import did_you_mean
 from ssmr_ident.core.recording import Channel, Note, Recording
 from ssmr_ident.core.units import find_unit
 from ssmr_ident.readers import time_axis
-from ssmr_ident.readers.channels import channels_of
+from ssmr_ident.readers.channels import apply_units, channels_of
 from ssmr_ident.readers.headings import quantity_of
 from ssmr_ident.readers.health import warnings_of
 from ssmr_ident.readers.options import ReadOptions
 from ssmr_ident.readers.source import Source
-from ssmr_ident.readers.table import Column, Table
+from ssmr_ident.readers.table import Column, Table, all_finite
 
 
 def recordings_of(source: Source, reader: str, table: Table, options: ReadOptions) -> list[Recording]:
@@ -28,7 +28,8 @@ def recordings_of(source: Source, reader: str, table: Table, options: ReadOption
         Time or a unit is missing, or time cannot be used.
     """
     columns = _chosen(source, table, options)
-    _apply_units(source, columns, options)
+    if not table.units_given:
+        apply_units(source, columns, options)
     time_column = _time_column(source, columns, options, table)
     data = [column for column in columns if column is not time_column]
     if not data:
@@ -48,8 +49,8 @@ def recordings_of(source: Source, reader: str, table: Table, options: ReadOption
     else:
         stamps = _seconds(source, time_column, options, table, notes)
     rows: np.ndarray | None = None  # None: all; a copy of a million rows costs more than reading them
-    kept = np.isfinite(stamps)
-    if not kept.all():
+    if not all_finite(stamps):
+        kept = np.isfinite(stamps)
         row = int(np.flatnonzero(~kept)[0])
         if options.on_bad != "nan":
             raise source.error("time is missing", "Drop the row with --on-bad nan, or mend it.", table.place(row))
@@ -108,9 +109,8 @@ def _recording(
         part = f"{part}, sample {of[0]} of {of[1]}".lstrip(", ")
     mine = notes + time_axis.gaps(time, place)
     for channel, values in zip(channels, samples, strict=True):
-        finite = np.isfinite(values)
-        if not finite.all():
-            missing = np.flatnonzero(~finite)
+        if not all_finite(values):
+            missing = np.flatnonzero(~np.isfinite(values))
             mine.append(
                 Note(
                     "warning",
@@ -170,32 +170,6 @@ def _index(source: Source, labels: list[str], which: int | str, quantity: str) -
             f"They are: {', '.join(f'{i}={label}' for i, label in enumerate(labels))}.",
         )
     return number
-
-
-def _apply_units(source: Source, columns: list[Column], options: ReadOptions) -> None:
-    """Units that the user gave win over the file's."""
-    if options.fs is not None:
-        for column in columns:
-            if quantity_of(column.label, column.unit) == "time" and column.quantity is None:
-                column.quantity = "time"
-    known = {}
-    for column in columns:
-        names = (column.label.lower(), column.quantity or quantity_of(column.label, column.unit) or "")
-        known[id(column)] = names
-    for wanted, unit in options.units.items():
-        if find_unit(unit) is None:
-            raise source.error(
-                f"unit {unit!r} of --units {wanted}={unit} is not known",
-                "Units are written as in N, lbf, mm, in, s, ms, V, m/s^2, g.",
-            )
-        matches = [c for c in columns if wanted.lower() in known[id(c)]]
-        matches = matches or [c for c in columns if any(n.startswith(wanted.lower()) for n in known[id(c)] if n)]
-        if not matches:
-            raise source.error(
-                f"has no column {wanted!r} for --units", did_you_mean(wanted, [column.label for column in columns])
-            )
-        for column in matches:
-            column.unit = unit
 
 
 def _time_column(source: Source, columns: list[Column], options: ReadOptions, table: Table) -> Column | None:

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from ssmr_ident.core.errors import did_you_mean
 from ssmr_ident.core.recording import Channel, Note
 from ssmr_ident.core.units import QUANTITY_OF_UNIT, find_unit
 from ssmr_ident.readers.headings import quantity_of
+from ssmr_ident.readers.options import ReadOptions
 from ssmr_ident.readers.source import Source
 from ssmr_ident.readers.table import Column, Table
 
@@ -14,6 +16,38 @@ SI_UNIT = {quantity: unit for unit, quantity in QUANTITY_OF_UNIT.items()}
 SI_UNIT |= {"ax": "m/s^2", "ay": "m/s^2", "az": "m/s^2", "wx": "rad/s", "wy": "rad/s", "wz": "rad/s"}
 SI_UNIT |= {"acceleration_2": "m/s^2", "position_reference": "m"}
 _EXAMPLES = {"N": "N, kN, lbf or gf", "m": "mm or in", "m/s^2": "m/s^2 or g", "rad": "deg"}
+
+
+def apply_units(source: Source, columns: list[Column], options: ReadOptions) -> None:
+    """Units that the user gave win over the file's.
+
+    Raises
+    ------
+    InputError
+        An unknown unit, or no column of that name.
+    """
+    if options.fs is not None:
+        for column in columns:
+            if quantity_of(column.label, column.unit) == "time" and column.quantity is None:
+                column.quantity = "time"
+    known = {}
+    for column in columns:
+        names = (column.label.lower(), column.quantity or quantity_of(column.label, column.unit) or "")
+        known[id(column)] = names
+    for wanted, unit in options.units.items():
+        if find_unit(unit) is None:
+            raise source.error(
+                f"unit {unit!r} of --units {wanted}={unit} is not known",
+                "Units are written as in N, lbf, mm, in, s, ms, V, m/s^2, g.",
+            )
+        matches = [c for c in columns if wanted.lower() in known[id(c)]]
+        matches = matches or [c for c in columns if any(n.startswith(wanted.lower()) for n in known[id(c)] if n)]
+        if not matches:
+            raise source.error(
+                f"has no column {wanted!r} for --units", did_you_mean(wanted, [column.label for column in columns])
+            )
+        for column in matches:
+            column.unit = unit
 
 
 def channels_of(

@@ -6,6 +6,7 @@ import numpy as np
 
 from ssmr_ident.core.recording import Note
 from ssmr_ident.core.units import find_unit
+from ssmr_ident.readers.channels import apply_units
 from ssmr_ident.readers.headings import quantity_of
 from ssmr_ident.readers.options import ReadOptions
 from ssmr_ident.readers.source import Source
@@ -24,6 +25,8 @@ def onto_one_clock(source: Source, table: Table, options: ReadOptions) -> None:
     times = [i for i, c in enumerate(table.columns) if _is_time(c)]
     if len(times) < 2:
         return
+    apply_units(source, table.columns, options)  # now, because columns that the user named may go
+    table.units_given = True
     clocks = {i: table.columns[i].values for i in times}
     first = times[0]
     if all(np.array_equal(clocks[i], clocks[first], equal_nan=True) for i in times[1:]):
@@ -63,6 +66,13 @@ def _owners(columns: list[Column], times: list[int]) -> dict[int, int] | None:
 
 
 def _merge(source: Source, table: Table, times: list[int], owner: dict[int, int]) -> None:
+    units = {table.columns[index].unit for index in times}
+    if len(units) > 1:
+        raise source.error(
+            f"has clocks in different units: {', '.join(sorted(str(unit) for unit in units))}",
+            "Choose one with --columns time=0,…",
+            table.part,
+        )
     ticked: dict[int, np.ndarray] = {}
     for index in times:
         stamps = table.columns[index].values

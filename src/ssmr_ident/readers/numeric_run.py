@@ -171,7 +171,8 @@ def _in_halves(
     if not middle:
         return np.empty((0, width)), position
     first = count_lines(buffer[position:middle])
-    out = np.empty((width, first + count_lines(buffer[middle:]) + 1))
+    rest = int(1.05 * first / (middle - position) * (len(data) - middle)) + 16  # what is beyond it comes later
+    out = np.empty((width, first + rest))
     ends: list[tuple[int, int]] = []
     beside = threading.Thread(
         target=lambda: ends.append(parse_rows(buffer, middle, delimiter, decimal, out[:, first:]))

@@ -40,6 +40,8 @@ class Table:
         Three voltage columns are x, y, z (logs of a data-acquisition card).
     split : bool
         A restart of time begins another sample.
+    units_given : bool
+        The user's units have been applied already.
     """
 
     columns: list[Column]
@@ -50,6 +52,12 @@ class Table:
     assumed_unit: str | None = None
     axes_in_volts: bool = False
     split: bool = False
+    units_given: bool = False
+
+
+def all_finite(values: np.ndarray) -> bool:
+    """True when (n,) values are numbers throughout; NaN and infinity show in the least and the largest."""
+    return len(values) == 0 or bool(np.isfinite(values.min()) and np.isfinite(values.max()))
 
 
 def at_lines(lines: np.ndarray) -> Callable[[int], str]:

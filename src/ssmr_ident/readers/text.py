@@ -61,7 +61,7 @@ def text_of(source: Source) -> Text:
         source.inform("text is UTF-16 without a byte-order mark")
     if b"\0" in data:
         data = _without_nuls(source, data)
-    if b"\r" in data and b"\n" not in data:
+    if b"\n" not in data[:65536] and b"\r" in data and b"\n" not in data:
         data = data.replace(b"\r", b"\n")
     if not data.isascii():
         try:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ssmr_ident.core.recording import Recording
 from ssmr_ident.core.atomic import write_bytes
+from ssmr_ident.core.recording import Recording
 from ssmr_ident.readers.writers.printing import fixed, shortest
 
 

@@ -13,9 +13,9 @@ from xml.sax.saxutils import escape
 
 import numpy as np
 
+from ssmr_ident.core.atomic import write_bytes
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.recording import Recording
-from ssmr_ident.core.atomic import write_bytes
 
 _ORDER = ("az", "ay", "ax")  # the sheets' order, see readers/labview_xlsx.py
 _EPOCH = (1980, 1, 1, 0, 0, 0)

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ssmr_ident.core.recording import Recording
 from ssmr_ident.core.atomic import write_bytes
+from ssmr_ident.core.recording import Recording
 from ssmr_ident.readers.writers.printing import fixed
 
 _UNIT_LABELS = {"V": "Volts"}

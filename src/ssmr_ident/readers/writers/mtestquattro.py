@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
+from ssmr_ident.core.atomic import write_bytes
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.recording import Recording
 from ssmr_ident.core.units import find_unit
-from ssmr_ident.core.atomic import write_bytes
 from ssmr_ident.readers.writers.printing import fixed
 
 _HEADINGS = {"position": "Position", "force": "Load"}
