@@ -9,7 +9,7 @@ from types import ModuleType
 import numpy as np
 import pytest
 
-RUNS = 80
+RUNS = 40
 
 
 @pytest.fixture(scope="module")
@@ -27,11 +27,11 @@ def test_fit_reaches_the_bound(bench: ModuleType, case: str) -> None:
     for ratio in (100.0, 10.0):
         result = bench.run(case, ratio, RUNS)
         # Schwarz takes one mode too many about once in 300 records
-        assert result["orders"] > 0.95
-        # RMSE of 80 runs scatters by 8 %; 1.08 holds for 500 runs, so three of these standard deviations more here
-        assert np.all(bench.rms(result["ours"]) < 1.08 + 3 * 0.08)
-        # coverage of 80 runs scatters by 2.4 %
-        assert np.all(result["covered"].mean(axis=0) > 0.95 - 3 * 0.024)
+        assert result["orders"] >= 0.95
+        # RMSE of 40 runs scatters by 11 %; 1.08 holds for 500 runs, so three of these standard deviations more here
+        assert np.all(bench.rms(result["ours"]) < 1.08 + 3 * 0.11)
+        # coverage of 40 runs scatters by 3.4 %
+        assert np.all(result["covered"].mean(axis=0) > 0.95 - 3 * 0.034)
 
 
 def test_usual_methods_are_worse(bench: ModuleType) -> None:
