@@ -3,6 +3,8 @@
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
+# small matrices: threads of the linear algebra only get into each other's way
+export OPENBLAS_NUM_THREADS ?= 1
 
 .PHONY: demo test check bench data clean
 
