@@ -6,12 +6,14 @@ import json
 import runpy
 from pathlib import Path
 
+import numpy as np
 import pytest
 from typer.testing import CliRunner
 
 from ssmr_ident import cli
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.physics.effects import CATALOGUE
+from ssmr_ident.pipeline.effect_panels import cycles, panels
 
 RUN = CliRunner()
 
@@ -82,3 +84,30 @@ def test_a_figure_of_the_whole_list_is_refused() -> None:
 def test_the_reference_page_is_what_the_catalogue_says(root: Path) -> None:
     page = runpy.run_path(str(root / "docs" / "make_effects.py"))["page"]()
     assert (root / "docs" / "reference" / "effects.md").read_text(encoding="utf-8") == page
+
+
+@pytest.mark.parametrize("effect_id", ["dry_friction", "motor_belt", "ground_joints", "translation_coupling"])
+def test_panels_show_a_difference_with_units_on_every_axis(effect_id: str) -> None:
+    effect = CATALOGUE[effect_id]
+    found = panels(effect, effect.values())
+    assert 2 <= len(found) <= 4
+    for panel in found:
+        assert "[" in panel.x_label
+        assert "[" in panel.y_label
+        plain, *changed = panel.curves
+        assert plain.role == "without"
+        for curve in changed:
+            assert curve.x.shape == curve.y.shape
+            assert np.isfinite(curve.y).all()
+            assert curve.y.shape != plain.y.shape or not np.array_equal(curve.y, plain.y)
+
+
+def test_cycles_of_a_known_decay() -> None:
+    """8 Hz and 3 % damping, measured cycle by cycle."""
+    time = np.arange(3000) / 1000.0
+    omega, xi = 2 * np.pi * 8.0, 0.03
+    course = np.exp(-xi * omega * time) * np.cos(omega * np.sqrt(1 - xi**2) * time)
+    amplitude, hertz, ratio = cycles(course, 1000.0)
+    assert len(amplitude) > 10
+    assert hertz == pytest.approx(8.0 * np.sqrt(1 - xi**2), rel=1e-3)
+    assert ratio == pytest.approx(xi / np.sqrt(1 - xi**2), rel=0.02)
