@@ -1,7 +1,58 @@
-"""``ident demo``."""
+"""``ident demo``: the whole main job on the reference campaign."""
 
 from __future__ import annotations
 
+from pathlib import Path
+from typing import Annotated
 
-def command() -> None:
-    """(in the making)"""
+import typer
+
+
+def command(
+    output: Annotated[Path, typer.Option("-o", "--output", help="Folder for parameters, report and tables.")] = Path(
+        "out"
+    ),
+    data: Annotated[
+        Path | None, typer.Option(help="Folder that holds raw/ and published/; the checkout's own.")
+    ] = None,
+    thesis: Annotated[
+        bool, typer.Option("--thesis", help="Check the thesis' statements on the simulator instead.")
+    ] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the table as JSON.")] = False,
+    quiet: Annotated[bool, typer.Option("-q", "--quiet", help="Print nothing.")] = False,
+) -> None:
+    """Raw logs to spectra, to parameters, to a simulation, and back to the logs.
+
+    Example: ident demo -o out
+    """
+    import json
+
+    from ssmr_ident.cli.progress import stages
+
+    if thesis:
+        from ssmr_ident.pipeline.scoreboard import thesis_scoreboard
+
+        with stages(hidden=quiet or as_json) as step:
+            board = thesis_scoreboard(lambda done, total: step("the thesis' statements", done, total))
+        if as_json:
+            print(json.dumps(board.as_list(), ensure_ascii=False))
+        elif not quiet:
+            print(board)
+        return
+    from ssmr_ident.pipeline.demo import find_data, run_demo
+    from ssmr_ident.pipeline.demo_report import write_demo_report
+
+    with stages(hidden=quiet or as_json) as step:
+        demo = run_demo(find_data(data), output, step)
+        step("report", 0, 1)
+        report = write_demo_report(demo, f"ident demo -o {output}")
+        step("report", 1, 1)
+    if as_json:
+        print(json.dumps({"table": demo.table.as_list(), "report": str(report)}, ensure_ascii=False))
+    elif not quiet:
+        print(demo.table)
+        print()
+        for comparison in demo.comparisons:
+            means = ", ".join(f"{value:.3g} {metric}" for metric, value in comparison.overall.items())
+            print(f"{comparison.session}: {len(comparison.recordings)} recordings, simulation apart by {means}")
+        print(f"\nparameters: {output / 'parameters.yaml'}\nreport:     {report}")

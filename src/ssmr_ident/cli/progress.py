@@ -1,4 +1,4 @@
-"""A progress bar on a terminal, silence when piped."""
+"""Progress on a terminal, silence when piped."""
 
 from __future__ import annotations
 
@@ -7,16 +7,29 @@ from contextlib import contextmanager
 
 
 @contextmanager
-def progress(what: str, hidden: bool = False) -> Iterator[Callable[[int, int], None]]:
-    """Yield a function that takes the number done and the total."""
+def stages(hidden: bool = False) -> Iterator[Callable[[str, int, int], None]]:
+    """Yield a function that takes a stage's name, how much of it is done, and of how much."""
     from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
 
     console = Console(stderr=True)
     if hidden or not console.is_terminal:
-        yield lambda done, total: None
+        yield lambda name, done, total: None
         return
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
-    with Progress(*columns, console=console, transient=True) as bar:
-        task = bar.add_task(what, total=None)
-        yield lambda done, total: bar.update(task, completed=done, total=total)
+    columns = (TextColumn("{task.description:<48}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+    with Progress(*columns, console=console) as bar:
+        tasks: dict[str, TaskID] = {}
+
+        def step(name: str, done: int, total: int) -> None:
+            if name not in tasks:
+                tasks[name] = bar.add_task(name, total=total)
+            bar.update(tasks[name], completed=done, total=total)
+
+        yield step
+
+
+@contextmanager
+def progress(what: str, hidden: bool = False) -> Iterator[Callable[[int, int], None]]:
+    """Yield a function that takes the number done and the total."""
+    with stages(hidden) as step:
+        yield lambda done, total: step(what, done, total)

@@ -18,6 +18,10 @@ def command(
     ),
     motion: Annotated[str, typer.Option(help="Free response: roll, pitch or yaw.")] = "roll",
     amplitude_mm: Annotated[float, typer.Option(help="Free response: displacement of the wheels at the start.")] = 0.3,
+    push_n: Annotated[
+        float,
+        typer.Option("--push-N", help="Free response: pushed by this force and let go, instead of --amplitude-mm."),
+    ] = 0.0,
     direction: Annotated[str, typer.Option(help="Pull: lateral or longitudinal.")] = "lateral",
     speed_mm_s: Annotated[float, typer.Option(help="Pull, drag, compression: speed of the head.")] = 1.0,
     height_m: Annotated[float, typer.Option(help="Pull: height of the cable above the floor.")] = 0.05,
@@ -42,10 +46,10 @@ def command(
     from ssmr_ident.pipeline.simulate import Request, simulate_to_file
 
     request = Request(
-        experiment=experiment, motion=motion, amplitude_mm=amplitude_mm, direction=direction,
+        experiment=experiment, motion=motion, amplitude_mm=amplitude_mm, push_N=push_n, direction=direction,
         speed_mm_s=speed_mm_s, height_m=height_m, wheels_gripping=wheels_gripping, cable=cable,
-        wheel_rate_rad_s=wheel_rate_rad_s, free_normal=free_normal, yaw_rate_deg_s=yaw_rate_deg_s, speed_m_s=speed_m_s, force=force,
-        duration_s=duration_s, rate_hz=rate_hz, noise=noise, seed=seed,
+        wheel_rate_rad_s=wheel_rate_rad_s, free_normal=free_normal, yaw_rate_deg_s=yaw_rate_deg_s,
+        speed_m_s=speed_m_s, force=force, duration_s=duration_s, rate_hz=rate_hz, noise=noise, seed=seed,
     )  # fmt: skip
     recording = simulate_to_file(params, request, output)
     if as_json:

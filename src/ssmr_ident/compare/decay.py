@@ -27,6 +27,7 @@ LOW_PASS_HZ = 50.0
 # Scales of a plausible start (m, rad, m/s, rad/s): a prior that only decides between starts which the record
 # cannot tell apart.
 _SCALES = np.array([1e-3, 1e-3, 3e-4, 5e-3, 5e-3, 5e-3, 0.03, 0.03, 0.02, 0.15, 0.15, 0.15, 2e-3, 2e-3, 0.1, 0.1])
+_STRAIGHT = 0.02  # a run within this share of the linear model needs no derivatives of its own
 STATES = ("x", "y", "z", "roll", "pitch", "yaw", "vx", "vy", "vz", "wx", "wy", "wz")
 STATES += ("sway_x", "sway_y", "sway_vx", "sway_vy")
 _NOISE_FLOOR = 1e-3  # share of the signal that is taken as noise at the least: no sensor is better
@@ -136,7 +137,7 @@ def fit_start(
 
     cost = _cost(without_hum(target - base), weight, start)
     design = smooth(full)
-    differences = False
+    first, differences = base, False
     for _ in range(14):
         rest = target - base
         stacked = np.block([[design, hum], [np.diag(weight), np.zeros((len(start), hum.shape[1]))]])
@@ -155,7 +156,8 @@ def fit_start(
             if differences:
                 design = smooth(_differences(run, start, simulated))
             continue
-        if differences or not exact or np.abs(rest).max() == 0.0:
+        bent = base - first - design @ start
+        if differences or not exact or np.linalg.norm(bent) < _STRAIGHT * np.linalg.norm(base - first):
             break
         differences = True
         design = smooth(_differences(run, start, simulated))

@@ -41,7 +41,7 @@ def predict_robot(parameters: ParameterSet, measurement: Measurement) -> Predict
             wheel_rates=rates,
             held=fixture_needed(entry.wheels_gripping, entry.wheel_rate_rad_s or 0.0),
         )
-        return simulate(robot, scenario, 1.0 / step, step=2e-4, effects=effects)["force"]
+        return simulate(robot, scenario, 1.0 / step, effects=effects)["force"]
 
     return _fitted(measurement, run)
 
@@ -84,11 +84,11 @@ def _fitted(measurement: Measurement, run: Callable[[np.ndarray, float], np.ndar
         return float(np.sum((rest - rest.mean()) ** 2))
 
     # slack up to a third of the travel; a log that starts under load is told apart by the zero
-    grid = np.linspace(0.0, travel.max() / 3.0, 13)
+    grid = np.linspace(0.0, travel.max() / 3.0, 9)
     costs = [misfit(slack) for slack in grid]
     best = int(np.argmin(costs))
     low, high = grid[max(best - 1, 0)], grid[min(best + 1, len(grid) - 1)]
-    refined = minimize_scalar(misfit, bounds=(low, high), method="bounded", options={"maxiter": 20})
+    refined = minimize_scalar(misfit, bounds=(low, high), method="bounded", options={"maxiter": 12})
     slack = float(refined.x) if refined.fun < costs[best] else float(grid[best])
     simulated = shifted(slack)
     zero = float((force - simulated).mean())

@@ -32,6 +32,7 @@ class Request:
     experiment: str
     motion: str = "roll"
     amplitude_mm: float = 0.3
+    push_N: float = 0.0
     direction: str = "lateral"
     speed_mm_s: float = 1.0
     height_m: float = 0.05
@@ -128,7 +129,10 @@ def _run(parameters: ParameterSet, request: Request) -> Recording:
         result = simulate(robot, scenario, request.rate, effects=effects)
         return _recording(result.time, "pull", position=(result["head"], "m"), force=(result["force"], "N"))
     if request.experiment == "free_response":
-        scenario = scenarios.free_response(request.motion, request.amplitude_mm * 1e-3, request.duration)
+        if request.push_N:
+            scenario = scenarios.released(robot, request.motion, request.push_N, request.duration)
+        else:
+            scenario = scenarios.free_response(request.motion, request.amplitude_mm * 1e-3, request.duration)
     elif request.experiment == "swivel":
         rates = wheel_rates(robot, 0.0, float(np.deg2rad(request.yaw_rate_deg_s)))
         scenario = scenarios.swivel(rates, request.duration)

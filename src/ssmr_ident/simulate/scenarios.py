@@ -8,10 +8,13 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ssmr_ident.core.errors import InputError
+from ssmr_ident.physics.linear import COORDINATES, linear_robot
+from ssmr_ident.physics.robot import Robot
 
 ROPE_STIFFNESS = 6430.0  # N/m; (3.9) with 5 kN/m measured over a rope and 22.5 kN/m of tire
 STEEL_STIFFNESS = 1e6  # N/m; thesis section 4
-OILED = 0.0  # friction share of a wheel that stands on oiled plates
+_PUSHING_HEIGHT = 0.5  # m above the CoM: the top of the frame
+_TURNING_ARM = 0.5  # m
 FIXTURE = (1e6, 1e5)  # N/m along x and N m/rad about z of the fixture that holds the robot (robot_kernel.py)
 
 
@@ -79,6 +82,28 @@ def free_response(motion: str, amplitude: float = 0.001, duration: float = 4.096
     if motion not in lever:
         raise InputError("motion", f"is {motion!r}", "Give roll, pitch or yaw")
     return Scenario("free_response", duration, offset={motion: amplitude / lever[motion]})
+
+
+def released(robot: Robot, motion: str, force: float, duration: float = 4.096) -> Scenario:
+    """Pushed or turned by a steady force and let go: the start is the robot's own static deflection.
+
+    Parameters
+    ----------
+    robot : Robot
+    motion : str
+        ``roll`` pushes sideways and ``pitch`` lengthwise at the height of the frame's top; ``yaw`` turns by the
+        same force at half a metre.
+    force : float [N]
+    duration : float [s]
+    """
+    directions = {"roll": (0.0, 1.0), "pitch": (1.0, 0.0), "yaw": (0.0, 0.0)}
+    if motion not in directions:
+        raise InputError("motion", f"is {motion!r}", "Give roll, pitch or yaw")
+    along, across = (force * share for share in directions[motion])
+    turning = force * _TURNING_ARM if motion == "yaw" else 0.0
+    wrench = np.array([along, across, 0.0, -across * _PUSHING_HEIGHT, along * _PUSHING_HEIGHT, turning])
+    offset = np.linalg.solve(linear_robot(robot).stiffness, wrench)
+    return Scenario("free_response", duration, offset=dict(zip(COORDINATES, map(float, offset), strict=True)))
 
 
 def pull(
