@@ -5,8 +5,11 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-import matplotlib as mpl
-import pytest
+# before numpy loads: small matrices on several threads of a busy machine cost many times the work
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+import matplotlib as mpl  # noqa: E402
+import pytest  # noqa: E402
 
 mpl.use("Agg")
 os.environ.setdefault("NO_COLOR", "1")

@@ -22,20 +22,14 @@ def command(
     paths: Annotated[
         list[Path], typer.Argument(metavar="FILE-or-SESSION...", help="A session folder, or one or more logs.")
     ],
-    out: Annotated[
-        Path | None, typer.Option("--out", "-o", help="Folder for spectrum.csv and the figures.")
-    ] = None,
+    out: Annotated[Path | None, typer.Option("--out", "-o", help="Folder for spectrum.csv and the figures.")] = None,
     part: Annotated[str | None, typer.Option("--range", help=RANGE_HELP)] = None,
     low_pass: Annotated[float | None, typer.Option("--low-pass", metavar="HZ", help=LOW_PASS_HELP)] = None,
     half_width: Annotated[
         float, typer.Option("--half-width", metavar="HZ", help="Of the band-pass; 1 for the thesis' 2 Hz.")
     ] = 0.5,
-    band: Annotated[
-        str, typer.Option("--band", metavar="F0:F1", help="Where peaks are searched, in Hz.")
-    ] = "1:50",
-    reader: Annotated[
-        str | None, typer.Option("--reader", help="Of bare logs; left out, the content decides.")
-    ] = None,
+    band: Annotated[str, typer.Option("--band", metavar="F0:F1", help="Where peaks are searched, in Hz.")] = "1:50",
+    reader: Annotated[str | None, typer.Option("--reader", help="Of bare logs; left out, the content decides.")] = None,
     sample: Annotated[
         int | None, typer.Option("--sample", help="Which recording of a bare log that holds several.")
     ] = None,

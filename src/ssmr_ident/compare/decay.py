@@ -28,9 +28,10 @@ LOW_PASS_HZ = 50.0
 # cannot tell apart.
 _SCALES = np.array([1e-3, 1e-3, 3e-4, 5e-3, 5e-3, 5e-3, 0.03, 0.03, 0.02, 0.15, 0.15, 0.15, 2e-3, 2e-3, 0.1, 0.1])
 _STRAIGHT = 0.02  # a run within this share of the linear model needs no derivatives of its own
-STATES = ("x", "y", "z", "roll", "pitch", "yaw", "vx", "vy", "vz", "wx", "wy", "wz")
-STATES += ("sway_x", "sway_y", "sway_vx", "sway_vy")
 _NOISE_FLOOR = 1e-3  # share of the signal that is taken as noise at the least: no sensor is better
+_STRAIGHT = 0.02  # a run within this share of the linear model needs no derivatives of its own
+_MOTIONS = ("x", "y", "z", "roll", "pitch", "yaw", "vx", "vy", "vz", "wx", "wy", "wz")
+STATES = (*_MOTIONS, "sway_x", "sway_y", "sway_vx", "sway_vy")
 
 
 def predict(parameters: ParameterSet, measurement: Measurement, decoupled: bool = False) -> Prediction:

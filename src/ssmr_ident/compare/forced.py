@@ -40,8 +40,9 @@ def predict(parameters: ParameterSet, measurement: Measurement) -> Prediction:
         bandwidth = float("inf")
 
     def run(force: np.ndarray, start: np.ndarray, effects: Effects | None = None) -> np.ndarray:
-        rate = even.sample_rate
-        return simulate_rig(rig, force, rate, *start, bandwidth_hz=bandwidth, effects=effects)[:, columns]
+        position, velocity = float(start[0]), float(start[1])
+        motion = simulate_rig(rig, force, even.sample_rate, position, velocity, bandwidth_hz=bandwidth, effects=effects)
+        return motion[:, columns]
 
     rest = np.zeros_like(force)
     names = ["start_position", "start_velocity"] + (["force_zero"] if drive else [])

@@ -5,6 +5,7 @@ from __future__ import annotations
 import shutil
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 from ssmr_ident.campaign import load
@@ -103,7 +104,7 @@ def run_demo(data: Path, output: Path, progress: Progress) -> Demo:
     for name in COMPARED:
         stage = f"simulation against {Path(name).parent.name}"
         campaign = load(raw / name)
-        comparisons.append(compare(campaign, parameters, lambda done, total, stage=stage: progress(stage, done, total)))
+        comparisons.append(compare(campaign, parameters, partial(progress, stage)))
     progress("the simulator's own logs, identified again", 0, 1)
     simulated = _identify_simulated(parameters, output / "simulated")
     progress("the simulator's own logs, identified again", 1, 1)

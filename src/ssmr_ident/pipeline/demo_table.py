@@ -78,53 +78,54 @@ def demo_table(
     InputError
         A published table is missing.
     """
+    rows = [*_motions(published, decays, simulated), *_stiffnesses(published, pulls, simulated)]
+    force = _by_key(published / "forces-3-3.csv", "quantity")
+    for floor, fit, made in (("concrete", pulls, simulated), ("carpet", carpet, None)):
+        key, thesis = "tire.mu_static", force[f"mu_static_{floor}"]["low"]
+        rows.append(_row(f"static friction, {floor}", key, thesis, fit, made))
+    inertia = _by_key(published / "inertia-5-1.csv", "element")
+    for axis in ("xx", "yy", "zz"):
+        rows.append(_row(f"inertia {axis}", f"inertia_kg_m2.{axis}", inertia[axis]["cad_kg_m2"], decays, None))
+    damping = _by_key(published / "damping-6-5.csv", "quantity")
+    for axis in "xyz":
+        thesis = damping[f"damping_{axis}"]["value"]
+        rows.append(_row(f"tire damping {axis}", f"tire.damping_{axis}_N_s_m", thesis, decays, simulated))
+    return DemoTable((*rows, _row("mass", "mass_kg", "not printed", decays, None)))
+
+
+def _row(quantity: str, key: str, thesis: str, fit: SessionFit, simulated: SessionFit | None) -> DemoRow:
+    estimate = fit.parameters[key]
+    made = None if simulated is None else float(simulated.parameters[key].value)
+    return DemoRow(quantity, estimate.unit, thesis, float(estimate.value), estimate.std, made)
+
+
+def _motions(published: Path, decays: SessionFit, simulated: SessionFit) -> list[DemoRow]:
+    """(5.9): natural frequency and damping ratio, mean and spread over the trials."""
     motions = _by_key(published / "modes-5-9.csv", "motion")
     rows = []
     for motion in ("roll", "pitch", "yaw"):
         own = [r for r in decays.results.values() if r.get("motion") == motion]
         made = [r for r in simulated.results.values() if r.get("motion") == motion]
-        for key, name, unit, column in (
-            ("omega_n_rad_s", "natural frequency", "rad/s", "omega_n_rad_s"),
-            ("xi", "damping ratio", "1", "xi"),
-        ):
+        for key, name, unit in (("omega_n_rad_s", "natural frequency", "rad/s"), ("xi", "damping ratio", "1")):
             mean, std = _mean([r[key] for r in own])
-            rows.append(
-                DemoRow(f"{motion}: {name}", unit, motions[motion][column], mean, std, _mean([r[key] for r in made])[0])
-            )
+            again = _mean([r[key] for r in made])[0]
+            rows.append(DemoRow(f"{motion}: {name}", unit, motions[motion][key], mean, std, again))
+    return rows
+
+
+def _stiffnesses(published: Path, pulls: SessionFit, simulated: SessionFit) -> list[DemoRow]:
     force = _by_key(published / "forces-3-3.csv", "quantity")
-    for quantity, key, printed in (
-        ("tire stiffness y", "tire.stiffness_y_N_m", force["tire_stiffness_y"]),
-        ("tire stiffness z", "tire.stiffness_z_N_m", force["tire_stiffness_z"]),
-    ):
-        estimate = pulls.parameters[key]
-        made = float(simulated.parameters[key].value)
-        rows.append(DemoRow(quantity, "N/m", printed["low"], float(estimate.value), estimate.std, made))
-    rows.append(_belt(force["belt_stiffness"]["low"], pulls, simulated))
-    for floor, fit in (("concrete", pulls), ("carpet", carpet)):
-        estimate = fit.parameters["tire.mu_static"]
-        made = float(simulated.parameters["tire.mu_static"].value) if fit is pulls else None
-        printed = force[f"mu_static_{floor}"]["low"]
-        rows.append(DemoRow(f"static friction, {floor}", "1", printed, float(estimate.value), estimate.std, made))
-    for axis, printed in _inertias(published):
-        estimate = decays.parameters[f"inertia_kg_m2.{axis}"]
-        rows.append(DemoRow(f"inertia {axis}", "kg m²", printed, float(estimate.value), estimate.std, None))
-    damping = _by_key(published / "damping-6-5.csv", "quantity")
-    for axis in "xyz":
-        estimate = decays.parameters[f"tire.damping_{axis}_N_s_m"]
-        made = float(simulated.parameters[f"tire.damping_{axis}_N_s_m"].value)
-        rows.append(
-            DemoRow(
-                f"tire damping {axis}",
-                "N s/m",
-                damping[f"damping_{axis}"]["value"],
-                float(estimate.value),
-                estimate.std,
-                made,
-            )
+    rows = [
+        _row(
+            f"tire stiffness {axis}",
+            f"tire.stiffness_{axis}_N_m",
+            force[f"tire_stiffness_{axis}"]["low"],
+            pulls,
+            simulated,
         )
-    estimate = decays.parameters["mass_kg"]
-    rows.append(DemoRow("mass", "kg", "not printed", float(estimate.value), estimate.std, None))
-    return DemoTable(tuple(rows))
+        for axis in "yz"
+    ]
+    return [*rows, _belt(force["belt_stiffness"]["low"], pulls, simulated)]
 
 
 def _belt(printed: str, pulls: SessionFit, simulated: SessionFit) -> DemoRow:
@@ -136,11 +137,6 @@ def _belt(printed: str, pulls: SessionFit, simulated: SessionFit) -> DemoRow:
 
     mean, std = _mean(rises(pulls))
     return DemoRow("belt, eq (3.8)", "N/m", printed, mean, std, _mean(rises(simulated))[0])
-
-
-def _inertias(published: Path) -> list[tuple[str, str]]:
-    rows = _by_key(published / "inertia-5-1.csv", "element")
-    return [(axis, rows[axis]["cad_kg_m2"]) for axis in ("xx", "yy", "zz")]
 
 
 def _by_key(path: Path, key: str) -> Mapping[str, Mapping[str, str]]:

@@ -51,9 +51,7 @@ def _rows(rows: Sequence[SpectrumRow]) -> list[list[str]]:
     for row in rows:
         label, analysis = row.label, row.analysis
         new = label.file != previous
-        peaks = [
-            f"{f:.2f} ({a:.3g})" for f, a in zip(analysis.peaks.frequency, analysis.peaks.amplitude, strict=True)
-        ]
+        peaks = [f"{f:.2f} ({a:.3g})" for f, a in zip(analysis.peaks.frequency, analysis.peaks.amplitude, strict=True)]
         peaks += ["–"] * (COUNT - len(peaks))
         mains = "–" if analysis.mains is None else f"{analysis.mains.amplitude:.2g}"
         head = [label.file, _made(row)] if new else ["", ""]
@@ -75,9 +73,7 @@ def _made(row: SpectrumRow) -> str:
 
 def _averages(report: SpectrumReport) -> list[list[str]]:
     speed = "deg/s" if report.speed_key == "yaw_rate_deg_s" else "m/s"
-    lines = [
-        ["configuration", speed, "channel", "n", *(f"peak {k + 1} Hz" for k in range(COUNT)), "amplitude", "unit"]
-    ]
+    lines = [["configuration", speed, "channel", "n", *(f"peak {k + 1} Hz" for k in range(COUNT)), "amplitude", "unit"]]
     for average in report.averages:
         peaks = [_pair(mean_and_spread(average.peak_hz[:, rank]), ".2f") for rank in range(COUNT)]
         amplitude = _pair(mean_and_spread(average.amplitude), ".3g")
@@ -105,7 +101,5 @@ def _notes(report: SpectrumReport) -> list[str]:
 
 def _table(lines: list[list[str]]) -> str:
     widths = [max(len(line[k]) for line in lines) for k in range(len(lines[0]))]
-    texts = [
-        "  ".join(cell.ljust(width) for cell, width in zip(line, widths, strict=True)).rstrip() for line in lines
-    ]
+    texts = ["  ".join(cell.ljust(width) for cell, width in zip(line, widths, strict=True)).rstrip() for line in lines]
     return "\n".join([texts[0], "  ".join("-" * width for width in widths), *texts[1:]])

@@ -172,9 +172,7 @@ def average_swivels(rows: Sequence[SpectrumRow]) -> list[SpeedAverage]:
     ]
 
 
-def _same_speed(
-    members: list[tuple[float, SpectrumRow]], tolerance: float
-) -> list[list[tuple[float, SpectrumRow]]]:
+def _same_speed(members: list[tuple[float, SpectrumRow]], tolerance: float) -> list[list[tuple[float, SpectrumRow]]]:
     groups: list[list[tuple[float, SpectrumRow]]] = []
     for speed, row in sorted(members, key=lambda member: member[0]):
         if groups and speed <= groups[-1][0][0] * (1 + tolerance):

@@ -94,9 +94,7 @@ def _local_maxima(values: np.ndarray) -> np.ndarray:
     return (starts[top] + ends[top]) // 2
 
 
-def log_amplitude(
-    samples: np.ndarray, sample_rate: float, cutoff_hz: float = SWIVEL_LOW_PASS_HZ
-) -> float | np.ndarray:
+def log_amplitude(samples: np.ndarray, sample_rate: float, cutoff_hz: float = SWIVEL_LOW_PASS_HZ) -> float | np.ndarray:
     """Amplitude of a log: (max − min)/2 of the low-passed samples.
 
     The first and the last sample come through the filter as they are (see ``filters``): take the mains off first

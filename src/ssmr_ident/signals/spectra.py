@@ -231,9 +231,7 @@ def power_density(
             f"{sample_rate:g} Hz holds nothing of the band {band_hz[0]:g}–{band_hz[1]:g} Hz",
             "Log faster or compare a lower band.",
         )
-    frequency, density = signal.welch(
-        array, sample_rate, "hann", segment, segment // 2, detrend="constant", axis=0
-    )
+    frequency, density = signal.welch(array, sample_rate, "hann", segment, segment // 2, detrend="constant", axis=0)
     columns = density.reshape(len(frequency), -1).T
     read = np.stack([np.interp(centres, frequency, column) for column in columns], axis=-1)
     return PowerDensity(centres, read.reshape((len(centres), *array.shape[1:])), width_hz)
