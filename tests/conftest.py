@@ -1,4 +1,4 @@
-"""Shared fixtures. Recordings of other people lie beside a developer's checkout, never in it; without them tests skip."""
+"""Shared fixtures. Other people's recordings lie beside a checkout, never in it; without them tests skip."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from pathlib import Path
 # before numpy loads: small matrices on several threads of a busy machine cost many times the work
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-import matplotlib as mpl  # noqa: E402
-import pytest  # noqa: E402
+import matplotlib as mpl
+import pytest
 
 mpl.use("Agg")
 os.environ.setdefault("NO_COLOR", "1")

@@ -27,7 +27,6 @@ LOW_PASS_HZ = 50.0
 # Scales of a plausible start (m, rad, m/s, rad/s): a prior that only decides between starts which the record
 # cannot tell apart.
 _SCALES = np.array([1e-3, 1e-3, 3e-4, 5e-3, 5e-3, 5e-3, 0.03, 0.03, 0.02, 0.15, 0.15, 0.15, 2e-3, 2e-3, 0.1, 0.1])
-_STRAIGHT = 0.02  # a run within this share of the linear model needs no derivatives of its own
 _NOISE_FLOOR = 1e-3  # share of the signal that is taken as noise at the least: no sensor is better
 _STRAIGHT = 0.02  # a run within this share of the linear model needs no derivatives of its own
 _MOTIONS = ("x", "y", "z", "roll", "pitch", "yaw", "vx", "vy", "vz", "wx", "wy", "wz")
