@@ -7,12 +7,15 @@ from matplotlib.figure import Figure
 
 from ssmr_ident.compare.outcome import Prediction
 from ssmr_ident.report import style
+from ssmr_ident.signals.filters import low_pass
 from ssmr_ident.signals.spectra import power_density
 
 
 @style.house
 def overlay_figure(prediction: Prediction, title: str) -> Figure:
     """Time courses for what repeats (decays, pulls, rigs), power densities for what does not (swivels).
+
+    Courses are drawn as the metric sees them: below its low-pass, their means taken off, one scale for one unit.
 
     Parameters
     ----------
@@ -21,11 +24,15 @@ def overlay_figure(prediction: Prediction, title: str) -> Figure:
     """
     channels = len(prediction.names)
     figure = style.new_figure(style.DOUBLE_COLUMN, 0.6 + 1.7 * channels)
-    panels = np.atleast_1d(figure.subplots(channels, 1, sharex=True))
+    panels = np.atleast_1d(np.asarray(figure.subplots(channels, 1, sharex=True)))
     spectra = prediction.metric == "log_psd_db"
+    courses = [prediction.measured, prediction.simulated]
+    if not spectra and prediction.low_pass_hz is not None:
+        courses = [low_pass(c, prediction.sample_rate, prediction.low_pass_hz) for c in courses]
+        courses = [c - c.mean(axis=0) for c in courses]
     for index, axes in enumerate(panels):
         name, unit = prediction.names[index], prediction.units[index]
-        measured, simulated = prediction.measured[:, index], prediction.simulated[:, index]
+        measured, simulated = courses[0][:, index], courses[1][:, index]
         if spectra:
             for samples, colour, label in (
                 (measured, style.MEASURED, "recorded"),
@@ -39,6 +46,9 @@ def overlay_figure(prediction: Prediction, title: str) -> Figure:
             axes.plot(prediction.time, simulated, color=style.ORANGE, lw=0.8, label="simulated")
             axes.plot(prediction.time, measured - simulated, color=style.BLUE, lw=0.5, label="difference")
             axes.set_ylabel(style.axis_text(name, unit))
+            same = [i for i, other in enumerate(prediction.units) if other == unit]
+            low, high = min(c[:, same].min() for c in courses), max(c[:, same].max() for c in courses)
+            axes.set_ylim(low - 0.08 * (high - low), high + 0.08 * (high - low))
     panels[0].legend(loc="upper right", ncols=3)
     panels[0].set_title(title)
     panels[-1].set_xlabel("frequency [Hz]" if spectra else "time [s]")
