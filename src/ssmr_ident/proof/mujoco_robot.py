@@ -21,11 +21,6 @@ WHEELS = ("rear_left", "front_left", "front_right", "rear_right")
 AXES = ("x", "y", "z")
 # A friction beyond what any motion here asks for: the wheels are as good as nailed to the floor.
 GRIPPING = 100.0
-# Ratio of the friction along to that across the rolling direction in the two-axis cone: the pull along that a
-# swivel asks for then takes 0.1 % of the friction across (1 - sqrt(1 - 1/30²)), and 0.1 % of the speed.
-ALONG_OVER_ACROSS = 30.0
-# A capsule this short is a sphere, but the engine turns its contact frame with the axle.
-CAPSULE_HALF_LENGTH = 1e-6  # m
 ANCHOR = 100.0  # m; so far away that a pull keeps its direction to 1e-5 whatever the robot does
 
 
@@ -84,31 +79,33 @@ class Build:
     driven : bool
         Spheres turn on hinges, driven at the motors' speed (6.1); otherwise they stand still.
     friction : str
-        ``grip``: nailed to the floor; ``cone``: Coulomb's law with mu_static in every direction; ``across``: with
-        mu_static across the rolling direction and as good as no slip along it.
+        ``grip``: nailed to the floor; ``cone``: Coulomb's law with mu_static in every direction.
     wheel_mass : float [kg]
         Of each wheel; taken from the chassis.
     step : float [s]
+    plain : bool
+        The engine's own defaults for contact, cone and solver instead of the stiffest: quicker and softer.
     """
 
     tires: str = "patch"
     driven: bool = False
     friction: str = "cone"
-    wheel_mass: float = 0.01
+    wheel_mass: float = 0.035
     step: float = 1e-4
+    plain: bool = False
 
     @property
-    def welded(self) -> bool:
-        """Plates that hold for good are welded to the floor: no contact, so nothing that chatters."""
-        return self.tires == "patch" and self.friction == "grip"
+    def pinned(self) -> bool:
+        """Standing wheels that hold for good are tied to the floor: no contact, so nothing that creeps or rattles."""
+        return self.friction == "grip" and not self.driven
 
     def __post_init__(self) -> None:
         if self.tires not in ("patch", "strut", "rigid"):
             raise InputError("mujoco: tires", f"is {self.tires!r}", "Give patch, strut or rigid")
-        if self.friction not in ("grip", "cone", "across"):
-            raise InputError("mujoco: friction", f"is {self.friction!r}", "Give grip, cone or across")
-        if self.tires == "patch" and (self.driven or self.friction == "across"):
-            raise InputError("mujoco: tires", "a plate neither turns nor has an axle", "Give strut")
+        if self.friction not in ("grip", "cone"):
+            raise InputError("mujoco: friction", f"is {self.friction!r}", "Give grip or cone")
+        if self.tires == "patch" and self.driven:
+            raise InputError("mujoco: tires", "a plate does not turn", "Give strut")
 
 
 def mjcf(robot: Robot, build: Build, mast: Mast | None = None, cable: Cable | None = None) -> str:
@@ -130,18 +127,17 @@ def mjcf(robot: Robot, build: Build, mast: Mast | None = None, cable: Cable | No
     anchor = "" if cable is None else _anchor(robot, cable)
     return f"""<mujoco model="skid-steering robot">
   <compiler angle="radian" inertiafromgeom="false"/>
-  <option timestep="{_text(build.step)}" gravity="0 0 {-GRAVITY}" integrator="implicitfast" cone="elliptic"
-          impratio="1000" solver="Newton" iterations="100" tolerance="1e-12"/>
+  <option timestep="{_text(build.step)}" gravity="0 0 {-GRAVITY}" {"" if build.plain else SOLVER}/>
   <worldbody>
     <geom name="floor" type="plane" size="50 50 1" contype="0" conaffinity="0"/>
-{anchor}    <body name="chassis">
+{anchor}{_places(robot)}    <body name="chassis">
       <freejoint name="chassis"/>
       <inertial pos="{_row(centre)}" mass="{_text(mass)}" fullinertia="{_row(_six(inertia))}"/>
       <site name="centre"/>
       <site name="sensor" pos="{_row(robot.accelerometer.position)}"/>
 {_hook(robot, cable)}{_mast(mast)}{"".join(_wheel(robot, build, i) for i in range(4))}    </body>
   </worldbody>
-{_welds(robot, build) if build.welded else _pairs(robot, build)}{_tendon(cable)}  <actuator>
+{_ties(robot, build) if build.pinned else _pairs(robot, build)}{_tendon(cable)}  <actuator>
 {_motors(robot, build)}{_winch(robot, cable)}  </actuator>
   <sensor>
     <framepos name="position" objtype="site" objname="centre"/>
@@ -247,8 +243,11 @@ def _quaternion(roll: float, pitch: float, yaw: float) -> list[float]:
     cr, sr, cp, sp = math.cos(roll / 2), math.sin(roll / 2), math.cos(pitch / 2), math.sin(pitch / 2)
     cy, sy = math.cos(yaw / 2), math.sin(yaw / 2)
     return [
-        cr * cp * cy + sr * sp * sy, sr * cp * cy - cr * sp * sy, cr * sp * cy + sr * cp * sy, cr * cp * sy - sr * sp * cy
-    ]  # fmt: skip
+        cr * cp * cy + sr * sp * sy,
+        sr * cp * cy - cr * sp * sy,
+        cr * sp * cy + sr * cp * sy,
+        cr * cp * sy - sr * sp * cy,
+    ]
 
 
 def _text(value: float) -> str:
@@ -271,13 +270,10 @@ def _wheel(robot: Robot, build: Build, i: int) -> str:
 stiffness="{_text(robot.stiffness[axis])}" damping="{_text(robot.damping[axis])}"/>
 """
     if build.driven:
-        joints += f'        <joint name="{name}_axle" type="hinge" axis="0 1 0"/>\n'
+        joints += f'        <joint name="{name}_axle" type="hinge" axis="0 1 0" armature="{ROTOR}"/>\n'
     shape = f'type="sphere" size="{_text(robot.radius)}"'
     if patch:
         shape = f'type="box" size="{PLATE_HALF_WIDTH} {PLATE_HALF_WIDTH} {PLATE_HALF_HEIGHT}"'
-    elif build.friction == "across":
-        size, turn = f"{_text(robot.radius)} {CAPSULE_HALF_LENGTH}", f"{_text(math.pi / 2)} 0 0"
-        shape = f'type="capsule" size="{size}" euler="{turn}"'
     # the ball joint of a plate sits at the contact point, the middle of its lower face
     body, middle = (robot.contact_points[i], PLATE_HALF_HEIGHT) if patch else (hubs(robot, build)[i], 0.0)
     spin, reach = _text(wheel_inertia(robot, build)), _text(0.1 if patch else 2.0 * robot.radius)
@@ -285,6 +281,7 @@ stiffness="{_text(robot.stiffness[axis])}" damping="{_text(robot.damping[axis])}
 {joints}        <inertial pos="0 0 {middle}" mass="{_text(build.wheel_mass)}" diaginertia="{spin} {spin} {spin}"/>
         <geom name="{name}" pos="0 0 {middle}" {shape} contype="0" conaffinity="0"/>
         <site name="{name}" type="sphere" size="{reach}"/>
+        <site name="foot_{name}" pos="0 0 {_text(middle - _rise(robot, build))}"/>
       </body>
 """
 
@@ -293,7 +290,9 @@ def _mast(mast: Mast | None) -> str:
     if mast is None:
         return ""
     omega = 2.0 * math.pi * mast.frequency_hz
-    spring = f'stiffness="{_text(mast.mass * omega**2)}" damping="{_text(2.0 * mast.damping_ratio * mast.mass * omega)}"'
+    spring = (
+        f'stiffness="{_text(mast.mass * omega**2)}" damping="{_text(2.0 * mast.damping_ratio * mast.mass * omega)}"'
+    )
     return f"""      <body name="mast" pos="0 0 {_text(mast.height)}">
         <joint name="mast_x" type="slide" axis="1 0 0" {spring}/>
         <joint name="mast_y" type="slide" axis="0 1 0" {spring}/>
@@ -304,44 +303,53 @@ def _mast(mast: Mast | None) -> str:
 
 def _pairs(robot: Robot, build: Build) -> str:
     """Contacts of wheels and floor, as stiff as the engine has them."""
-    across = GRIPPING if build.friction == "grip" else robot.mu_static
-    along = ALONG_OVER_ACROSS * across if build.friction == "across" else across
+    stiff = "" if build.plain else _stiff(build)
+    friction = _text(GRIPPING if build.friction == "grip" else robot.mu_static)
     lines = ""
-    for name in WHEELS:  # the first tangent of a capsule's contact lies along its axis
-        lines += f"""    <pair geom1="floor" geom2="{name}" condim="3" friction="{_text(across)} {_text(along)} 0 0 0" \
-solref="{_text(2.0 * build.step)} 1" solimp="{STIFFEST}"/>
+    for name in WHEELS:
+        lines += f"""    <pair geom1="floor" geom2="{name}" condim="3" friction="{friction} {friction} 0 0 0" {stiff}/>
 """
     return f"  <contact>\n{lines}  </contact>\n"
 
 
-def _welds(robot: Robot, build: Build) -> str:
-    """Every plate where it was set down."""
-    _, roll, pitch = rest_pose(robot)
+def _ties(robot: Robot, build: Build) -> str:
+    """Every wheel where it was set down: plates welded, so that they stay level, spheres by their lowest point."""
     lines = ""
-    for name, stood in zip(WHEELS, robot.contact_points @ tilt(roll, pitch).T, strict=True):
-        place = _row([stood[0], stood[1], 0.0, 1.0, 0.0, 0.0, 0.0])
-        lines += f"""    <weld body1="world" body2="{name}" relpose="{place}" solref="{_text(2.0 * build.step)} 1" \
-solimp="{STIFFEST}"/>
-"""
+    for name, stood in zip(WHEELS, _stood(robot), strict=True):
+        if build.tires == "patch":
+            place = _row(np.array([*stood, 1.0, 0.0, 0.0, 0.0]))
+            lines += f'    <weld body1="world" body2="{name}" relpose="{place}" {_stiff(build)}/>\n'
+        else:
+            lines += f'    <connect site1="stood_{name}" site2="foot_{name}" {_stiff(build)}/>\n'
     return f"  <equality>\n{lines}  </equality>\n"
 
 
-STIFFEST = "0.9999 0.9999 0.001 0.5 2"  # an impedance of 0.9999 is the engine's upper limit
+def _stood(robot: Robot) -> np.ndarray:
+    """Where the wheels touch the floor at rest, in the world, (4, 3) float [m]."""
+    _, roll, pitch = rest_pose(robot)
+    return (robot.contact_points @ tilt(roll, pitch).T) * np.array([1.0, 1.0, 0.0])
+
+
+def _stiff(build: Build) -> str:
+    return f'solref="{_text(CONTACT_STEPS * build.step)} 1" solimp="0.9999 0.9999 0.001 0.5 2"'
+
+
+SOLVER = 'integrator="implicitfast" cone="elliptic" impratio="10" tolerance="1e-12"'
+# Time constant of a contact in steps (the engine takes 2 at least, and rattles there); an impedance of 0.9999 is its
+# upper limit.
+CONTACT_STEPS = 4.0
 
 
 def _motors(robot: Robot, build: Build) -> str:
-    """Velocity servos so strong that the wheels keep to (6.1): the wish passes a lag of 1/K_w."""
-    if not build.driven:
-        return ""
+    """Motors that obey (6.1) whatever the load: a rotor so heavy that the floor cannot slow it."""
     lines = ""
-    for name in WHEELS:
-        lines += f"""    <general name="{name}" joint="{name}_axle" dyntype="filterexact" dynprm="{_text(1.0 / robot.motor_gain)}" \
-gainprm="{SERVO}" biastype="affine" biasprm="0 0 -{SERVO}"/>
+    for name in WHEELS if build.driven else ():
+        lines += f"""    <velocity name="{name}" joint="{name}_axle" kv="{_text(robot.motor_gain * ROTOR)}"/>
 """
     return lines
 
 
-SERVO = 1e4  # N m s/rad; 100 N at the rim shift a wheel's rate by 1e-3 rad/s
+ROTOR = 1e4  # kg m^2; 100 N at the rim shift a wheel's rate by 2e-4 rad/s
 
 
 def _hook_place(robot: Robot, cable: Cable) -> np.ndarray:
@@ -362,6 +370,11 @@ def _hook_at_rest(robot: Robot, cable: Cable) -> np.ndarray:
 def _anchor(robot: Robot, cable: Cable) -> str:
     direction = np.array([0.0, 1.0, 0.0] if cable.direction == "lateral" else [-1.0, 0.0, 0.0])
     return f'    <site name="winch" pos="{_row(_hook_at_rest(robot, cable) + ANCHOR * direction)}"/>\n'
+
+
+def _places(robot: Robot) -> str:
+    places = zip(WHEELS, _stood(robot), strict=True)
+    return "".join(f'    <site name="stood_{name}" pos="{_row(place)}"/>\n' for name, place in places)
 
 
 def _tendon(cable: Cable | None) -> str:
