@@ -42,7 +42,7 @@ def overlay_figure(prediction: Prediction, title: str) -> Figure:
                 axes.semilogy(density.frequency, density.density, color=colour, label=label)
             axes.set_ylabel(f"{style.quantity_text(name)} [({style.unit_text(unit)})²/Hz]")
         else:
-            axes.plot(prediction.time, measured, color=style.MEASURED, label="recorded")
+            axes.plot(prediction.time, measured, color=style.RAW, lw=2.4, label="recorded")
             axes.plot(prediction.time, simulated, color=style.ORANGE, lw=0.8, label="simulated")
             axes.plot(prediction.time, measured - simulated, color=style.BLUE, lw=0.5, label="difference")
             axes.set_ylabel(style.axis_text(name, unit))

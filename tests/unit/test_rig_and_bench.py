@@ -1,0 +1,136 @@
+"""Rigs, single wheels and blocks against scipy's integrators and closed forms."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from ssmr_ident.core.errors import InputError, SimulationError
+from ssmr_ident.physics.rig import Block, Rig
+from ssmr_ident.physics.robot import Robot, robot_from_parameters
+from ssmr_ident.session import read_parameters
+from ssmr_ident.simulate.bench import compress_wheel, drag_wheel, pull_block
+from ssmr_ident.simulate.rig import band_limited, simulate_rig
+
+RATE = 1000.0
+TIME = np.arange(2000) / RATE
+RIG = Rig(8.0, 50.0, 20000.0)
+
+
+@pytest.fixture(scope="module")
+def robot() -> Robot:
+    return robot_from_parameters(read_parameters("p3at-extended"))
+
+
+def _force(t: np.ndarray) -> np.ndarray:
+    return 20.0 * np.sin(2 * np.pi * 5.0 * t) + 8.0 * np.sin(2 * np.pi * 11.0 * t + 1.0)
+
+
+def _reference(beside: object = lambda x, v: 0.0) -> np.ndarray:
+    def rate(t: float, y: np.ndarray) -> list[float]:
+        x, v = y
+        return [v, (_force(t) - RIG.damping * v - RIG.stiffness * x - beside(x, v)) / RIG.mass]
+
+    return solve_ivp(rate, (0, TIME[-1]), [1e-3, 0.0], "DOP853", TIME, rtol=1e-10, atol=1e-13).y
+
+
+def test_a_linear_rig_is_exact() -> None:
+    motion = simulate_rig(RIG, _force(TIME), RATE, position=1e-3)
+    x, v = _reference()
+    inner = slice(20, -20)  # the mirror at the ends is not what the force did before and after
+    assert motion[inner, 0] == pytest.approx(x[inner], abs=2e-4 * np.abs(x).max())
+    assert motion[inner, 1] == pytest.approx(v[inner], abs=2e-4 * np.abs(v).max())
+    acceleration = (_force(TIME) - RIG.damping * v - RIG.stiffness * x) / RIG.mass
+    assert motion[inner, 2] == pytest.approx(acceleration[inner], abs=2e-4 * np.abs(acceleration).max())
+
+
+@pytest.mark.parametrize(
+    ("effects", "beside"),
+    [
+        ({"nonlinear_stiffness": {"k3_N_m3": 2e9}}, lambda x, v: 2e9 * x**3),
+        ({"quadratic_damping": {"d2_N_s2_m2": 400.0}}, lambda x, v: 400.0 * v * abs(v)),
+    ],
+)
+def test_effects_on_a_rig_follow_their_equation(effects: dict, beside: object) -> None:
+    motion = simulate_rig(RIG, _force(TIME), RATE, position=1e-3, effects=effects)
+    x, _ = _reference(beside)
+    plain, _ = _reference()
+    assert np.abs(x - plain).max() > 0.05 * np.abs(x).max()
+    assert np.abs(motion[20:-20, 0] - x[20:-20]).max() < 1e-3 * np.abs(x).max()
+
+
+def test_oversampling_converges_at_second_order_with_an_effect() -> None:
+    effects = {"nonlinear_stiffness": {"k3_N_m3": 2e9}}
+    runs = [simulate_rig(RIG, _force(TIME), RATE, 1e-3, oversampling=n, effects=effects)[:, 0] for n in (2, 4, 8)]
+    coarse, fine = np.abs(runs[0] - runs[1]).max(), np.abs(runs[1] - runs[2]).max()
+    assert np.log2(coarse / fine) > 1.7
+
+
+def test_band_limited_samples_lie_on_the_curve() -> None:
+    factor = 8
+    fine = band_limited(_force(TIME), factor)
+    t = np.arange(len(fine)) / (RATE * factor)
+    assert np.array_equal(np.round(fine[::factor], 9), np.round(_force(TIME), 9))
+    inner = slice(40 * factor, -40 * factor)
+    assert np.abs(fine - _force(t))[inner].max() < 2e-4 * np.abs(_force(t)).max()
+
+
+def test_a_mass_without_a_spring_obeys_newton() -> None:
+    motion = simulate_rig(Rig(2.0, 0.0, 0.0), np.full(1000, 4.0), RATE)
+    t = np.arange(1000) / RATE
+    assert motion[:, 0] == pytest.approx(t**2, abs=1e-12)
+    assert motion[:, 2] == pytest.approx(2.0)
+
+
+def test_an_effect_that_no_rig_has_is_refused() -> None:
+    with pytest.raises(InputError, match="does not act on a rig"):
+        simulate_rig(RIG, _force(TIME), RATE, effects={"wheel_lift": {}})
+
+
+def test_a_rig_that_runs_away_says_so() -> None:
+    with pytest.raises(SimulationError, match=r"t = .*nonlinear_stiffness"):
+        simulate_rig(RIG, 1e3 * _force(TIME), RATE, effects={"nonlinear_stiffness": {"k3_N_m3": -9e9}})
+
+
+def test_a_dragged_wheel_rises_with_its_stiffness_and_lets_go_at_the_limit(robot: Robot) -> None:
+    step, speed = 0.01, 1e-3
+    head = speed * step * np.arange(1600)
+    force = drag_wheel(robot, head, step)
+    load = robot.mass * 9.8 / 4
+    assert np.polyfit(head[20:200], force[20:200], 1)[0] == pytest.approx(robot.stiffness[1], rel=1e-6)
+    assert force.max() == pytest.approx(robot.mu_static * load, abs=robot.stiffness[1] * speed * step)
+    # a sample that falls into the millisecond of a release sees the hub unloaded; the others stay above the lower limit
+    below = force[500:] < robot.mu_kinetic * load - 0.1
+    assert below.mean() < 0.03
+    assert force[500:][~below].min() == pytest.approx(
+        robot.mu_kinetic * load, abs=2 * robot.stiffness[1] * speed * step
+    )
+    held = drag_wheel(robot, head, step, free_normal=False)
+    assert held[-1] == pytest.approx(robot.stiffness[1] * head[-1] + robot.damping[1] * speed, rel=1e-3)
+
+
+def test_a_rope_adds_its_compliance_to_a_dragged_wheel(robot: Robot) -> None:
+    """(3.9): two springs in series."""
+    head = 1e-5 * np.arange(300)
+    force = drag_wheel(robot, head, 0.01, effects={"cable_compliance": {"K_cable_N_m": 6000.0}})
+    tire = robot.stiffness[1]
+    assert np.polyfit(head[50:], force[50:], 1)[0] == pytest.approx(6000.0 * tire / (6000.0 + tire), rel=1e-3)
+
+
+def test_a_pressed_wheel_follows_spring_and_damper(robot: Robot) -> None:
+    head = np.concatenate([np.zeros(10), 1e-5 * np.arange(1, 200), np.full(20, 2e-3)])
+    force = compress_wheel(robot, head, 0.01, gap=5e-4)
+    assert force[20] == 0.0
+    assert force[-1] == pytest.approx(robot.stiffness[2] * 1.5e-3, rel=1e-9)
+    assert force[150] == pytest.approx(robot.stiffness[2] * (head[150] - 5e-4) + robot.damping[2] * 1e-3, rel=1e-9)
+
+
+def test_a_block_is_pulled_with_its_friction() -> None:
+    head = 2e-6 * np.arange(4000)
+    stiff = pull_block(Block(1.1, 0.4, 0.3, np.inf), head, 0.01)
+    assert stiff == pytest.approx(0.3 * 1.1 * 9.8)
+    soft = pull_block(Block(1.1, 0.3, 0.3, 8e4), head, 0.01)
+    rise = np.polyfit(head[3:16], soft[3:16], 1)[0]
+    assert rise == pytest.approx(8e4, rel=1e-3)
+    assert soft[1000:-1] == pytest.approx(0.3 * 1.1 * 9.8, rel=1e-3)
