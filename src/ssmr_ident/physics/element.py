@@ -47,6 +47,8 @@ def element_force(s, v, z, stiffness, ratio, gap_share, tangential, e):
     s, v : float [m], [m/s]
         Deflection and its rate.
     z : (STATES,) float
+        Array or tuple; so may be ``e``. In an inner loop take tuples: counting references to an array costs more
+        than the force.
     stiffness : float [N/m]
         K of this axis.
     ratio : float
@@ -75,12 +77,29 @@ def element_force(s, v, z, stiffness, ratio, gap_share, tangential, e):
 
 
 @kernel
-def element_advance(z, v, step, tangential, e):
-    """Hidden states one step later, exactly for a constant rate; z : (STATES,) float, changed in place."""
+def element_next(z, v, step, tangential, e):
+    """Hidden states one step later, exactly for a constant rate; (STATES,) tuple."""
+    friction, loop, relaxation = z[0], z[1], z[2]
     if e[RELAXATION_STIFFNESS] != 0.0:
-        z[2] = _relaxation_advance(z[2], v, step, e[RELAXATION_TIME])
+        relaxation = _relaxation_advance(relaxation, v, step, e[RELAXATION_TIME])
     if tangential:
         if e[FRICTION_FORCE] != 0.0:
-            z[0] = _friction_advance(z[0], v, step, e[FRICTION_FORCE], e[FRICTION_STIFFNESS])
+            friction = _friction_advance(friction, v, step, e[FRICTION_FORCE], e[FRICTION_STIFFNESS])
         if e[ALPHA] != 1.0:
-            z[1] = _loop_advance(z[1], v, step, e[YIELD])
+            loop = _loop_advance(loop, v, step, e[YIELD])
+    return friction, loop, relaxation
+
+
+@kernel
+def element_advance(z, v, step, tangential, e):
+    """Hidden states one step later; z : (STATES,) float, changed in place."""
+    z[0], z[1], z[2] = element_next(z, v, step, tangential, e)
+
+
+@kernel
+def inner_slots(e):
+    """The slots that tires and floor look at, as a tuple that stands in for ``e`` in an inner loop."""
+    return (
+        e[0], e[1], e[2], e[3], e[4], e[5], e[6], e[7], e[8], e[9],
+        e[10], e[11], e[12], e[13], e[14], e[15], e[16], e[17], e[18],
+    )  # fmt: skip

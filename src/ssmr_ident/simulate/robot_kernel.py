@@ -25,7 +25,7 @@ from ssmr_ident.physics.effects import (
     stribeck,
 )
 from ssmr_ident.physics.effects import wheel_lift as lift_effect
-from ssmr_ident.physics.element import STATES, element_advance, element_force
+from ssmr_ident.physics.element import STATES, element_force, element_next, inner_slots
 from ssmr_ident.physics.sensor import filter_step
 from ssmr_ident.physics.slots import (
     BELT_DAMPING,
@@ -41,7 +41,7 @@ from ssmr_ident.physics.slots import (
     STRIBECK_SPEED,
 )
 from ssmr_ident.physics.tire import contact_force, grip_shares
-from ssmr_ident.simulate.floor import contact_speed, floor_height
+from ssmr_ident.simulate.floor import contact_speed, floor_height, rough_height
 from ssmr_ident.simulate.pulling import (
     HELD,
     HOOK_X,
@@ -130,7 +130,8 @@ def run(
         e[_CUBIC] != 0.0 or e[_QUADRATIC] != 0.0 or e[_FRICTION] != 0.0 or e[_ALPHA] != 1.0
         or e[_RELAXATION] != 0.0 or e[_GAP] != 0.0
     )  # fmt: skip
-    uneven = e[_JOINT_DEPTH] != 0.0 or e[_ECCENTRICITY] != 0.0 or e[_ROUGHNESS] != 0.0
+    patterned, rough = e[_JOINT_DEPTH] != 0.0 or e[_ECCENTRICITY] != 0.0, e[_ROUGHNESS] != 0.0
+    uneven = patterned or rough
     falling, load_law = e[KINETIC_SHARE] != 1.0, e[LOAD_EXPONENT] != 0.0
     swaying, stretching = math.isfinite(e[MAST_HZ]), math.isfinite(e[BELT_STIFFNESS])
     lift, coriolis, share_x_gap = e[_LIFT] > 0.5, e[_CORIOLIS], e[GAP_SHARE_X]
@@ -150,7 +151,8 @@ def run(
         np.zeros((4, 2)),
     )  # velocities of the contact points, and of the hubs over them
     sliding = np.zeros((4, 2), dtype=np.bool_)
-    hidden, hidden_z = np.zeros((4, 2, STATES)), np.zeros((4, STATES))
+    hidden = np.zeros((12, STATES))  # of x, y, z of the first wheel, then of the next
+    law = inner_slots(e)
     arm, load, path, ground_rate = np.zeros((4, 3)), np.zeros(4), np.zeros(4), np.zeros(4)
     belt, belt_rate, belt_pull = np.zeros(2), np.zeros(2), np.zeros(2)
     sway, sway_rate, sway_acceleration = np.zeros(2), np.zeros(2), np.zeros(2)
@@ -196,16 +198,21 @@ def run(
             depth, sinking = -(z + rz), -hub_z
             if uneven:
                 angle = angle_left if side == 0 else angle_right
-                level, change = floor_height(
-                    e, floor, i, path[i], contact_speed(hub_x, hub_y), angle, rate,
-                    x + cyaw * rx - syaw * ry, y + syaw * rx + cyaw * ry,
-                    cyaw * hub_x - syaw * hub_y, syaw * hub_x + cyaw * hub_y,
-                )  # fmt: skip
+                level, change = 0.0, 0.0
+                if patterned:
+                    level, change = floor_height(law, i, path[i], contact_speed(hub_x, hub_y), angle, rate)
+                if rough:
+                    height, climbing = rough_height(
+                        floor, x + cyaw * rx - syaw * ry, y + syaw * rx + cyaw * ry,
+                        cyaw * hub_x - syaw * hub_y, syaw * hub_x + cyaw * hub_y,
+                    )  # fmt: skip
+                    level, change = level + height, change + climbing
                 depth, sinking = depth + level, sinking + change
                 ground_rate[i] = change
             normal = kz * depth + dz * sinking
             if beside:
-                normal += element_force(depth, sinking, hidden_z[i], kz, kz / ky, 0.0, False, e)
+                kept = hidden[3 * i + 2, 0], hidden[3 * i + 2, 1], hidden[3 * i + 2, 2]
+                normal += element_force(depth, sinking, kept, kz, kz / ky, 0.0, False, law)
             if lift:
                 normal = _lifted(normal, depth)
             load[i] = normal
@@ -229,10 +236,11 @@ def run(
                 mu_k, release = _stribeck(mu_s, e[KINETIC_SHARE], speed, e[STRIBECK_SPEED]), 1.0
             beside_x, beside_y = 0.0, 0.0
             if beside:
-                beside_x = element_force(
-                    deflection[i, 0], slip[i, 0] - contact[i, 0], hidden[i, 0], kx, kx / ky, share_x_gap, True, e
-                )
-                beside_y = element_force(deflection[i, 1], hub_y - contact[i, 1], hidden[i, 1], ky, 1.0, 1.0, True, e)
+                kept = hidden[3 * i, 0], hidden[3 * i, 1], hidden[3 * i, 2]
+                rate_x, rate_y = slip[i, 0] - contact[i, 0], hub_y - contact[i, 1]
+                beside_x = element_force(deflection[i, 0], rate_x, kept, kx, kx / ky, share_x_gap, True, law)
+                kept = hidden[3 * i + 1, 0], hidden[3 * i + 1, 1], hidden[3 * i + 1, 2]
+                beside_y = element_force(deflection[i, 1], rate_y, kept, ky, 1.0, 1.0, True, law)
             limit, grip = mu_s * share_x * weight, mu_k * share_x * weight
             sliding[i, 0], contact[i, 0], force_x = contact_force(
                 deflection[i, 0], sliding[i, 0], contact[i, 0], slip[i, 0], beside_x, kx, dx, patch,
@@ -375,9 +383,16 @@ def run(
             if uneven:
                 path[i] += step * contact_speed(hub_x, hub_y)
             if beside:
-                element_advance(hidden[i, 0], slip_x - contact[i, 0], step, True, e)
-                element_advance(hidden[i, 1], hub_y - contact[i, 1], step, True, e)
-                element_advance(hidden_z[i], ground_rate[i] - (w + ox * ry - oy * rx), step, False, e)
+                for axis in range(3):
+                    element = 3 * i + axis
+                    kept = hidden[element, 0], hidden[element, 1], hidden[element, 2]
+                    if axis == 0:
+                        kept = element_next(kept, slip_x - contact[i, 0], step, True, law)
+                    elif axis == 1:
+                        kept = element_next(kept, hub_y - contact[i, 1], step, True, law)
+                    else:
+                        kept = element_next(kept, ground_rate[i] - (w + ox * ry - oy * rx), step, False, law)
+                    hidden[element, 0], hidden[element, 1], hidden[element, 2] = kept
         # drift: pose rates with the angles half a step ahead
         cr, sr = math.cos(roll + 0.5 * step * roll_rate), math.sin(roll + 0.5 * step * roll_rate)
         half_pitch = pitch + 0.5 * step * pitch_rate
