@@ -119,7 +119,7 @@ def force_of(robot: Robot, entry: dict[str, Any], head: np.ndarray, random: np.r
         cable_damping=damping,
         held=fixture_needed(entry["wheels_gripping"], rate),
     )
-    return simulate(robot, scenario, sample_rate=1.0 / STEP)["force"]
+    return simulate(robot, scenario, sample_rate=1.0 / STEP, step=truth.INTEGRATION_STEP)["force"]
 
 
 def make(folder: Path, seed: int) -> None:

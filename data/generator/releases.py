@@ -63,7 +63,8 @@ def make(folder: Path, seed: int) -> None:
         for trial in range(1, TRIALS + 1):
             random = np.random.default_rng([seed, 1, index, trial])
             offset = static_offset(robot, *release(motion, random))
-            simulation = simulate(robot, Scenario("free_response", SAMPLES / 1000.0, offset=offset))
+            scenario = Scenario("free_response", SAMPLES / 1000.0, offset=offset)
+            simulation = simulate(robot, scenario, step=truth.INTEGRATION_STEP)
             if simulation["sliding"].any():
                 raise RuntimeError(f"{motion} {trial}: a contact slides; pull less")
             log = accelerometer_log(simulation, robot.accelerometer, noise, random, Converter())

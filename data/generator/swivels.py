@@ -30,7 +30,7 @@ def run(robot: Robot, speed: float, random: np.random.Generator) -> Simulation:
         offset={"x": random.normal(0.0, 1e-4), "y": random.normal(0.0, 1e-4), "yaw": random.normal(0.0, 1e-3)},
         wheel_rates=np.atleast_2d(wheel_rates(robot, 0.0, np.deg2rad(speed))),
     )
-    whole = simulate(robot, scenario)
+    whole = simulate(robot, scenario, step=truth.INTEGRATION_STEP)
     skip = round(SETTLING * 1000)
     return Simulation(whole.time[: len(whole.time) - skip], whole.values[skip:], whole.names, scenario, whole.step)
 

@@ -68,6 +68,7 @@ _BUNDLED = {"frame": "p3at-extended", "platform": "p3at-platform"}
 
 WHITE_M_S2 = 0.02  # per sample at 1 kHz: 3 mV, between the converter's 1.2 mV and what a hand-built cube picks up
 HUM_M_S2 = 0.06  # 9 mV of mains, the order that made the thesis low-pass its swivels at 50 Hz
+INTEGRATION_STEP = 1e-4  # s, written down: stick-slip would not repeat with another
 LOAD_N = 0.3  # a 50 kN load cell resolves better than it stays still
 LOAD_QUANTUM_N = 1e-3  # thesis section 1
 

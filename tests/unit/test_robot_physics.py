@@ -14,10 +14,13 @@ from ssmr_ident.core.errors import SimulationError
 from ssmr_ident.physics.linear import linear_robot
 from ssmr_ident.physics.motor import wheel_rates
 from ssmr_ident.physics.robot import GRAVITY, Robot, robot_from_parameters
+from ssmr_ident.physics.slots import effect_vector
 from ssmr_ident.physics.statics import rest_loads, rest_pose
+from ssmr_ident.physics.tire import contact_force
 from ssmr_ident.session import read_parameters
 from ssmr_ident.simulate import Scenario, simulate
 from ssmr_ident.simulate.scenarios import pull, swivel
+from ssmr_ident.simulate.step import choose_step
 
 NAMES = ("x", "y", "z", "roll", "pitch", "yaw")
 START = dict(zip(NAMES, np.array([1e-4, -5e-5, 2e-5, 1e-4, 2e-4, 1e-4]), strict=True))
@@ -152,6 +155,50 @@ def test_step_halving_converges_at_second_order(robot: Robot) -> None:
     coarse, fine = (np.abs(a - b).max(axis=0) for a, b in itertools.pairwise(runs))
     order = np.log2(coarse / fine)
     assert np.all(order > 1.7)
+
+
+def test_the_step_that_is_chosen_keeps_its_error_estimate(robot: Robot) -> None:
+    """Measured frequency error of a long step against (omega h)²/24, and the step that follows from it."""
+    plain = _gripping(robot, damping=np.zeros(3))
+    roll = linear_robot(plain).modes()[1]
+    shape = np.real(_mode_shape(plain, roll[0]))
+    offset = dict(zip(NAMES, 1e-4 * shape / np.abs(shape).max(), strict=True))
+    counted = {}
+    for step in (2e-3, 1e-4):
+        course = simulate(plain, Scenario("free_response", 8.0, offset=offset), 500.0, step=step)["roll"]
+        course = course - course.mean()
+        up = np.flatnonzero((course[:-1] < 0) & (course[1:] >= 0))
+        exact = up - course[up] / (course[up + 1] - course[up])
+        counted[step] = (len(exact) - 1) / (exact[-1] - exact[0])
+    measured = counted[2e-3] / counted[1e-4] - 1.0
+    assert measured == pytest.approx((roll[0] * 2e-3) ** 2 / 24.0, rel=0.1)
+    choice = choose_step(robot, swivel(wheel_rates(robot, 0.0, 0.5)), effect_vector({}))
+    fastest = linear_robot(robot).modes()[-1, 0]
+    assert choice.error == pytest.approx((fastest * choice.step) ** 2 / 24.0, rel=0.05)
+    assert choice.error <= 1.01e-5
+
+
+def _mode_shape(robot: Robot, omega: float) -> np.ndarray:
+    linear = linear_robot(robot)
+    values, vectors = np.linalg.eig(np.linalg.solve(linear.mass, linear.stiffness))
+    return vectors[:, np.argmin(np.abs(np.sqrt(values.real) - omega))]
+
+
+def test_a_sliding_contact_moves_with_the_force_on_it_never_against(robot: Robot) -> None:
+    """Friction never pushes: the contact point runs where the carcass pulls it, and the carcass gives energy up."""
+    random = np.random.default_rng(7)
+    for _ in range(2000):
+        deflection, hub, velocity = random.normal(0, 3e-3), random.normal(0, 0.05), random.normal(0, 0.1)
+        breakaway, share = random.uniform(1, 100), random.uniform(0.3, 1.0)
+        force = 18000.0 * deflection + 30.0 * hub
+        velocity = abs(velocity) * np.sign(force)
+        sliding, after, on_hub = contact_force(
+            deflection, True, velocity, hub, 0.0, 18000.0, 30.0, 0.035, breakaway, share * breakaway, 0.0, 1e-4
+        )
+        if sliding:
+            assert abs(force) > share * breakaway
+            assert after * force >= -abs(hub * force)  # at the least it is carried along with the hub
+            assert on_hub * force <= abs(30.0 * after * force)
 
 
 def test_momentum_is_kept_without_a_floor(robot: Robot) -> None:

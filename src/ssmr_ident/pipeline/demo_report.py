@@ -48,12 +48,20 @@ def write_demo_report(demo: Demo, command: str) -> Path:
         ),
         _spectra(demo),
         _comparison("Free responses: simulation over recordings", decays, _SHOWN["free_response"]),
-        _comparison("Pulls and bench tests", pulls, _SHOWN["pulls"]),
+        _comparison(
+            "Pulls and bench tests",
+            pulls,
+            _SHOWN["pulls"],
+            "Slopes and levels compare. Once contacts slide, the moment at which a single wheel lets go is chaotic: it "
+            "does not repeat, so single teeth do not lie on each other even for the right parameters.",
+        ),
         _comparison(
             "Swivels",
             swivels,
             _SHOWN["swivel"],
-            "Stick-slip does not repeat its course, so power spectra are compared, not samples.",
+            "Stick-slip does not repeat its course, so power spectra are compared, not samples. No experiment "
+            "fitted here informs lambda_max, the slip at which grip is used up; it keeps the value of robot.yaml, and "
+            "these logs were made with another. That is what the distance shows.",
         ),
         Section(
             "What the fits say",

@@ -30,6 +30,7 @@ from ssmr_ident.simulate.pulling import (
 )
 from ssmr_ident.simulate.scenarios import Scenario
 from ssmr_ident.simulate.sensed import sensed
+from ssmr_ident.simulate.step import choose_step
 
 _UNITS = ["m/s^2"] * 3 + ["rad/s"] * 3 + ["m"] * 3 + ["rad"] * 3 + ["m/s"] * 2
 _UNITS += ["N", "m", "rad/s", "rad/s", "1"] + ["N"] * 4
@@ -76,7 +77,7 @@ def simulate(
     robot: Robot,
     scenario: Scenario,
     sample_rate: float = 1000.0,
-    step: float = 1e-4,
+    step: float | None = None,
     effects: Effects | None = None,
     release_drag: float = 0.0,
 ) -> Simulation:
@@ -88,8 +89,9 @@ def simulate(
     scenario : Scenario
     sample_rate : float [Hz]
         Of the stored output.
-    step : float [s]
-        Upper limit of the integration step; it is shortened so that a sample is a whole number of steps.
+    step : float or None [s]
+        Upper limit of the integration step; it is shortened so that a sample is a whole number of steps. None lets
+        the error estimate of ``choose_step`` decide.
     effects : mapping of effect id to mapping of parameter to value
         Physics beyond the baseline; parameters left out take their nominal values.
     release_drag : float
@@ -109,6 +111,8 @@ def simulate(
         change = CATALOGUE[effect_id].acts.get(Site.ROBOT)
         if change and not CATALOGUE[effect_id].is_off(values):
             robot = change(robot, **values)
+    if step is None:
+        step = choose_step(robot, scenario, e).step
     stride = max(1, math.ceil(1.0 / (sample_rate * step) - 1e-9))
     step = 1.0 / (sample_rate * stride)
     samples = round(scenario.duration * sample_rate)
