@@ -58,7 +58,7 @@ def _strut_frequencies(robot: Robot) -> np.ndarray:
 @pytest.mark.parametrize("motion", CHANNELS)
 def test_frequencies_and_damping_agree(gripping: Robot, motion: str) -> None:
     scenario = free_response(motion, AMPLITUDE, 2.0)
-    ours = _fitted(simulate(gripping, scenario), CHANNELS[motion], MODES[motion])
+    ours = _fitted(simulate(gripping, scenario, step=1e-4), CHANNELS[motion], MODES[motion])
     build = Build(friction="grip", wheel_mass=0.01)
     theirs = _fitted(run_mujoco(gripping, 2.0, build, offset=dict(scenario.offset)), CHANNELS[motion], MODES[motion])
     assert theirs[:, 0] == pytest.approx(ours[:, 0], rel=0.01)
@@ -69,7 +69,7 @@ def test_frequencies_and_damping_agree(gripping: Robot, motion: str) -> None:
 def test_the_whole_course_agrees(gripping: Robot, motion: str) -> None:
     """Not only its lines: every sample of the angle and of the accelerometer across it, to 1 % of the range."""
     scenario = free_response(motion, AMPLITUDE, 1.0)
-    ours = simulate(gripping, scenario)
+    ours = simulate(gripping, scenario, step=1e-4)
     theirs = run_mujoco(gripping, 1.0, Build(friction="grip", wheel_mass=0.01), offset=dict(scenario.offset))
     for name in (motion, "ax" if motion == "pitch" else "ay"):
         assert np.abs(ours[name] - theirs[name]).max() < 0.01 * np.ptp(ours[name])
@@ -81,11 +81,11 @@ def test_a_swaying_mast_gives_the_same_coupled_lines(gripping: Robot, motion: st
     effects = {"flexible_mast": {"f_mast_Hz": 9.0, "mass_kg": 2.5, "height_above_com_m": 0.33, "damping_ratio": 0.03}}
     scenario = free_response(motion, AMPLITUDE, 3.0)
     modes = 1 if motion == "yaw" else 3
-    ours = _fitted(simulate(gripping, scenario, effects=effects), CHANNELS[motion], modes)
+    ours = _fitted(simulate(gripping, scenario, step=1e-4, effects=effects), CHANNELS[motion], modes)
     run = run_mujoco(gripping, 3.0, Build(friction="grip", wheel_mass=0.01), offset=dict(scenario.offset), mast=mast)
     assert _fitted(run, CHANNELS[motion], modes)[:, 0] == pytest.approx(ours[:, 0], rel=0.01)
     if modes == 3:  # the mast adds a line; without it there are two
-        stiff = _fitted(simulate(gripping, scenario), CHANNELS[motion], 2)
+        stiff = _fitted(simulate(gripping, scenario, step=1e-4), CHANNELS[motion], 2)
         assert np.abs(ours[1, 0] / stiff[:, 0] - 1.0).min() > 0.05
 
 

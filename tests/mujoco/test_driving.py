@@ -20,7 +20,7 @@ def _rolling(friction: str) -> Build:
 
 def test_a_swivel_starts_alike_while_nothing_slides(gripping: Robot) -> None:
     wanted = wheel_rates(gripping, 0.0, np.radians(45.0))
-    ours = simulate(gripping, swivel(wanted, 0.2), effects={"coriolis": {}})
+    ours = simulate(gripping, swivel(wanted, 0.2), step=1e-4, effects={"coriolis": {}})
     theirs = run_mujoco(gripping, 0.2, _rolling("grip"), wheel_rates=wanted)
     for name in ("yaw", "wz"):
         assert np.abs(ours[name] - theirs[name]).max() < 0.01 * np.ptp(ours[name])
@@ -29,7 +29,7 @@ def test_a_swivel_starts_alike_while_nothing_slides(gripping: Robot) -> None:
 
 def test_driving_off_straight_agrees(gripping: Robot) -> None:
     wanted = wheel_rates(gripping, 0.3, 0.0)
-    ours = simulate(gripping, straight(wanted, 3.0))
+    ours = simulate(gripping, straight(wanted, 3.0), step=1e-4)
     theirs = run_mujoco(gripping, 3.0, _rolling("grip"), wheel_rates=wanted)
     assert theirs["x"][-1] == pytest.approx(ours["x"][-1], rel=0.01)
     assert np.abs(ours["ax"] - theirs["ax"]).max() < 0.02 * np.ptp(ours["ax"])
@@ -43,7 +43,7 @@ def test_loads_differ_by_the_tires_deflection_alone(gripping: Robot) -> None:
     for factor in (1.0, 10.0):
         stiffness = gripping.stiffness * np.array([factor, 1.0, 1.0])
         robot = gripping.with_changes(stiffness=stiffness, damping=gripping.damping * np.array([factor, 1.0, 1.0]))
-        ours = simulate(robot, straight(wanted, 2.0))
+        ours = simulate(robot, straight(wanted, 2.0), step=1e-4)
         theirs = run_mujoco(robot, 2.0, _rolling("grip"), wheel_rates=wanted)
         differences.append(np.abs(ours["load_1"] - theirs["load_1"]).max() / np.ptp(ours["load_1"]))
     assert 0.05 < differences[0] < 0.15
@@ -67,7 +67,7 @@ def test_each_friction_law_turns_as_its_own_closed_form_says(even: Robot) -> Non
     moment = -sum(theirs[f"tire_y_{i + 1}"] * even.contact_points[i, 0] for i in range(4))
     assert np.abs(moment[part].mean()) == pytest.approx(full / np.sqrt(1.0 + (a / c) ** 2), rel=0.01)
 
-    ours = simulate(even, swivel(wanted, 8.0), effects={"coriolis": {}})
+    ours = simulate(even, swivel(wanted, 8.0), step=1e-4, effects={"coriolis": {}})
     part = ours.time > 4.0
     assert np.polyfit(ours.time[part], ours["yaw"][part], 1)[0] / 0.1 == pytest.approx(1.0, rel=0.02)
     for run in (ours, theirs):

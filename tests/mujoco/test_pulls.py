@@ -26,7 +26,7 @@ def _slope(run: Simulation | MujocoRun, speed_mm_s: float, start: float, end: fl
 def test_ramps_have_the_same_slope_and_the_same_loads(
     gripping: Robot, direction: str, speed: float, height: float
 ) -> None:
-    ours = simulate(gripping, pull(direction, speed, 2.0, height=height), 100.0)
+    ours = simulate(gripping, pull(direction, speed, 2.0, height=height), 100.0, 1e-4)
     build = Build(friction="grip", wheel_mass=0.01)
     theirs = run_mujoco(gripping, 2.0, build, sample_rate=100.0, cable=_cable(gripping, direction, height, speed))
     # from 0.8 s on the start of the head has died out
@@ -42,7 +42,7 @@ def test_ramps_have_the_same_slope_and_the_same_loads(
 def test_a_sliding_robot_pulls_with_mu_m_g(robot: Robot, height: float) -> None:
     """Both engines against Coulomb, and so against each other."""
     weight = robot.mu_static * robot.mass * GRAVITY
-    ours = simulate(robot, pull("lateral", 1.0, 10.0, height=height), 1000.0)
+    ours = simulate(robot, pull("lateral", 1.0, 10.0, height=height), 1000.0, 1e-4)
     build = Build(tires="strut", friction="cone")
     theirs = run_mujoco(robot, 10.0, build, cable=_cable(robot, "lateral", height, 1.0))
     for run in (ours, theirs):
@@ -52,7 +52,7 @@ def test_a_sliding_robot_pulls_with_mu_m_g(robot: Robot, height: float) -> None:
 
 def test_with_a_high_cable_the_same_two_wheels_let_go_first(even: Robot) -> None:
     """The far side, relieved by the pull, slides before the near side in both engines."""
-    ours = simulate(even, pull("lateral", 1.0, 5.0, height=0.2), 1000.0)
+    ours = simulate(even, pull("lateral", 1.0, 5.0, height=0.2), 1000.0, 1e-4)
     build = Build(tires="strut", friction="cone")
     theirs = run_mujoco(even, 5.0, build, cable=_cable(even, "lateral", 0.2, 1.0))
     first = int(np.flatnonzero(ours["sliding"])[0])

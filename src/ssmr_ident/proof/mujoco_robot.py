@@ -209,7 +209,7 @@ def start(robot: Robot, build: Build, offset: dict[str, float], mast: bool = Fal
     (nq,) float
         In the order of the model's joints: chassis, mast, wheels.
     """
-    height, roll, pitch = rest_pose(robot)
+    height, roll, pitch = (robot.height, 0.0, 0.0) if build.tires == "rigid" else rest_pose(robot)
     centres = robot.contact_points if build.tires == "patch" else hubs(robot, build)
     stood = centres @ tilt(roll, pitch).T
     stood[:, 2] = 0.0 if build.tires == "patch" else robot.radius

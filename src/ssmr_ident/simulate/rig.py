@@ -6,7 +6,6 @@ import math
 
 import numpy as np
 from scipy.linalg import expm
-from scipy.signal import resample
 
 from ssmr_ident.core.errors import InputError, SimulationError
 from ssmr_ident.core.kernel import kernel
@@ -96,6 +95,8 @@ def band_limited(signal: np.ndarray, factor: int) -> np.ndarray:
     n = len(signal)
     if n < 4:
         return np.interp(np.arange((n - 1) * factor + 1) / factor, np.arange(n), signal)
+    from scipy.signal import resample  # half a second that a swivel from the command line need not wait for
+
     mirrored = np.concatenate([signal, signal[-2:0:-1]])
     return resample(mirrored, len(mirrored) * factor)[: (n - 1) * factor + 1]
 
