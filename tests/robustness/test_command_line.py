@@ -1,4 +1,4 @@
-"""What a user sees when something is wrong: one line that names file, place and mend, exit status 2, nothing written."""
+"""What a user sees when something is wrong: one line with file, place and mend, exit status 2, nothing written."""
 
 from __future__ import annotations
 
