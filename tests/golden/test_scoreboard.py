@@ -15,11 +15,12 @@ HOLD = {
     "longitudinal_teeth", "belts", "lateral_concrete", "mu_concrete", "lateral_carpet", "mu_carpet", "rope",
     "wheel_release", "ramp_hardening", "compression",
     "pull_teeth", "ramp_slopes", "shape_over_height", "two_first", "spinning_fall", "spinning_lambda", "straight",
-    "slower_turn", "twenty_hertz", "small_az", "small_amplitudes",
+    "slower_turn", "small_az", "small_amplitudes",
 }  # fmt: skip
 BREAK = {
     "longitudinal_ramp", "knee", "steel", "ramp_linear",
-    "lateral_velocity", "larger_skid", "lower_frequency", "one_line", "common_line", "small_az_one", "lifting",
+    "lateral_velocity", "larger_skid", "lower_frequency", "one_line", "common_line", "twenty_hertz",
+    "small_az_one", "lifting",
 }  # fmt: skip
 OPEN = {"recordings"}
 
