@@ -27,15 +27,15 @@ def command(
     """
     import json
 
-    from ssmr_ident.cli.progress import stages
+    from ssmr_ident.cli.progress import doing, stages
 
     if thesis:
         from ssmr_ident.pipeline.scoreboard import thesis_scoreboard
 
-        with stages(hidden=quiet or as_json) as step:
-            board = thesis_scoreboard(lambda done, total: step("the thesis' statements", done, total))
+        with doing(hidden=quiet or as_json) as tell:
+            board = thesis_scoreboard(tell)
         if as_json:
-            print(json.dumps(board.as_list(), ensure_ascii=False))
+            print(json.dumps(board.as_dict(), ensure_ascii=False))
         elif not quiet:
             print(board)
         return

@@ -33,3 +33,16 @@ def progress(what: str, hidden: bool = False) -> Iterator[Callable[[int, int], N
     """Yield a function that takes the number done and the total."""
     with stages(hidden) as step:
         yield lambda done, total: step(what, done, total)
+
+
+@contextmanager
+def doing(hidden: bool = False) -> Iterator[Callable[[str], None]]:
+    """Yield a function that shows what is being done, for work whose length is not known beforehand."""
+    from rich.console import Console
+
+    console = Console(stderr=True)
+    if hidden or not console.is_terminal:
+        yield lambda text: None
+        return
+    with console.status("") as status:
+        yield status.update
