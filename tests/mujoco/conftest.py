@@ -1,4 +1,4 @@
-"""The robot as a foreign engine sees it; without the extra ``proof`` everything here skips."""
+"""The robot as both engines see it; without the extra ``proof`` whatever runs MuJoCo skips."""
 
 from __future__ import annotations
 
@@ -10,7 +10,11 @@ import pytest
 from ssmr_ident.physics.robot import Robot, robot_from_parameters
 from ssmr_ident.session import read_parameters
 
-pytest.importorskip("mujoco", reason="needs the extra proof")
+
+@pytest.fixture(scope="session")
+def engine() -> object:
+    """MuJoCo; skips what asks for it when it is not installed."""
+    return pytest.importorskip("mujoco", reason="needs the extra proof")
 
 
 @pytest.fixture(scope="session")

@@ -15,6 +15,7 @@ from ssmr_ident.proof.mujoco_run import MujocoRun, run_mujoco
 from ssmr_ident.simulate import Simulation, simulate
 from ssmr_ident.simulate.scenarios import free_response
 
+pytestmark = pytest.mark.usefixtures("engine")
 CHANNELS = {"roll": ("roll", "y"), "pitch": ("pitch", "x"), "yaw": ("yaw",)}
 MODES = {"roll": 2, "pitch": 2, "yaw": 1}
 AMPLITUDE = 2e-4  # m at the wheels: small against the sinking of 1 mm

@@ -5,13 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ssmr_ident.core.errors import InputError
 from ssmr_ident.physics.motor import wheel_rates
 from ssmr_ident.physics.robot import GRAVITY, Robot
-from ssmr_ident.proof.mujoco_robot import Build, chassis, hubs, wheel_inertia
+from ssmr_ident.proof.mujoco_robot import Build
 from ssmr_ident.proof.mujoco_run import run_mujoco
 from ssmr_ident.simulate import simulate
 from ssmr_ident.simulate.scenarios import straight, swivel
+
+pytestmark = pytest.mark.usefixtures("engine")
 
 
 def _rolling(friction: str) -> Build:
@@ -75,22 +76,3 @@ def test_each_friction_law_turns_as_its_own_closed_form_says(even: Robot) -> Non
         half = run.time > 3.0
         loads = np.array([run[name][half].mean() for name in names])
         assert loads == pytest.approx(even.mass * GRAVITY / 4.0, rel=0.02)
-
-
-def test_the_parts_add_up_to_the_robot(robot: Robot) -> None:
-    build = Build(tires="strut", driven=True)
-    mass, centre, inertia = chassis(robot, build)
-    places, masses = [centre, *hubs(robot, build)], [mass] + 4 * [build.wheel_mass]
-    own = [inertia] + 4 * [wheel_inertia(robot, build) * np.eye(3)]
-    assert sum(masses) == pytest.approx(robot.mass, rel=1e-14)
-    first = sum(m * p for m, p in zip(masses, places, strict=True))
-    assert first == pytest.approx(np.zeros(3), abs=1e-14)
-    total = sum(j + m * (p @ p * np.eye(3) - np.outer(p, p)) for m, p, j in zip(masses, places, own, strict=True))
-    assert total == pytest.approx(robot.inertia, abs=1e-14)
-
-
-def test_what_cannot_be_built_says_so(robot: Robot) -> None:
-    with pytest.raises(InputError, match="more than the robot"):
-        chassis(robot, Build(wheel_mass=20.0))
-    with pytest.raises(InputError, match="does not turn"):
-        Build(tires="patch", driven=True)

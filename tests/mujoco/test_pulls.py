@@ -11,6 +11,8 @@ from ssmr_ident.proof.mujoco_run import MujocoRun, run_mujoco
 from ssmr_ident.simulate import Simulation, simulate
 from ssmr_ident.simulate.scenarios import pull
 
+pytestmark = pytest.mark.usefixtures("engine")
+
 
 def _cable(robot: Robot, direction: str, height: float, speed_mm_s: float) -> Cable:
     return Cable(direction, height, speed_mm_s * 1e-3, robot.cable_stiffness, robot.cable_damping)
