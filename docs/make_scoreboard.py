@@ -10,7 +10,7 @@ from ssmr_ident.physics.motor import wheel_rates
 from ssmr_ident.physics.robot import GRAVITY, Robot, robot_from_parameters
 from ssmr_ident.pipeline.scoreboard import Scoreboard, thesis_scoreboard
 from ssmr_ident.pipeline.scoreboard_pulls import even_axles
-from ssmr_ident.pipeline.scoreboard_turning import SPEEDS, turn
+from ssmr_ident.pipeline.scoreboard_swivels import SPEEDS, turn
 from ssmr_ident.report import style
 from ssmr_ident.report.effect_figure import Curve, Panel, effect_figure
 from ssmr_ident.session import read_parameters
@@ -41,6 +41,9 @@ speed, like a viscous damper: of two axles the one that skids faster brakes more
 That is λ_max = 1 (upper left, grey). For smaller λ_max the grip saturates at 1 and no longer depends on the sideways
 speed. Then only the loads decide: Table 5.1 puts more weight on the front wheels (a = 0.15 m, b = 0.13 m), they hold,
 and the rear axle skids around them (upper left, orange and blue).
+
+`ssmr_ident.physics.planar_dynamics`, rigid wheels in the plane without any code of the simulator, turns about the same
+points and at the same rates (`tests/unit/test_planar.py`): it is the friction law, not the integration.
 
 Two more things were tried. With the kinetic friction term that the thesis drops from (6.4), nothing changes for the
 axles of Table 5.1. With equal axles (a = b, as chapter 5 has it) and that term the turn stays where it started,
