@@ -49,9 +49,9 @@ def _lateral(robot: Robot, turns: Turns, variants: dict[str, Turn]) -> Row:
         "Only for λ_max = 1. Below, (4.12) saturates: a wheel's sideways grip no longer grows with its sideways speed, "
         "so nothing centres the turn. The front axle, which carries more, stands still sideways and the rear one "
         f"skids: the robot turns about a point {100 * turns[0.01, 64.0].shift:.0f} cm ahead of its CoM (64°/s, λ_max "
-        f"0.01; front axle at 13 cm). Otherwise there: {others}. The planar model, which "
-        f"shares no code with the simulator, agrees: {-100 * plane[1] / plane[2]:.0f} cm. With equal axles the thesis' "
-        "(6.4) leaves the centre as well, to the side that rounding chooses, because without friction during release a contact holds the less "
+        f"0.01; front axle at 13 cm). Otherwise there: {others}. The planar model, which shares no code with the "
+        f"simulator, agrees: {-100 * plane[1] / plane[2]:.0f} cm. With equal axles the thesis' (6.4) leaves the centre "
+        "as well, to the side that rounding chooses, because without friction during release a contact holds the less "
         "the faster it is dragged; with the kinetic term it stays",
     )  # fmt: skip
 
