@@ -84,8 +84,7 @@ def pull_block(block: Block, head: np.ndarray, step: float, effects: Effects | N
     weight = block.mass * GRAVITY
     stiffness = _cable(block.cable_stiffness, active)
     if math.isinf(stiffness):
-        force = np.where(np.gradient(head, step) > 0.0, block.mu_kinetic * weight, 0.0)
-        return _read(force, step, active)
+        return _read(np.where(_on_the_way(head), block.mu_kinetic * weight, 0.0), step, active)
     force = np.empty(len(head))
     omega = math.sqrt(stiffness / block.mass)
     substeps = max(1, math.ceil(step * omega / 0.05))
@@ -94,6 +93,18 @@ def pull_block(block: Block, head: np.ndarray, step: float, effects: Effects | N
     limits = (block.mu_static * weight, block.mu_kinetic * weight)
     _block(block.mass, *cable, *limits, effect_vector(active), head - head[0], step, substeps, force)
     return _read(force, step, active)
+
+
+def _on_the_way(head: np.ndarray) -> np.ndarray:
+    """Between the head's first motion and its last; an encoder that stands still for a sample has not stopped."""
+    travel = head - head[0]
+    total = travel[-1]
+    if total == 0.0:
+        return np.zeros(len(head), dtype=bool)
+    first = int(np.argmax(travel > 1e-3 * total))
+    last = len(head) - 1 - int(np.argmax(travel[::-1] < (1.0 - 1e-3) * total))
+    index = np.arange(len(head))
+    return (index >= first) & (index <= last)
 
 
 def _cable(stiffness: float, active: Effects) -> float:
