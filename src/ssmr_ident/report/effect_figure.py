@@ -13,8 +13,8 @@ from matplotlib.figure import Figure
 
 from ssmr_ident.report import style
 
-DECADES_BELOW = 1e6
-"""A logarithmic panel reaches this far below its highest point."""
+LOWEST = 1e6
+"""A logarithmic panel reaches no further below its highest point."""
 _LOOKS: dict[str, Any] = {
     "line": {"lw": 1.0},
     "thin": {"lw": 0.6},
@@ -103,7 +103,8 @@ def _draw(axes: Axes, panel: Panel) -> None:
     if panel.logarithmic:
         axes.set_yscale("log")
         top = max(float(curve.y.max()) for curve in panel.curves)
-        axes.set_ylim(top / DECADES_BELOW, 3.0 * top)
+        lowest = min(float(curve.y.min()) for curve in panel.curves)
+        axes.set_ylim(max(top / LOWEST, 0.5 * lowest), 3.0 * top)
     axes.set_title(panel.title, loc="left", color=style.INK)
     axes.set_xlabel(panel.x_label)
     axes.set_ylabel(panel.y_label)
