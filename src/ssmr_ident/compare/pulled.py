@@ -19,6 +19,8 @@ from ssmr_ident.simulate.bench import compress_wheel, drag_wheel, pull_block
 from ssmr_ident.simulate.scenarios import Scenario, cable_properties, fixture_needed
 from ssmr_ident.simulate.simulation import simulate
 
+_STEADY = 0.005  # share of the travel by which a head at constant speed may be off a straight line
+
 
 def predict_robot(parameters: ParameterSet, measurement: Measurement) -> Prediction:
     """A robot pulled by a cable."""
@@ -76,21 +78,11 @@ def _fitted(measurement: Measurement, run: Callable[[np.ndarray, float], np.ndar
         raise InputError(recording.provenance.file, "has no position, and session.yaml no speed_mm_s", "Give one")
     force, step = even.samples[:, 0], 1.0 / even.sample_rate
 
-    def shifted(slack: float) -> np.ndarray:
+    def run_behind(slack: float) -> np.ndarray:
         return run(np.maximum(travel - slack, 0.0), step)
 
-    def misfit(slack: float) -> float:
-        rest = force - shifted(slack)
-        return float(np.sum((rest - rest.mean()) ** 2))
-
-    # slack up to a third of the travel; a log that starts under load is told apart by the zero
-    grid = np.linspace(0.0, travel.max() / 3.0, 9)
-    costs = [misfit(slack) for slack in grid]
-    best = int(np.argmin(costs))
-    low, high = grid[max(best - 1, 0)], grid[min(best + 1, len(grid) - 1)]
-    refined = minimize_scalar(misfit, bounds=(low, high), method="bounded", options={"maxiter": 12})
-    slack = float(refined.x) if refined.fun < costs[best] else float(grid[best])
-    simulated = shifted(slack)
+    slack = _find_slack(force, travel, step, run_behind)
+    simulated = run_behind(slack)
     zero = float((force - simulated).mean())
     return Prediction(
         even.time,
@@ -101,3 +93,34 @@ def _fitted(measurement: Measurement, run: Callable[[np.ndarray, float], np.ndar
         low_pass_hz=None,
         nuisances={"slack_m": slack, "zero_N": zero},
     )
+
+
+def _find_slack(force: np.ndarray, travel: np.ndarray, step: float, run_behind: Callable[[float], np.ndarray]) -> float:
+    """Travel of the head before the cable tightens [m], by least squares with the load cell's zero eliminated.
+
+    Up to a third of the travel; a log that starts under load is told apart by the zero. A head that moves at constant
+    speed makes slack a delay, so one simulation serves for all; otherwise each slack is simulated.
+    """
+    elapsed = step * np.arange(len(travel))
+    speed = float(np.polyfit(elapsed, travel, 1)[0])
+    steady = np.abs(travel - speed * elapsed).max() < _STEADY * travel.max()
+    if steady:
+        tight = run_behind(0.0)
+        count = 400
+
+        def behind(slack: float) -> np.ndarray:
+            return np.interp(elapsed - slack / speed, elapsed, tight, left=0.0)
+
+    else:
+        count, behind = 9, run_behind
+
+    def misfit(slack: float) -> float:
+        rest = force - behind(slack)
+        return float(np.sum((rest - rest.mean()) ** 2))
+
+    grid = np.linspace(0.0, travel.max() / 3.0, count)
+    costs = [misfit(slack) for slack in grid]
+    best = int(np.argmin(costs))
+    low, high = grid[max(best - 1, 0)], grid[min(best + 1, len(grid) - 1)]
+    refined = minimize_scalar(misfit, bounds=(low, high), method="bounded", options={"maxiter": 12})
+    return float(refined.x) if refined.fun < costs[best] else float(grid[best])
