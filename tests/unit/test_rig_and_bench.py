@@ -60,8 +60,15 @@ def test_effects_on_a_rig_follow_their_equation(effects: dict, beside: object) -
     assert np.abs(motion[20:-20, 0] - x[20:-20]).max() < 1e-3 * np.abs(x).max()
 
 
-def test_oversampling_converges_at_second_order_with_an_effect() -> None:
-    effects = {"nonlinear_stiffness": {"k3_N_m3": 2e9}}
+@pytest.mark.parametrize(
+    "effects",
+    [
+        {"nonlinear_stiffness": {"k3_N_m3": 2e9}},
+        {"quadratic_damping": {"d2_N_s2_m2": 400.0}},
+        {"hysteresis": {"alpha": 0.8, "yield_m": 1e-3}},
+    ],
+)
+def test_oversampling_converges_at_second_order_with_an_effect(effects: dict) -> None:
     runs = [simulate_rig(RIG, _force(TIME), RATE, 1e-3, oversampling=n, effects=effects)[:, 0] for n in (2, 4, 8)]
     coarse, fine = np.abs(runs[0] - runs[1]).max(), np.abs(runs[1] - runs[2]).max()
     assert np.log2(coarse / fine) > 1.7

@@ -137,6 +137,9 @@ def _run(
             )
             if beside:
                 element_advance(hidden, (x - start) / step, step, True, e)
-                extra = element_force(x, v, hidden, stiffness, 1.0, 1.0, True, e)
-                v -= 0.5 * step / mass * extra
-                extra = element_force(x, v, hidden, stiffness, 1.0, 1.0, True, e)
+                # the second kick takes the velocity after it, so that damping keeps the second order
+                kicked = v
+                for _ in range(3):
+                    extra = element_force(x, kicked, hidden, stiffness, 1.0, 1.0, True, e)
+                    kicked = v - 0.5 * step / mass * extra
+                v = kicked
