@@ -18,7 +18,6 @@ import numpy as np
 from ssmr_ident.core.kernel import kernel
 from ssmr_ident.physics import slots
 from ssmr_ident.physics.effects import (
-    flexible_mast,
     load_sensitive_friction,
     motor_belt,
     rolling_resistance,
@@ -33,15 +32,37 @@ from ssmr_ident.physics.slots import (
     GAP_SHARE_X,
     KINETIC_SHARE,
     LOAD_EXPONENT,
-    MAST_DAMPING,
     MAST_HZ,
-    MAST_MASS,
     RIM_MASS,
     ROLLING,
     STRIBECK_SPEED,
 )
 from ssmr_ident.physics.tire import contact_force, grip_shares
 from ssmr_ident.simulate.floor import contact_speed, floor_height, rough_height
+from ssmr_ident.simulate.layout import (
+    DX,
+    DY,
+    DZ,
+    GRAVITY_G,
+    GRIPPING,
+    INERTIA,
+    INVERSE_INERTIA,
+    KX,
+    KY,
+    KZ,
+    LAMBDA_MAX,
+    MASS,
+    MOTOR_GAIN,
+    MU_KINETIC,
+    MU_STATIC,
+    PATCH_MASS,
+    POINTS,
+    RADIUS,
+    RELEASE_DRAG,
+    SENSOR,
+    SLIP_COUPLING,
+)  # fmt: skip
+from ssmr_ident.simulate.mast import accelerate_with_mast
 from ssmr_ident.simulate.pulling import (
     HELD,
     HOOK_X,
@@ -55,16 +76,6 @@ from ssmr_ident.simulate.pulling import (
     hook_position,
 )
 
-# Layout of the parameter vector; p_a, contact points, inverse inertia, inertia and gripping wheels follow the scalars.
-MASS, KX, KY, KZ, DX, DY, DZ, PATCH_MASS, RADIUS = range(9)
-MU_STATIC, MU_KINETIC, LAMBDA_MAX, SLIP_COUPLING, MOTOR_GAIN, GRAVITY_G, RELEASE_DRAG = range(9, 16)
-SENSOR, POINTS, INVERSE_INERTIA, INERTIA, GRIPPING, PARAMETERS = 16, 19, 31, 40, 49, 53
-
-# x y z roll pitch yaw | u v w p q r | left right | carcass deflections (x, y) of each wheel | sway and its rate (x, y)
-START = 26
-OUTPUTS = ("ax", "ay", "az", "wx", "wy", "wz", "x", "y", "z", "roll", "pitch", "yaw", "vx", "vy", "force", "head",
-           "rate_left", "rate_right", "sliding", "load_1", "load_2", "load_3", "load_4")  # fmt: skip
-
 _JOINT_DEPTH, _ECCENTRICITY, _ROUGHNESS = slots.JOINT_DEPTH, slots.ECCENTRICITY, slots.ROUGHNESS
 _CUBIC, _QUADRATIC, _FRICTION, _ALPHA = slots.CUBIC, slots.QUADRATIC, slots.FRICTION_FORCE, slots.ALPHA
 _RELAXATION, _GAP, _LIFT, _CORIOLIS = slots.RELAXATION_STIFFNESS, slots.GAP, slots.LIFT, slots.CORIOLIS
@@ -73,27 +84,13 @@ _stribeck, _load_law, _rolling = (
     load_sensitive_friction.coefficient,
     rolling_resistance.force,
 )
-_mast_force, _belt_force, _lifted = flexible_mast.force, motor_belt.force, lift_effect.load
+_belt_force, _lifted = motor_belt.force, lift_effect.load
 
 
 @kernel
 def run(
-    p,
-    e,
-    floor,
-    mast,
-    pulling,
-    head,
-    head_step,
-    reference,
-    reference_step,
-    start,
-    step,
-    steps,
-    stride,
-    low_pass,
-    out,
-):
+    p, e, floor, mast, pulling, head, head_step, reference, reference_step, start, step, steps, stride, low_pass, out
+):  # fmt: skip
     """Integrate ``steps`` steps and store every ``stride``-th state in ``out``.
 
     Parameters
@@ -146,10 +143,7 @@ def run(
     deflection = np.empty((4, 2))
     for i in range(4):
         deflection[i, 0], deflection[i, 1] = start[14 + 2 * i], start[15 + 2 * i]
-    contact, slip = (
-        np.zeros((4, 2)),
-        np.zeros((4, 2)),
-    )  # velocities of the contact points, and of the hubs over them
+    contact, slip = np.zeros((4, 2)), np.zeros((4, 2))  # velocities of contact points, and of hubs over them
     sliding = np.zeros((4, 2), dtype=np.bool_)
     hidden = np.zeros((12, STATES))  # of x, y, z of the first wheel, then of the next
     law = inner_slots(e)
@@ -157,7 +151,7 @@ def run(
     belt, belt_rate, belt_pull = np.zeros(2), np.zeros(2), np.zeros(2)
     sway, sway_rate, sway_acceleration = np.zeros(2), np.zeros(2), np.zeros(2)
     sway[0], sway[1], sway_rate[0], sway_rate[1] = start[22], start[23], start[24], start[25]
-    right_side, solved = np.zeros(8), np.zeros(8)
+    solved = np.zeros(8)
     history = np.zeros((3, 4))  # of the accelerometer's low-pass: u', u'', y', y'' per axis
     decay = math.exp(-gain * step)
 
@@ -292,26 +286,14 @@ def run(
             body_y -= coriolis * (re * lx - pe * lz)
             body_z -= coriolis * (pe * ly - qe * lx)
         if swaying:
-            # forces along the body axes; gravity in them is (sp, r21, r22) times -g
+            ahead = 0.5 * step
+            sway_ahead = sway_rate[0] + ahead * sway_acceleration[0], sway_rate[1] + ahead * sway_acceleration[1]
             fz_all = fz - mass * gravity
-            gx, gy, gz = sp * gravity, -r21 * gravity, -r22 * gravity
-            mast_mass = e[MAST_MASS]
-            right_side[0] = cp * fx - sp * fz_all
-            right_side[1] = r01 * fx + cr * fy + r21 * fz_all
-            right_side[2] = r02 * fx + r12 * fy + r22 * fz_all
-            right_side[3] = body_x + mast_mass * sway[1] * gz
-            right_side[4] = body_y - mast_mass * sway[0] * gz
-            right_side[5] = body_z + mast_mass * (sway[0] * gy - sway[1] * gx)
-            for j in range(2):
-                rate = sway_rate[j] + 0.5 * step * sway_acceleration[j]
-                right_side[6 + j] = _mast_force(sway[j], rate, mast_mass, e[MAST_HZ], e[MAST_DAMPING])
-            right_side[6] += mast_mass * gx
-            right_side[7] += mast_mass * gy
-            for j in range(8):
-                total = 0.0
-                for k in range(8):
-                    total += mast[j, k] * right_side[k]
-                solved[j] = total
+            forces = cp * fx - sp * fz_all, r01 * fx + cr * fy + r21 * fz_all, r02 * fx + r12 * fy + r22 * fz_all
+            pull_down = sp * gravity, -r21 * gravity, -r22 * gravity  # gravity along the body axes
+            accelerate_with_mast(
+                mast, e, (sway[0], sway[1]), sway_ahead, forces, (body_x, body_y, body_z), pull_down, solved
+            )
             au = cp * solved[0] + r01 * solved[1] + r02 * solved[2]
             av = cr * solved[1] + r12 * solved[2]
             aw = -sp * solved[0] + r21 * solved[1] + r22 * solved[2]

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ssmr_ident.core.errors import InputError, SimulationError
+from ssmr_ident.core.errors import SimulationError
 from ssmr_ident.core.recording import Channel, Provenance, Recording
 from ssmr_ident.physics.effect import Site
 from ssmr_ident.physics.effects import CATALOGUE, ground_roughness
@@ -15,7 +15,8 @@ from ssmr_ident.physics.robot import GRAVITY, Robot
 from ssmr_ident.physics.sensor import low_pass_coefficients
 from ssmr_ident.physics.slots import CUBIC, Effects, checked, effect_vector
 from ssmr_ident.physics.statics import rest_pose, tilt
-from ssmr_ident.simulate import robot_kernel as k
+from ssmr_ident.simulate import layout as k
+from ssmr_ident.simulate.mast import inverse_mass_matrix
 from ssmr_ident.simulate.pulling import (
     CABLE_D,
     CABLE_K,
@@ -28,6 +29,7 @@ from ssmr_ident.simulate.pulling import (
     PULLED,
     PULLING,
 )
+from ssmr_ident.simulate.robot_kernel import run
 from ssmr_ident.simulate.scenarios import Scenario
 from ssmr_ident.simulate.sensed import sensed
 from ssmr_ident.simulate.step import choose_step
@@ -117,11 +119,11 @@ def simulate(
     step = 1.0 / (sample_rate * stride)
     samples = round(scenario.duration * sample_rate)
     out = np.empty((samples, len(k.OUTPUTS)))
-    failed = k.run(
+    failed = run(
         pack_robot(robot, scenario, release_drag),
         e,
         _floor(active),
-        _mast(robot, active),
+        inverse_mass_matrix(robot, active),
         _pulling(robot, scenario, active),
         scenario.head if len(scenario.head) else np.zeros(1),
         scenario.head_step,
@@ -168,29 +170,6 @@ def _floor(active: Effects) -> np.ndarray:
     if not values or values["height_m"] == 0.0:
         return np.zeros((1, 1))
     return ground_roughness.field(values["height_m"], values["length_m"], values["seed"])
-
-
-def _mast(robot: Robot, active: Effects) -> np.ndarray:
-    """Inverse mass matrix of body and swaying mast in body axes; total mass and inertia hold with it locked."""
-    values = active.get("flexible_mast")
-    if not values or math.isinf(values["f_mast_Hz"]):
-        return np.eye(8)
-    mass, height = values["mass_kg"], values["height_above_com_m"]
-    matrix = np.zeros((8, 8))
-    matrix[:3, :3] = robot.mass * np.eye(3)
-    matrix[3:6, 3:6] = robot.inertia
-    matrix[6:, 6:] = mass * np.eye(2)
-    coupling = np.zeros((6, 2))
-    coupling[0, 0] = coupling[1, 1] = mass
-    coupling[4, 0], coupling[3, 1] = mass * height, -mass * height  # p × e_x and p × e_y with p = (0, 0, height)
-    matrix[:6, 6:], matrix[6:, :6] = coupling, coupling.T
-    if np.linalg.eigvalsh(matrix)[0] <= 0.0:
-        raise InputError(
-            "effects: flexible_mast",
-            f"{mass:g} kg at {height:g} m is more than the robot's mass and inertia hold",
-            "Give a lighter or lower mast",
-        )
-    return np.linalg.inv(matrix)
 
 
 def _pulling(robot: Robot, scenario: Scenario, active: Effects) -> np.ndarray:

@@ -1,0 +1,13 @@
+"""Where each number sits in the vectors that the robot's compiled loop takes and gives."""
+
+from __future__ import annotations
+
+# Layout of the parameter vector; p_a, contact points, inverse inertia, inertia and gripping wheels follow the scalars.
+MASS, KX, KY, KZ, DX, DY, DZ, PATCH_MASS, RADIUS = range(9)
+MU_STATIC, MU_KINETIC, LAMBDA_MAX, SLIP_COUPLING, MOTOR_GAIN, GRAVITY_G, RELEASE_DRAG = range(9, 16)
+SENSOR, POINTS, INVERSE_INERTIA, INERTIA, GRIPPING, PARAMETERS = 16, 19, 31, 40, 49, 53
+
+# x y z roll pitch yaw | u v w p q r | left right | carcass deflections (x, y) of each wheel | sway and its rate (x, y)
+START = 26
+OUTPUTS = ("ax", "ay", "az", "wx", "wy", "wz", "x", "y", "z", "roll", "pitch", "yaw", "vx", "vy", "force", "head",
+           "rate_left", "rate_right", "sliding", "load_1", "load_2", "load_3", "load_4")  # fmt: skip
