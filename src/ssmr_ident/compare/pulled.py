@@ -104,23 +104,20 @@ def _find_slack(force: np.ndarray, travel: np.ndarray, step: float, run_behind: 
     elapsed = step * np.arange(len(travel))
     speed = float(np.polyfit(elapsed, travel, 1)[0])
     steady = np.abs(travel - speed * elapsed).max() < _STEADY * travel.max()
-    if steady:
-        tight = run_behind(0.0)
-        count = 400
-
-        def behind(slack: float) -> np.ndarray:
-            return np.interp(elapsed - slack / speed, elapsed, tight, left=0.0)
-
-    else:
-        count, behind = 9, run_behind
+    behind = _delayed(run_behind(0.0), elapsed, speed) if steady else run_behind
 
     def misfit(slack: float) -> float:
         rest = force - behind(slack)
         return float(np.sum((rest - rest.mean()) ** 2))
 
-    grid = np.linspace(0.0, travel.max() / 3.0, count)
+    grid = np.linspace(0.0, travel.max() / 3.0, 400 if steady else 9)
     costs = [misfit(slack) for slack in grid]
     best = int(np.argmin(costs))
     low, high = grid[max(best - 1, 0)], grid[min(best + 1, len(grid) - 1)]
     refined = minimize_scalar(misfit, bounds=(low, high), method="bounded", options={"maxiter": 12})
     return float(refined.x) if refined.fun < costs[best] else float(grid[best])
+
+
+def _delayed(tight: np.ndarray, elapsed: np.ndarray, speed: float) -> Callable[[float], np.ndarray]:
+    """Force behind a slack, from the force without: nothing until the head has travelled it."""
+    return lambda slack: np.interp(elapsed - slack / speed, elapsed, tight, left=0.0)
