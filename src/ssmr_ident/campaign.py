@@ -98,13 +98,7 @@ def load(path: str | Path, progress: Callable[[int, int], None] | None = None) -
 
 
 def _measure(session: Session, entry: Entry, accelerometer: Accelerometer) -> Measurement:
-    options = ReadOptions(
-        reader=entry.reader,
-        columns=dict(entry.columns),
-        units=dict(entry.units),
-        fs=entry.sample_rate_hz,
-        sample=entry.sample,
-    )
+    options = read_options(entry)
     recording = to_quantities(read_one(session.path(entry), options), entry, accelerometer)
     for group in _NEEDS[entry.experiment]:
         if not any(name in recording for name in group):
@@ -117,6 +111,24 @@ def _measure(session: Session, entry: Entry, accelerometer: Accelerometer) -> Me
     if entry.wheel_log:
         wheels = read_one(session.folder / entry.wheel_log, ReadOptions())
     return Measurement(entry, recording, wheels)
+
+
+def read_options(entry: Entry) -> ReadOptions:
+    """What the entry tells the reader."""
+    return ReadOptions(
+        reader=entry.reader,
+        fs=entry.sample_rate_hz,
+        units=dict(entry.units),
+        columns=dict(entry.columns),
+        skip="auto" if entry.skip_rows is None else entry.skip_rows,
+        sheets=dict(entry.sheets),
+        time_unit=entry.time_unit,
+        on_bad=entry.on_bad,
+        trim=entry.trim,
+        load_scale=entry.load_scale,
+        sample=entry.sample,
+        decimal=entry.decimal,
+    )
 
 
 def to_quantities(recording: Recording, entry: Entry, accelerometer: Accelerometer) -> Recording:

@@ -14,7 +14,7 @@ from ssmr_ident.readers.options import ReadOptions
 
 
 def save_choices(session: Path, log: Path, options: ReadOptions) -> None:
-    """Write reader, columns, units, rate and sample of ``options`` into the entry of ``log``.
+    """Write what ``options`` say into the entry of ``log``.
 
     Parameters
     ----------
@@ -32,8 +32,15 @@ def save_choices(session: Path, log: Path, options: ReadOptions) -> None:
         "reader": options.reader,
         "columns": {k: int(v) if str(v).isdigit() else v for k, v in options.columns.items()} or None,
         "units": dict(options.units) or None,
+        "sheets": {k: int(v) if str(v).isdigit() else v for k, v in options.sheets.items()} or None,
         "sample_rate_hz": options.fs,
         "sample": options.sample,
+        "skip_rows": None if options.skip == "auto" else int(options.skip),
+        "time_unit": options.time_unit,
+        "decimal": options.decimal,
+        "on_bad": None if options.on_bad == "error" else options.on_bad,
+        "trim": options.trim or None,
+        "load_scale": options.load_scale,
     }
     choices = {key: value for key, value in choices.items() if value is not None}
     session = session / "session.yaml" if session.is_dir() else session

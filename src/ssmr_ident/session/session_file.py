@@ -49,8 +49,15 @@ class Entry:
     per_volt: Mapping[str, float] = field(default_factory=dict)
     columns: Mapping[str, int | str] = field(default_factory=dict)
     units: Mapping[str, str] = field(default_factory=dict)
+    sheets: Mapping[str, int | str] = field(default_factory=dict)
     sample_rate_hz: float | None = None
     sample: int | None = None
+    skip_rows: int | None = None
+    time_unit: str | None = None
+    decimal: str | None = None
+    on_bad: str = "error"
+    trim: bool = False
+    load_scale: float | None = None
 
 
 @dataclass(frozen=True)
@@ -243,6 +250,13 @@ _CHECKS: dict[str, Callable[[str, Any], Any]] = {
     "per_volt": _mapping_of(_number),
     "units": _mapping_of(lambda where, value: str(value)),
     "columns": _mapping_of(lambda where, value: value),
+    "sheets": _mapping_of(lambda where, value: value),
+    "skip_rows": _integer,
+    "time_unit": lambda where, value: str(value),
+    "decimal": _choice(".", ","),
+    "on_bad": _choice("error", "nan"),
+    "trim": _yes_no,
+    "load_scale": _positive,
     "floor": lambda where, value: str(value),
     "frame": lambda where, value: str(value),
 }
