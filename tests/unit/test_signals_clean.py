@@ -16,9 +16,7 @@ def test_amplitude_and_its_spread_are_honest() -> None:
     """Over 200 noisy records the estimate scatters as its own standard deviation says."""
     rng = np.random.default_rng(11)
     t = TIME[:2000]
-    lines = [
-        mains_line(0.02 * np.cos(2 * np.pi * 60 * t) + 0.1 * rng.standard_normal(2000), RATE) for _ in range(200)
-    ]
+    lines = [mains_line(0.02 * np.cos(2 * np.pi * 60 * t) + 0.1 * rng.standard_normal(2000), RATE) for _ in range(200)]
     amplitudes = np.array([line.amplitude for line in lines])
     spread = 0.1 * np.sqrt(2 / 2000)
     bias = spread**2 / (2 * 0.02)  # a length is never shorter for its noise (Rice)
