@@ -79,9 +79,7 @@ def test_a_silent_simulation_is_far_but_finite() -> None:
     ("part", "published"),
     [("ice/ice-06a", 0.8), ("ice/ice-04a", 1.5), ("flooring/flooring-05a", 2.1), ("flooring/flooring-07a", 3.7)],
 )
-def test_halves_of_real_turns_are_as_far_apart_as_their_readme_says(
-    shared: Path, part: str, published: float
-) -> None:
+def test_halves_of_real_turns_are_as_far_apart_as_their_readme_says(shared: Path, part: str, published: float) -> None:
     """Printed to 0.1 dB in the README of the recordings, mean over ax ay az."""
     log = np.genfromtxt(shared / f"recordings/borealtc_{part}.csv", delimiter=",", skip_header=1)[:, 1:4]
     half = len(log) // 2
