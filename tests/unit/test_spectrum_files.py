@@ -24,9 +24,7 @@ def write_csv(path: Path, time: np.ndarray, **columns: np.ndarray) -> Path:
     return path
 
 
-def test_volts_without_a_session_use_the_thesis_and_say_so(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_volts_without_a_session_use_the_thesis_and_say_so(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     t = np.arange(4096) / 1000
     volts = 2.6 + 5 / (3.4 * 9.8) * 0.5 * np.sin(2 * np.pi * 8 * t)
     recording = Recording(
