@@ -36,9 +36,7 @@ def log_rows(line: float, height: float, repeat: int) -> np.ndarray:
 
 
 def write_log(path: Path, rows: np.ndarray) -> None:
-    np.savetxt(
-        path, rows, fmt="%.6f", delimiter=",", header="time [s],ax [m/s^2],ay [m/s^2],az [m/s^2]", comments=""
-    )
+    np.savetxt(path, rows, fmt="%.6f", delimiter=",", header="time [s],ax [m/s^2],ay [m/s^2],az [m/s^2]", comments="")
 
 
 @pytest.fixture(scope="module")
