@@ -32,18 +32,24 @@ def test_friction_over_slip_speed() -> None:
 
 def test_report_shows_value_std_unit_prior_and_source() -> None:
     before = ParameterSet(
-        "robot", {"mass_kg": Estimate(32.0, 5.0, "kg", "scale"), "points": Estimate(np.zeros(3), None, "m")}
+        "robot",
+        {
+            "mass_kg": Estimate(32.0, 5.0, "kg", "scale"),
+            "tire.mu_static": Estimate(0.8, None, "1"),
+            "points": Estimate(np.zeros(3), None, "m"),
+        },
     )
     after = before.updated({"mass_kg": Estimate(30.0, 0.2, "kg", "fit of the recordings")})
     text = fit_report(
-        "s", ["2 recordings"], {"a.csv": ["roll", "more"]}, ["t 1"], before, after, ["mass_kg", "points"],
-        [("a", "b", 0.97)], [],
+        "s", ["2 recordings"], {"a.csv": ["roll", "more"]}, ["t 1"], before, after,
+        ["mass_kg", "tire.mu_static", "points"], [("mass_kg", "tire.mu_static", 0.97)], [],
     )  # fmt: skip
     for part in (
-        "30 +/- 0.2 kg (0.67%)",
-        "before 32 ± 5",
+        "30.0000000 +/- 0.20000000 (0.67%)",
+        " kg ",
+        "(init = 32 ± 5)",
         "[fit of the recordings]",
-        "C(a, b) = +0.970",
+        "C(mass_kg, tire.mu_static) = +0.9700",
         "a.csv: roll",
     ):
         assert part in text

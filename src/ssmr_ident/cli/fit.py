@@ -15,7 +15,14 @@ def command(
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
     quiet: Annotated[bool, typer.Option("-q", "--quiet", help="Print nothing.")] = False,
-    seed: Annotated[int, typer.Option(help="Written into the provenance; nothing here is left to chance.")] = 0,
+    seed: Annotated[int, typer.Option(help="Of the random starts of output error.")] = 0,
+    method: Annotated[
+        str | None,
+        typer.Option(
+            help="How a robot's free responses are fitted: output-error (all samples) or modal (their frequencies and "
+            "damping). Left out: output-error wherever there are accelerations."
+        ),
+    ] = None,
     coulomb: Annotated[
         bool, typer.Option(help="Allow dry friction and a force offset for a drive without a spring.")
     ] = True,
@@ -29,7 +36,7 @@ def command(
 
     if output is not None and not output.absolute().parent.is_dir():
         raise InputError(str(output), "its folder does not exist", "Make the folder, or write elsewhere with -o")
-    fit = fit_session(session, seed=seed, coulomb=coulomb)
+    fit = fit_session(session, seed=seed, coulomb=coulomb, method=method)
     if output is not None:
         write_parameters(output, fit.parameters)
     if as_json:

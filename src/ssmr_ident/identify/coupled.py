@@ -87,8 +87,12 @@ AXES_OF = {"roll": (1, 3), "pitch": (0, 4), "yaw": (5,)}
 """Axes of (x, y, z, roll, pitch, yaw) that a motion lives in."""
 
 
+FURTHER = "further mode "
+"""Name of a mode beside the main ones, before its number."""
+
+
 def body_modes(robot: Robot) -> dict[str, tuple[float, float]]:
-    """ω_n [rad/s] and ξ of the main mode of each motion: what a decay log of that motion shows.
+    """ω_n [rad/s] and ξ of the main mode of each motion, which its decay log shows, and of the further modes.
 
     Parameters
     ----------
@@ -96,11 +100,13 @@ def body_modes(robot: Robot) -> dict[str, tuple[float, float]]:
         Linearised at rest on sticking tires.
 
     Yaw is the mode with the largest share of energy in yaw; roll and pitch are the slowest modes with most of
-    their energy in roll and y, or pitch and x.
+    their energy in roll and y, or pitch and x. What remains (the partners of roll and pitch, and the bounce) is
+    numbered by rising frequency under ``FURTHER``.
     """
     linear = linear_robot(robot)
     modes = vibration_modes(linear.mass, linear.damping, linear.stiffness)
     found: dict[str, tuple[float, float]] = {}
+    taken: list[int] = []
     yaw = int(np.argmax(modes.shapes[:, 5])) if len(modes.natural) else -1
     for motion, axes in AXES_OF.items():
         share = modes.shapes[:, list(axes)].sum(axis=1)
@@ -110,5 +116,9 @@ def body_modes(robot: Robot) -> dict[str, tuple[float, float]]:
             among = [k for k in range(len(share)) if share[k] > 0.5 and k != yaw]
             index = among[0] if among else -1
         if index >= 0:
+            taken.append(index)
             found[motion] = (float(modes.natural[index]), float(modes.xi[index]))
+    further = [k for k in range(len(modes.natural)) if k not in taken]
+    for number, k in enumerate(further, 1):
+        found[f"{FURTHER}{number}"] = (float(modes.natural[k]), float(modes.xi[k]))
     return found

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -13,7 +14,9 @@ CONFLICT_SIGMAS = 3.0
 TRADE_OFF = 0.95
 
 
-def posterior_findings(posterior: Posterior, hidden: Collection[str] = ()) -> list[str]:
+def posterior_findings(
+    posterior: Posterior, hidden: Collection[str] = (), known: Sequence[Unknown] | None = None
+) -> list[str]:
     """Sentences on conflicts with the prior, what is not explained, bounds, trade-offs and flat directions.
 
     Parameters
@@ -21,14 +24,17 @@ def posterior_findings(posterior: Posterior, hidden: Collection[str] = ()) -> li
     posterior : Posterior
     hidden : collection of str
         Unknowns of the method alone: no trade-off or flat direction is told for them.
+    known : sequence of Unknown, optional
+        What was known beforehand, where the fit set some of it aside.
     """
     found = []
-    for unknown, value, pull in zip(posterior.unknowns, posterior.values, posterior.pulls, strict=True):
-        if abs(pull) > CONFLICT_SIGMAS and unknown.prior_std is not None:
-            found.append(
-                f"{unknown.name} is in conflict with what was known of it: {unknown.prior:.4g} ± "
-                f"{unknown.prior_std:.2g} before, {value:.4g} {unknown.unit} fitted, {abs(pull):.1f} sigma away"
-            )
+    for conflict in conflicts(posterior, known):
+        found.append(
+            f"{conflict['parameter']} is in conflict with what was known of it: {conflict['prior']:.4g} ± "
+            f"{conflict['prior_std']:.2g} before, {conflict['fitted']:.4g} {conflict['unit']} fitted, "
+            f"{conflict['sigmas']:.1f} sigma away"
+        )
+    for unknown, value in zip(posterior.unknowns, posterior.values, strict=True):
         if "damping" in unknown.name and value < 0:
             found.append(f"{unknown.name} = {value:.3g} {unknown.unit} is negative: no passive tire or damper has that")
         if at_bound(unknown, value):
@@ -44,17 +50,30 @@ def posterior_findings(posterior: Posterior, hidden: Collection[str] = ()) -> li
         )
     if not posterior.converged:
         found.append("the fit did not converge: take its standard deviations with caution")
-    names = [unknown.name for unknown in posterior.unknowns]
-    for i in range(len(names)):
-        for j in range(i):
-            size = float(posterior.correlations[i, j])
-            if abs(size) > TRADE_OFF and not {names[i], names[j]} & set(hidden):
-                how = "rise together" if size > 0 else "trade off"
-                found.append(f"{names[j]} and {names[i]} {how} (correlation {size:+.3f}): only one is told by the data")
+    found += _trade_offs(posterior, hidden)
     told = [direction for direction in posterior.flat if not {name for name, _ in direction} & set(hidden)]
     for direction in told[:2]:
         parts = ", ".join(f"{share:+.2f} {name}" for name, share in direction[:4])
         found.append(f"flat direction, known from the prior only (in prior standard deviations): {parts}")
+    return found
+
+
+def _trade_offs(posterior: Posterior, hidden: Collection[str]) -> list[str]:
+    """Sentences on the two strongest correlations, and how many more there are."""
+    names = [unknown.name for unknown in posterior.unknowns]
+    pairs = [
+        (float(posterior.correlations[i, j]), names[j], names[i])
+        for i in range(len(names))
+        for j in range(i)
+        if abs(posterior.correlations[i, j]) > TRADE_OFF and not {names[i], names[j]} & set(hidden)
+    ]
+    pairs.sort(key=lambda pair: -abs(pair[0]))
+    found = []
+    for size, first, second in pairs[:2]:
+        how = "rise together" if size > 0 else "trade off"
+        found.append(f"{first} and {second} {how} (correlation {size:+.3f}): only one is told by the data")
+    if len(pairs) > 2:
+        found[-1] += f"; so do {len(pairs) - 2} further pairs"
     return found
 
 
@@ -63,13 +82,34 @@ def at_bound(unknown: Unknown, value: float) -> bool:
     return unknown.logarithmic and abs(math.log(value / unknown.prior)) > 11.99
 
 
-def conflicts(posterior: Posterior) -> list[dict[str, float | str]]:
-    """Parameters in conflict as diagnosis.yaml lists them."""
-    return [
-        {"parameter": u.name, "prior": u.prior, "fitted": float(value), "sigmas": float(abs(pull))}
-        for u, value, pull in zip(posterior.unknowns, posterior.values, posterior.pulls, strict=True)
-        if abs(pull) > CONFLICT_SIGMAS and u.prior_std is not None
-    ]
+def conflicts(posterior: Posterior, known: Sequence[Unknown] | None = None) -> list[dict[str, Any]]:
+    """Parameters in conflict as diagnosis.yaml lists them, the worst first.
+
+    Parameters
+    ----------
+    posterior : Posterior
+    known : sequence of Unknown, optional
+        Priors to hold the values against, where the fit set some of them aside.
+    """
+    before = {u.name: u for u in (posterior.unknowns if known is None else known)}
+    rows = []
+    for unknown, value in zip(posterior.unknowns, posterior.values, strict=True):
+        prior = before.get(unknown.name, unknown)
+        if prior.prior_std is None:
+            continue
+        sigmas = abs(float(value) - prior.prior) / prior.prior_spread
+        if sigmas > CONFLICT_SIGMAS:
+            rows.append(
+                {
+                    "parameter": unknown.name,
+                    "prior": prior.prior,
+                    "prior_std": prior.prior_std,
+                    "fitted": float(value),
+                    "unit": unknown.unit,
+                    "sigmas": sigmas,
+                }
+            )
+    return sorted(rows, key=lambda row: -float(row["sigmas"]))
 
 
 def amplitude_findings(name: str, trends: Mapping[str, float], falls: bool, small: str) -> list[str]:

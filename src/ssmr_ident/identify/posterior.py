@@ -9,10 +9,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Protocol
 
 import numpy as np
 from scipy.stats import chi2
+
+from ssmr_ident.identify.flatness import flat_directions
+from ssmr_ident.identify.output_error import System
 
 Array = np.ndarray
 
@@ -59,8 +63,21 @@ class Unknown:
             return self.prior * math.exp(np.clip(scaled * self.spread, -12, 12))
         return self.prior + scaled * self.spread
 
+    @property
+    def prior_spread(self) -> float:
+        """Prior standard deviation of the value itself."""
+        return self.spread * (self.prior if self.logarithmic else 1.0)
+
+    def slope(self, scaled: float) -> float:
+        """Derivative of the value by the scaled coordinate."""
+        return self.spread * (self.value(scaled) if self.logarithmic else 1.0)
+
+    def scaled(self, value: float) -> float:
+        """Back from a value to the scaled coordinate."""
+        return (math.log(value / self.prior) if self.logarithmic else value - self.prior) / self.spread
+
     def std(self, scaled: float, scaled_std: float) -> float:
-        return scaled_std * self.spread * (self.value(scaled) if self.logarithmic else 1.0)
+        return scaled_std * self.slope(scaled)
 
 
 @dataclass(frozen=True)
@@ -108,6 +125,10 @@ class Posterior:
         Factor by which the observations' standard deviations were widened, because they differ from what the
         best parameters predict by more than their own uncertainty (p below 1 in 1000); 1 where they do not.
     converged : bool
+    systems : tuple of System
+        Of the samples that were fitted directly, at the optimum.
+    sandwich : (n,) float
+        Factor by which residuals that are correlated in time widened each standard deviation; 1 where they are white.
     """
 
     unknowns: tuple[Unknown, ...]
@@ -121,6 +142,8 @@ class Posterior:
     chi_square: float
     excess: float
     converged: bool
+    systems: tuple[System, ...] = ()
+    sandwich: Array = field(default_factory=lambda: np.ones(0))
 
     def __getitem__(self, name: str) -> tuple[float, float]:
         """Value and standard deviation."""
@@ -138,114 +161,163 @@ class Posterior:
         return "\n".join(lines)
 
 
+class Samples(Protocol):
+    """Recordings whose samples are fitted directly, their nuisances eliminated inside."""
+
+    def cost(self, values: Mapping[str, float]) -> float: ...
+
+    def system(self, values: Mapping[str, float], moves: Mapping[str, float], correlated: bool = False) -> System: ...
+
+
+SMALL_MOVE = 1e-4
+"""Step of central differences, in prior standard deviations."""
+
+
+class _Objective:
+    """Twice the negative logarithm of the posterior over scaled coordinates (0 at the prior, 1 one std away)."""
+
+    def __init__(
+        self, unknowns: Sequence[Unknown], observations: Sequence[Observation], samples: Sequence[Samples]
+    ) -> None:
+        self.unknowns, self.observations, self.samples = unknowns, observations, samples
+        self.whiteners = [np.linalg.inv(np.linalg.cholesky(o.covariance)) for o in observations]
+
+    def values(self, scaled: Array) -> dict[str, float]:
+        return {u.name: u.value(s) for u, s in zip(self.unknowns, scaled, strict=True)}
+
+    def residual(self, scaled: Array) -> Array:
+        """Of the observations."""
+        values = self.values(scaled)
+        parts = [w @ (o.values - o.predict(values)) for o, w in zip(self.observations, self.whiteners, strict=True)]
+        return np.concatenate(parts) if parts else np.zeros(0)
+
+    def cost(self, scaled: Array) -> float:
+        residual = self.residual(scaled)
+        values = self.values(scaled)
+        return float(residual @ residual + scaled @ scaled) + sum(s.cost(values) for s in self.samples)
+
+    def slopes(self, scaled: Array) -> Array:
+        """Derivatives of the observations' residual, (k, n)."""
+        columns = []
+        for index in range(len(scaled)):
+            move = np.zeros(len(scaled))
+            move[index] = SMALL_MOVE
+            columns.append((self.residual(scaled + move) - self.residual(scaled - move)) / (2 * SMALL_MOVE))
+        return np.column_stack(columns)
+
+    def sampled(self, scaled: Array, correlated: bool = False) -> tuple[list[System], Array, Array, Array]:
+        """Systems of the samples; gradient, information and meat in scaled coordinates."""
+        chain = np.array([u.slope(s) for u, s in zip(self.unknowns, scaled, strict=True)])
+        moves = {u.name: SMALL_MOVE * abs(c) for u, c in zip(self.unknowns, chain, strict=True)}
+        systems = [s.system(self.values(scaled), moves, correlated) for s in self.samples]
+        size = len(scaled)
+        gradient, information, meat = np.zeros(size), np.zeros((size, size)), np.zeros((size, size))
+        for system in systems:
+            gradient += chain * system.gradient
+            information += np.outer(chain, chain) * system.information
+            meat += np.outer(chain, chain) * system.meat
+        return systems, gradient, information, meat
+
+
 def most_probable(
-    unknowns: Sequence[Unknown], observations: Sequence[Observation], max_iterations: int = 300
+    unknowns: Sequence[Unknown],
+    observations: Sequence[Observation],
+    samples: Sequence[Samples] = (),
+    start: Mapping[str, float] | None = None,
+    max_iterations: int = 300,
 ) -> Posterior:
-    """Maximum a posteriori by damped Gauss-Newton from the prior.
+    """Maximum a posteriori by damped Gauss-Newton.
 
     Parameters
     ----------
     unknowns : sequence of Unknown
     observations : sequence of Observation
+    samples : sequence of Samples
+        Fitted beside the observations.
+    start : mapping of str to float, optional
+        Values to begin at; the prior for those left out.
     max_iterations : int
 
     Returns
     -------
     Posterior
+
+    Notes
+    -----
+    A residual that is correlated in time although the noise was whitened belongs to a model that misses something.
+    Standard deviations are then those of a sandwich where that is wider (White 1982, Newey and West 1987).
     """
     count = len(unknowns)
-    whiteners = [np.linalg.inv(np.linalg.cholesky(observation.covariance)) for observation in observations]
-
-    def residual(scaled: Array) -> Array:
-        values = {u.name: u.value(s) for u, s in zip(unknowns, scaled, strict=True)}
-        parts = [
-            whitener @ (observation.values - observation.predict(values))
-            for observation, whitener in zip(observations, whiteners, strict=True)
-        ]
-        return np.concatenate([*parts, -scaled])
-
-    def jacobian(scaled: Array) -> Array:
-        columns = []
-        for index in range(count):
-            move = np.zeros(count)
-            move[index] = 1e-4
-            columns.append((residual(scaled + move) - residual(scaled - move)) / 2e-4)
-        return np.column_stack(columns)
-
-    point = np.zeros(count)
-    current = residual(point)
+    objective = _Objective(unknowns, observations, samples)
+    point = np.array([u.scaled(start[u.name]) if start and u.name in start else 0.0 for u in unknowns])
+    current = objective.cost(point)
     damping, converged = 1e-3, False
+    # A thousandth of a unit of chi-square moves no parameter by a twentieth of its standard deviation.
+    enough = 1e-3 if samples else 1e-8 * max(1.0, current)
     for _ in range(max_iterations):
-        slope = jacobian(point)
-        gradient, curvature = slope.T @ current, slope.T @ slope
-        accepted = False
+        residual, slope = objective.residual(point), objective.slopes(point)
+        _, own_gradient, own_information, _ = objective.sampled(point)
+        gradient = slope.T @ residual + point + own_gradient
+        curvature = slope.T @ slope + np.eye(count) + own_information
+        tried, step = np.inf, np.zeros(count)
         while damping < 1e10:
             step = -np.linalg.solve(curvature + damping * np.diag(np.diag(curvature)), gradient)
-            tried = residual(point + step)
-            if np.all(np.isfinite(tried)) and tried @ tried <= current @ current:
-                accepted = True
+            tried = objective.cost(point + step)
+            if np.isfinite(tried) and tried <= current:
                 break
             damping = max(damping, 1e-6) * 10
-        if not accepted:
+        else:
             break
-        gain = float(current @ current - tried @ tried)
+        gain = current - tried
         point, current, damping = point + step, tried, damping / 10
-        if gain < 1e-8 * max(1.0, float(current @ current)):
+        if gain < enough:
             converged = True
             break
-    slope = jacobian(point)
-    covariance = np.linalg.inv(slope.T @ slope)
-    scaled_stds = np.sqrt(np.diag(covariance))
-    data = slope[: len(current) - count]
-    misfits, at = {}, 0
-    values = {u.name: u.value(s) for u, s in zip(unknowns, point, strict=True)}
+    return _summary(objective, point, converged)
+
+
+def _summary(objective: _Objective, point: Array, converged: bool) -> Posterior:
+    unknowns, observations = objective.unknowns, objective.observations
+    count = len(unknowns)
+    residual, slope = objective.residual(point), objective.slopes(point)
+    systems, _, information, meat = objective.sampled(point)
+    structure = bool(systems) and min(system.whiteness_p for system in systems) < 1e-3
+    if structure:
+        systems, _, information, meat = objective.sampled(point, correlated=True)
+    values = objective.values(point)
+    misfits = {}
     for observation in observations:
         difference = observation.values - observation.predict(values)
         for label, miss, variance in zip(observation.labels, difference, np.diag(observation.covariance), strict=True):
             misfits[f"{observation.name}: {label}"] = float(miss / math.sqrt(variance))
-        at += len(observation.values)
-    share = 1.0 - np.clip(scaled_stds, 0, 1) ** 2
-    chi_square = float(current[:at] @ current[:at])
-    freedom = max(at - float(share.sum()), 1.0)
-    wrong = at > 0 and chi2.sf(chi_square, freedom) < 1e-3
+    covariance = np.linalg.inv(slope.T @ slope + np.eye(count) + information)
+    share = 1.0 - np.clip(np.diag(covariance), 0, 1)
+    chi_square = float(residual @ residual)
+    # Samples use up parameters as well, but they are so many that the observations' own degrees of freedom count.
+    freedom = max(len(residual) - float(share.sum()) * (not systems), 1.0)
+    wrong = len(residual) > 0 and chi2.sf(chi_square, freedom) < 1e-3
     excess = math.sqrt(chi_square / freedom) if wrong else 1.0
-    if wrong:
-        # Observations that contradict each other know less than they say; the prior stays what it was.
-        weights = np.concatenate([np.full(at, 1.0 / excess), np.ones(count)])[:, None]
-        covariance = np.linalg.inv((slope * weights).T @ (slope * weights))
-        scaled_stds = np.sqrt(np.diag(covariance))
-        share = 1.0 - np.clip(scaled_stds, 0, 1) ** 2
+    # Observations that contradict each other know less than they say; the prior stays what it was.
+    weighted = slope.T @ slope / excess**2
+    covariance = np.linalg.inv(weighted + np.eye(count) + information)
+    sandwich = np.ones(count)
+    if structure:
+        wide = covariance @ (weighted + np.eye(count) + meat) @ covariance
+        sandwich = np.sqrt(np.maximum(np.diag(wide) / np.diag(covariance), 1.0))
+        covariance = covariance * np.outer(sandwich, sandwich)
+    scaled_stds = np.sqrt(np.diag(covariance))
     return Posterior(
         unknowns=tuple(unknowns),
         values=np.array(list(values.values())),
         stds=np.array([u.std(s, d) for u, s, d in zip(unknowns, point, scaled_stds, strict=True)]),
         correlations=covariance / np.outer(scaled_stds, scaled_stds),
-        information_share=share,
-        pulls=point,
+        information_share=1.0 - np.clip(scaled_stds, 0, 1) ** 2,
+        pulls=np.array([(v - u.prior) / u.prior_spread for u, v in zip(unknowns, values.values(), strict=True)]),
         misfits=misfits,
-        flat=_flat_directions([u.name for u in unknowns], data),
+        flat=flat_directions([u.name for u in unknowns], slope.T @ slope + information),
         chi_square=chi_square,
         excess=excess,
         converged=converged,
+        systems=tuple(systems),
+        sandwich=sandwich,
     )
-
-
-def _flat_directions(names: Sequence[str], data: Array) -> tuple[tuple[tuple[str, float], ...], ...]:
-    """Combinations with less information in the data than a hundredth of the prior's; single parameters left out.
-
-    Only combinations of parameters that the data do inform in some other combination are worth naming: a
-    parameter that no observation depends on is simply not informed.
-    """
-    touched = [k for k in range(len(names)) if float(np.linalg.norm(data[:, k])) > 1.0]
-    if len(touched) < 2:
-        return ()
-    values, vectors = np.linalg.eigh(data[:, touched].T @ data[:, touched])
-    found = []
-    for value, vector in zip(values, vectors.T, strict=True):
-        if value > 0.01:
-            break
-        order = np.argsort(-np.abs(vector))
-        parts = [(names[touched[k]], float(vector[k])) for k in order if abs(vector[k]) > 0.2]
-        if len(parts) > 1:
-            found.append(tuple(parts))
-    return tuple(found)

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.stats import t as student
 
 from ssmr_ident.core.parameter import ParameterSet
-from ssmr_ident.identify.coupled import body_modes
+from ssmr_ident.identify.coupled import FURTHER, body_modes
 from ssmr_ident.identify.decay_result import DecayFit, Mode
 from ssmr_ident.identify.friction import gripping_load
 from ssmr_ident.identify.posterior import Observation, Unknown
@@ -20,6 +20,12 @@ from ssmr_ident.physics.robot import Robot, robot_from_parameters
 
 HEIGHT = "height_m"
 """Height of the centre of mass; the contact points' common z in the file."""
+
+SHIFTS = ("contact_shift_x_m", "contact_shift_y_m")
+"""How far the contact points lie from where the file has them, all alike: the centre of mass along x and y."""
+
+SENSOR = tuple(f"accelerometer.position_m.{axis}" for axis in "xyz")
+"""Place of the accelerometer, coordinate by coordinate."""
 
 LINEAR_FREQUENCY = 0.001
 LINEAR_DAMPING = 0.01
@@ -38,7 +44,8 @@ trough above µ_k·N, by an amount that all pulls of a session have in common. I
 peaks reach 0.94 to 1.00 of it and troughs 0.97 to 1.14."""
 
 _KEYS = (
-    *("mass_kg", "inertia_kg_m2.xx", "inertia_kg_m2.yy", "inertia_kg_m2.zz", "inertia_kg_m2.xz"),
+    *("mass_kg", "inertia_kg_m2.xx", "inertia_kg_m2.yy", "inertia_kg_m2.zz"),
+    *("inertia_kg_m2.xz", "inertia_kg_m2.xy", "inertia_kg_m2.yz"),
     *(f"tire.stiffness_{axis}_N_m" for axis in "xyz"),
     *(f"tire.damping_{axis}_N_s_m" for axis in "xyz"),
     *("tire.mu_static", "tire.mu_kinetic", "cable.stiffness_N_m"),
@@ -55,18 +62,49 @@ def robot_unknowns(parameters: ParameterSet) -> tuple[Unknown, ...]:
     contacts = parameters["contact_points_m"]
     if not contacts.fixed:
         height = -float(np.mean(np.asarray(contacts.value)[:, 2]))
-        found.append(Unknown(HEIGHT, "m", height, contacts.std))
+        found.append(Unknown(HEIGHT, "m", height, _spread(contacts.std)))
+        if contacts.std is not None:
+            found += [Unknown(name, "m", 0.0, _spread(contacts.std), positive=False) for name in SHIFTS]
+    position = parameters.get("accelerometer.position_m")
+    if position is not None and position.std is not None and not position.fixed:
+        place = np.asarray(position.value, float)
+        found += [
+            Unknown(name, "m", float(value), _spread(position.std), positive=False)
+            for name, value in zip(SENSOR, place, strict=True)
+        ]
     return tuple(found)
 
 
 def _positive(key: str) -> bool:
     """Products of inertia have either sign; a damping that comes out negative is a finding, not to be hidden."""
-    return key != "inertia_kg_m2.xz" and not key.startswith("tire.damping")
+    return key[-3:] not in (".xy", ".xz", ".yz") and not key.startswith("tire.damping")
 
 
 def _spread(std: float | None) -> float | None:
     """A std of 0 in a file means exactly known; a millionth keeps the algebra regular."""
     return None if std is None else max(std, 1e-9)
+
+
+def set_aside(unknowns: Sequence[Unknown], motions: Collection[str]) -> tuple[Unknown, ...]:
+    """Unknowns for pure rotations as the thesis solves them (5.10): stiffness and geometry as known, the rest free.
+
+    Parameters
+    ----------
+    unknowns : sequence of Unknown
+    motions : collection of str
+        That were recorded.
+
+    Notes
+    -----
+    (5.10) asks which inertia and damping the modes need once the pulls have told the stiffness. Their own priors are
+    set aside, so that what the model lacks shows where the thesis saw it, in the inertia, and not in all
+    parameters a little.
+    """
+    axes = {"roll": "xx", "pitch": "yy", "yaw": "zz"}
+    free = {f"inertia_kg_m2.{axes[motion]}" for motion in motions if motion in axes}
+    if free:
+        free |= {f"tire.damping_{axis}_N_s_m" for axis in "xyz"}
+    return tuple(replace(u, prior_std=None) if u.name in free else u for u in unknowns)
 
 
 @dataclass(frozen=True)
@@ -88,9 +126,14 @@ class RobotBuilder:
     def __call__(self, values: Mapping[str, float]) -> Robot:
         robot = self.nominal
         inertia = robot.inertia.copy()
-        for row, column, axis in ((0, 0, "xx"), (1, 1, "yy"), (2, 2, "zz"), (0, 2, "xz"), (2, 0, "xz")):
-            inertia[row, column] = values.get(f"inertia_kg_m2.{axis}", inertia[row, column])
+        for row, column, axis in ((0, 0, "xx"), (1, 1, "yy"), (2, 2, "zz"), (0, 2, "xz"), (0, 1, "xy"), (1, 2, "yz")):
+            inertia[row, column] = inertia[column, row] = values.get(f"inertia_kg_m2.{axis}", inertia[row, column])
         points = robot.contact_points.copy()
+        for index, name in enumerate(SHIFTS):
+            points[:, index] += values.get(name, 0.0)
+        place = robot.accelerometer.position
+        if any(name in values for name in SENSOR):
+            place = np.array([values.get(name, place[index]) for index, name in enumerate(SENSOR)])
         if HEIGHT in values:
             points[:, 2] -= values[HEIGHT] - robot.height
         return replace(
@@ -105,6 +148,7 @@ class RobotBuilder:
             mu_static=values.get("tire.mu_static", robot.mu_static),
             mu_kinetic=values.get("tire.mu_kinetic", robot.mu_kinetic),
             cable_stiffness=values.get("cable.stiffness_N_m", robot.cable_stiffness),
+            accelerometer=replace(robot.accelerometer, position=place),
         )
 
 
@@ -175,19 +219,50 @@ def combine_trials(modes: Mapping[str, Sequence[Mode]]) -> dict[str, tuple[np.nd
     return combined
 
 
+def match_further(modes: Sequence[Mode], main: Mode, expected: Mapping[str, tuple[float, float]]) -> dict[str, Mode]:
+    """Modes of a log beside its main one, by the further mode of the body that each is nearest to.
+
+    Parameters
+    ----------
+    modes : sequence of Mode
+    main : Mode
+        Left out.
+    expected : mapping of name to (ω_n, ξ)
+        Of the body as it was known beforehand.
+
+    Notes
+    -----
+    A mode counts when its frequency is known to 2 % and lies within 25 % of the expected one, which is what the
+    stiffnesses are usually known to, and nearer to it than to any main mode: a roll's log may show the yaw as well.
+    """
+    found: dict[str, Mode] = {}
+    for mode in modes:
+        if mode is main or mode.omega_n_std > 0.02 * mode.omega_n or mode.xi_std > 0.2 * abs(mode.xi):
+            continue
+        distance = {name: abs(math.log(mode.omega_n / omega)) for name, (omega, _) in expected.items()}
+        name = min(distance, key=lambda key: distance[key])
+        if not name.startswith(FURTHER) or distance[name] > 0.25:
+            continue
+        if name not in found or mode.omega_n_std < found[name].omega_n_std:
+            found[name] = mode
+    return found
+
+
 def modal_observations(
     modes: Mapping[str, Sequence[Mode]], builder: RobotBuilder, decoupled: bool
 ) -> list[Observation]:
-    """One observation per motion: its mean ω_n and ξ."""
+    """One observation per motion or further mode: its mean ω_n and ξ; further modes only where two logs show them."""
+    main = {name: trials for name, trials in modes.items() if not name.startswith(FURTHER)}
+    further = {name: trials for name, trials in modes.items() if name.startswith(FURTHER) and len(trials) > 1}
     observations = []
-    for motion, (mean, covariance) in combine_trials(modes).items():
+    for name, (mean, covariance) in (combine_trials(main) | ({} if decoupled else combine_trials(further))).items():
 
-        def predict(values: Mapping[str, float], motion: str = motion) -> np.ndarray:
-            found = predicted_modes(builder(values), decoupled).get(motion)
+        def predict(values: Mapping[str, float], name: str = name) -> np.ndarray:
+            found = predicted_modes(builder(values), decoupled).get(name)
             # An over-damped motion has no mode: far from every measured one, so that the fit turns back.
             return np.array(found if found is not None else (1.0, 1.0))
 
-        observations.append(Observation(motion, ("omega_n", "xi"), mean, covariance, predict))
+        observations.append(Observation(name, ("omega_n", "xi"), mean, covariance, predict))
     return observations
 
 
@@ -201,7 +276,58 @@ def slope_observation(
         return np.array([pull_stiffness(builder(values), direction, height, gripping, cable_stiffness)])
 
     variance = std**2 + (SLOPE_SHARE * slope) ** 2
-    return Observation(name, ("first rise N/m",), np.array([slope]), np.array([[variance]]), predict)
+    return Observation(name, (FIRST_RISE,), np.array([slope]), np.array([[variance]]), predict)
+
+
+FIRST_RISE = "first rise N/m"
+
+DRAWS = 64
+"""Draws of the contact shifts in ``with_shifts_unknown``: a standard deviation known to 9 %."""
+
+
+def with_shifts_unknown(
+    observations: Sequence[Observation], unknowns: Sequence[Unknown], seed: int = 0
+) -> tuple[list[Observation], tuple[Unknown, ...]]:
+    """Observations that carry the centre of mass's place along x and y in their covariance, and the other unknowns.
+
+    Parameters
+    ----------
+    observations : sequence of Observation
+    unknowns : sequence of Unknown
+    seed : int
+
+    Notes
+    -----
+    A pull bends with the square of the distance between cable and centre of stiffness, so it tells how far off the
+    middle the contacts are but not to which side: a derivative says nothing there. What the shifts' prior does to all
+    first rises together, mean and covariance, is drawn instead.
+    """
+    shifts = [u for u in unknowns if u.name in SHIFTS and u.prior_std]
+    rest = tuple(u for u in unknowns if u.name not in SHIFTS)
+    rises = [o for o in observations if o.labels == (FIRST_RISE,)]
+    if not shifts or len(rises) < 1:
+        return list(observations), rest
+    nominal = {u.name: u.prior for u in unknowns}
+    centre = np.array([float(o.predict(nominal)[0]) for o in rises])
+    rng = np.random.default_rng(seed)
+    draws = []
+    for _ in range(DRAWS // 2):
+        step = rng.standard_normal(len(shifts))
+        for sign in (1, -1):
+            moved = {u.name: u.value(sign * float(x)) for u, x in zip(shifts, step, strict=True)}
+            draws.append([float(o.predict({**nominal, **moved})[0]) for o in rises])
+    ratios = np.array(draws) / centre
+    mean, spread = ratios.mean(axis=0), np.cov(ratios.T).reshape(len(rises), len(rises))
+    values = np.array([float(o.values[0]) for o in rises])
+    own = np.diag([float(o.covariance[0, 0]) for o in rises])
+
+    def predict(parameters: Mapping[str, float]) -> np.ndarray:
+        return mean * np.array([float(o.predict(parameters)[0]) for o in rises])
+
+    joint = Observation(
+        "first rises", tuple(o.name for o in rises), values, own + spread * np.outer(values, values), predict
+    )
+    return [joint, *(o for o in observations if o.labels != (FIRST_RISE,))], rest
 
 
 def friction_observation(

@@ -9,9 +9,12 @@ from typing import Any
 
 from ssmr_ident import __version__
 from ssmr_ident.campaign import Campaign, Measurement, load
-from ssmr_ident.core.errors import InputError
+from ssmr_ident.core.errors import InputError, did_you_mean
 from ssmr_ident.core.parameter import ParameterSet
+from ssmr_ident.identify.lmfit_report import Variable
 from ssmr_ident.report.text_fit import fit_report
+
+METHODS = ("output-error", "modal")
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,6 +37,8 @@ class SessionFit:
     findings : tuple of str
     conflicts : tuple of dict
         As in diagnosis.yaml.
+    variables : tuple of Variable
+        Every unknown of the fit, arrays part by part; empty takes ``changed``.
     """
 
     session: str
@@ -47,6 +52,7 @@ class SessionFit:
     correlations: tuple[tuple[str, str, float], ...] = ()
     findings: tuple[str, ...] = ()
     conflicts: tuple[Mapping[str, Any], ...] = field(default_factory=tuple)
+    variables: tuple[Variable, ...] = ()
 
     def __str__(self) -> str:
         return fit_report(
@@ -59,6 +65,7 @@ class SessionFit:
             self.changed,
             self.correlations,
             self.findings,
+            self.variables,
         )
 
     def as_dict(self) -> dict[str, Any]:
@@ -75,6 +82,10 @@ class SessionFit:
                 }
                 for path in self.changed
             },
+            "variables": [
+                {"name": v.name, "value": v.value, "std": v.std, "unit": v.unit, "source": v.source}
+                for v in self.variables
+            ],
             "recordings": [{"file": file, **numbers} for file, numbers in self.results.items()],
             "parameters_in_conflict": [dict(conflict) for conflict in self.conflicts],
             "findings": list(self.findings),
@@ -86,7 +97,11 @@ def _plain(value: Any) -> Any:
 
 
 def fit_session(
-    path: str | Path, seed: int = 0, coulomb: bool = True, parameters: ParameterSet | None = None
+    path: str | Path,
+    seed: int = 0,
+    coulomb: bool = True,
+    parameters: ParameterSet | None = None,
+    method: str | None = None,
 ) -> SessionFit:
     """Fit a session folder.
 
@@ -94,11 +109,14 @@ def fit_session(
     ----------
     path : path of the folder or of its session.yaml
     seed : int
-        Written into the result; nothing here is left to chance.
+        Of the random starts of output error; written into the result.
     coulomb : bool
         Allow dry friction and a force offset where a drive without a spring is fitted.
     parameters : ParameterSet or None
         What is known beforehand; None takes the session's robot file.
+    method : {"output-error", "modal"} or None
+        How a robot's free responses are fitted; None takes output error wherever it can be had. Rigs and blocks have
+        one method, which is output error already.
 
     Returns
     -------
@@ -109,6 +127,8 @@ def fit_session(
     InputError
         Names the file, the place and the mend.
     """
+    if method not in (None, *METHODS):
+        raise InputError("--method", f"is {method!r}, expected {' or '.join(METHODS)}", did_you_mean(method, METHODS))
     campaign = load(path)
     if parameters is not None:
         campaign = replace(campaign, parameters=parameters)
@@ -124,8 +144,8 @@ def fit_session(
     else:
         from ssmr_ident.pipeline.fit_robot import fit_robot_session
 
-        fit = fit_robot_session(campaign, chosen)
-    return _with_provenance(fit, campaign, chosen, seed, coulomb)
+        fit = fit_robot_session(campaign, chosen, method, seed)
+    return _with_provenance(fit, campaign, chosen, seed, {"coulomb": coulomb, "method": method or "best"})
 
 
 def fitted_measurements(campaign: Campaign) -> tuple[Measurement, ...]:
@@ -148,18 +168,16 @@ def fitted_measurements(campaign: Campaign) -> tuple[Measurement, ...]:
 
 
 def _with_provenance(
-    fit: SessionFit, campaign: Campaign, chosen: tuple[Measurement, ...], seed: int, coulomb: bool
+    fit: SessionFit, campaign: Campaign, chosen: tuple[Measurement, ...], seed: int, settings: Mapping[str, Any]
 ) -> SessionFit:
     """Add who, from what and how: no time and no absolute path, so that the same command writes the same file."""
-    from dataclasses import replace
-
     provenance = {
         "command": "ident fit",
         "version": __version__,
         "session": campaign.session.name,
         "baseline": campaign.session.baseline,
         "seed": seed,
-        "settings": {"coulomb": coulomb, "role": chosen[0].entry.role},
+        "settings": {**settings, "role": chosen[0].entry.role},
         "files": [
             {"file": m.name, "sha256": m.recording.provenance.sha256, "reader": m.recording.provenance.reader}
             for m in chosen

@@ -15,12 +15,16 @@ from ssmr_ident.identify.posterior import Unknown, most_probable
 from ssmr_ident.identify.robot_map import (
     SHARES,
     RobotBuilder,
+    match_further,
     modal_observations,
     pick_mode,
     predicted_modes,
     robot_unknowns,
+    set_aside,
+    with_shifts_unknown,
 )
 from ssmr_ident.pipeline.fit import SessionFit
+from ssmr_ident.pipeline.fit_robot_decays import body_statistics, fit_samples
 from ssmr_ident.pipeline.fit_robot_forces import (
     Gathered,
     floor_findings,
@@ -31,7 +35,7 @@ from ssmr_ident.pipeline.fit_robot_forces import (
     share_unknowns,
     stick_slip_findings,
 )
-from ssmr_ident.pipeline.fit_robot_result import ROPE, in_file, path_of, strongest, tables, updated
+from ssmr_ident.pipeline.fit_robot_result import ROPE, in_file, path_of, strongest, tables, updated, variables
 from ssmr_ident.pipeline.fit_speeds import rate_findings, slip_findings
 from ssmr_ident.simulate.scenarios import ROPE_STIFFNESS
 
@@ -42,8 +46,32 @@ MOST_MODES = 3
 """A robot's log may hold its own mode, the neighbour it is coupled to, and the faster one of the pair."""
 
 
-def fit_robot_session(campaign: Campaign, chosen: tuple[Measurement, ...]) -> SessionFit:
-    """Fit a robot (``rigid6``) or the thesis' pure rotations (``decoupled``)."""
+def fit_robot_session(
+    campaign: Campaign, chosen: tuple[Measurement, ...], method: str | None = None, seed: int = 0
+) -> SessionFit:
+    """Fit a robot (``rigid6``) or the thesis' pure rotations (``decoupled``).
+
+    Parameters
+    ----------
+    campaign : Campaign
+    chosen : tuple of Measurement
+    method : {"output-error", "modal"} or None
+        How free responses are fitted: by their samples, or by the modes found in each. None takes samples wherever
+        there are accelerations and the baseline has a simulator.
+    seed : int
+        Of the random starts.
+
+    Raises
+    ------
+    InputError
+        For output error of pure rotations, which have no simulator beyond their modes.
+    """
+    if method == "output-error" and campaign.session.baseline == "decoupled":
+        raise InputError(
+            f"{campaign.session.folder}/session.yaml: baseline",
+            "decoupled: pure rotations are fitted by their modes (5.3), not by samples",
+            "Leave --method out, or take baseline: rigid6",
+        )
     builder = RobotBuilder.of(campaign.parameters)
     decoupled = campaign.session.baseline == "decoupled"
     expected = predicted_modes(builder({}), decoupled=False)
@@ -61,29 +89,36 @@ def fit_robot_session(campaign: Campaign, chosen: tuple[Measurement, ...]) -> Se
         else:
             gathered.lines[measurement.name] = (f"{experiment}: not fitted here, its parameters keep their prior",)
             gathered.results[measurement.name] = {"experiment": experiment, "fitted": False}
-    gathered.observations += modal_observations(gathered.modes, builder, decoupled)
     gathered.findings += _structure_left(gathered.results)
     gathered.findings += stick_slip_findings(gathered)
     for floor, levels in gathered.slipping.items():
         gathered.findings += slip_findings(levels, floor)
     for what, springs in gathered.springs.items():
         gathered.findings += rate_findings(springs, what)
-    unknowns = robot_unknowns(campaign.parameters)
-    unknowns += floor_unknowns(unknowns, gathered) + share_unknowns(gathered)
+    known = robot_unknowns(campaign.parameters)
+    known += floor_unknowns(known, gathered) + share_unknowns(gathered)
     if gathered.rope:
-        unknowns = (*unknowns, Unknown(ROPE, "N/m", ROPE_STIFFNESS, None))
-    if not gathered.observations:
+        known = (*known, Unknown(ROPE, "N/m", ROPE_STIFFNESS, None))
+    if not gathered.modes:
+        gathered.observations, known = with_shifts_unknown(gathered.observations, known, seed)
+    unknowns = set_aside(known, gathered.modes) if decoupled else known
+    modal = modal_observations(gathered.modes, builder, decoupled)
+    if not gathered.observations and not modal:
         gathered.findings.append("no recording here tells a parameter: all keep what robot.yaml says")
-    posterior = most_probable(unknowns, gathered.observations)
+    body = None
+    posterior = most_probable(unknowns, [*gathered.observations, *modal])
+    if method != "modal" and not decoupled and gathered.modes:
+        body = fit_samples(campaign, chosen, unknowns, gathered, posterior, seed)
+        posterior = posterior if body is None else body.posterior
     fitted = updated(campaign.parameters, posterior)
     gathered.findings += floor_findings(posterior, gathered)
     if gathered.rope:
         value, std = posterior[ROPE]
         gathered.findings.append(f"the rope stretches: {value:.4g} ± {std:.2g} N/m in series with the tires (3.9)")
     chapter_5 = tables(gathered.modes, builder)
-    gathered.findings += posterior_findings(posterior, SHARES) + chapter_5[1]
-    changed = tuple(path_of(u.name) for u in unknowns if in_file(u.name))
-    numbers = sum(len(o.values) for o in gathered.observations)
+    gathered.findings += posterior_findings(posterior, SHARES, known) + chapter_5[1]
+    changed = tuple(dict.fromkeys(path_of(u.name) for u in unknowns if in_file(u.name)))
+    numbers = sum(len(o.values) for o in gathered.observations) + (0 if body else 2 * len(modal))
     return SessionFit(
         session=campaign.session.name,
         before=campaign.parameters,
@@ -92,13 +127,15 @@ def fit_robot_session(campaign: Campaign, chosen: tuple[Measurement, ...]) -> Se
         statistics=(
             f"{len(chosen)} recordings, {numbers} measured numbers, {len(unknowns)} parameters with priors",
             f"chi-square of the measured numbers {posterior.chi_square:.3g}",
+            *body_statistics(body),
         ),
         recordings=gathered.lines,
         results=gathered.results,
         tables=tuple(chapter_5[0]),
         correlations=strongest(posterior),
         findings=tuple(gathered.findings),
-        conflicts=tuple(conflicts(posterior)),
+        conflicts=tuple(conflicts(posterior, known)),
+        variables=variables(posterior, known),
     )
 
 
@@ -134,6 +171,9 @@ def _decay(measurement: Measurement, expected: dict[str, tuple[float, float]], g
         raise InputError(f"{where}: {channel}", error.problem, error.mend) from None
     mode = pick_mode(fit, expected.get(entry.motion))
     gathered.modes.setdefault(entry.motion, []).append(mode)
+    further = match_further(fit.modes, mode, expected)
+    for name, other in further.items():
+        gathered.modes.setdefault(name, []).append(other)
     others = ", ".join(f"{m.frequency_hz:.2f} Hz" for m in fit.modes if m is not mode)
     lines = [
         f"{entry.motion} in {channel}: omega_n {mode.omega_n:.4f} +/- {mode.omega_n_std:.2g} rad/s, "

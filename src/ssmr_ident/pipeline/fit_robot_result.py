@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -9,8 +10,9 @@ import numpy as np
 from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.identify.decay_result import Mode
 from ssmr_ident.identify.findings import at_bound, table_5_2
-from ssmr_ident.identify.posterior import Posterior
-from ssmr_ident.identify.robot_map import HEIGHT, SHARES, RobotBuilder, geometry_of
+from ssmr_ident.identify.lmfit_report import Variable
+from ssmr_ident.identify.posterior import Posterior, Unknown
+from ssmr_ident.identify.robot_map import HEIGHT, SENSOR, SHARES, SHIFTS, RobotBuilder, geometry_of
 from ssmr_ident.identify.tire_parameters import MOTIONS, damping_as_printed, solve_damping
 
 UNINFORMED = 0.19
@@ -28,35 +30,62 @@ def in_file(name: str) -> bool:
     return name != ROPE and name not in SHARES and ON_FLOOR not in name
 
 
+PARTS = {
+    **dict.fromkeys((*SHIFTS, HEIGHT), "contact_points_m"),
+    **dict.fromkeys(SENSOR, "accelerometer.position_m"),
+}
+"""Unknowns that are parts of an array in the file."""
+
+
 def path_of(name: str) -> str:
-    return "contact_points_m" if name == HEIGHT else name
+    return PARTS.get(name, name)
 
 
 def updated(parameters: ParameterSet, posterior: Posterior) -> ParameterSet:
-    """The parameter set with values, stds and sources of the fit."""
+    """The parameter set with values, stds and sources of the fit.
+
+    An array has one std in the file: that of its least known part, so that nothing is claimed to be known better
+    than it is.
+    """
     changes: dict[str, Estimate] = {}
     for index, unknown in enumerate(posterior.unknowns):
-        if not in_file(unknown.name):
+        if not in_file(unknown.name) or unknown.name in PARTS:
             continue
-        path = path_of(unknown.name)
-        before = parameters[path]
-        informed = posterior.information_share[index] > UNINFORMED
-        source = "fit of the recordings" if informed else _prior_source(before)
-        if posterior.information_share[index] < 1e-6:
+        before = parameters[unknown.name]
+        share = posterior.information_share[index]
+        source = "fit of the recordings" if share > UNINFORMED else _prior_source(before)
+        if share < 1e-6:
             # no recording depends on it: the file's own digits stay
-            changes[path] = replace(before, source=source)
+            changes[unknown.name] = replace(before, source=source)
             continue
         value = float(posterior.values[index])
         # An unknown std stays unknown where nothing was learnt: the wide prior's own width is no knowledge.
-        std = float(posterior.stds[index]) if informed or before.std is not None else None
-        if unknown.name == HEIGHT:
-            points = np.asarray(before.value, float).copy()
-            points[:, 2] -= value - unknown.prior
-            changes[path] = replace(before, value=points, std=std, source=source)
-        else:
-            bound = at_bound(unknown, value)
-            changes[path] = replace(before, value=value, std=std, source=source, at_bound=bound)
+        std = float(posterior.stds[index]) if share > UNINFORMED or before.std is not None else None
+        bound = at_bound(unknown, value)
+        changes[unknown.name] = replace(before, value=value, std=std, source=source, at_bound=bound)
+    for path in dict.fromkeys(PARTS.values()):
+        indices = [k for k, unknown in enumerate(posterior.unknowns) if path_of(unknown.name) == path]
+        if indices:
+            changes[path] = _array(parameters[path], posterior, indices)
     return parameters.updated(changes)
+
+
+def _array(before: Estimate, posterior: Posterior, indices: list[int]) -> Estimate:
+    shares = posterior.information_share[indices]
+    source = "fit of the recordings" if shares.max() > UNINFORMED else _prior_source(before)
+    if shares.max() < 1e-6:
+        return replace(before, source=source)
+    array = np.asarray(before.value, float).copy()
+    for index in indices:
+        name, value = posterior.unknowns[index].name, float(posterior.values[index])
+        if name == HEIGHT:
+            array[:, 2] -= value - posterior.unknowns[index].prior
+        elif name in SHIFTS:
+            array[:, SHIFTS.index(name)] += value
+        else:
+            array[SENSOR.index(name)] = value
+    std = None if before.std is None and shares.min() <= UNINFORMED else float(max(posterior.stds[indices]))
+    return replace(before, value=array, std=std, source=source)
 
 
 def _prior_source(before: Estimate) -> str:
@@ -66,6 +95,25 @@ def _prior_source(before: Estimate) -> str:
         else before.source
         if before.source.startswith("prior")
         else f"prior: {before.source}"
+    )
+
+
+def variables(posterior: Posterior, known: Sequence[Unknown]) -> tuple[Variable, ...]:
+    """Every unknown with its value, standard deviation and what was known before, for the printed report."""
+    before = {unknown.name: unknown for unknown in known}
+    return tuple(
+        Variable(
+            unknown.name,
+            float(value),
+            float(std),
+            unknown.unit,
+            before[unknown.name].prior,
+            before[unknown.name].prior_std,
+            "data" if share > UNINFORMED else "prior",
+        )
+        for unknown, value, std, share in zip(
+            posterior.unknowns, posterior.values, posterior.stds, posterior.information_share, strict=True
+        )
     )
 
 

@@ -5,36 +5,27 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from textwrap import fill
 
-from ssmr_ident.core.parameter import Estimate, ParameterSet
+from ssmr_ident.core.parameter import ParameterSet
+from ssmr_ident.identify.lmfit_report import Variable, variables_report
 
 
-def parameter_lines(before: ParameterSet, after: ParameterSet, changed: Sequence[str]) -> list[str]:
-    """One line per fitted parameter: value, standard deviation, percent, what was known before, source."""
-    width = max((len(path) for path in changed), default=0)
-    lines = []
+def file_variables(before: ParameterSet, after: ParameterSet, changed: Sequence[str]) -> tuple[Variable, ...]:
+    """Scalars that a fit was free to move, as variables of a report.
+
+    Parameters
+    ----------
+    before, after : ParameterSet
+    changed : sequence of str
+        Paths.
+    """
+    rows = []
     for path in changed:
-        estimate = after[path]
-        lines.append(
-            f"    {path + ':':<{width + 1}} {_value(estimate):<34} {_known(before.get(path))}  [{estimate.source}]"
-        )
-    return lines
-
-
-def _value(estimate: Estimate) -> str:
-    if not isinstance(estimate.value, float):
-        spread = "" if estimate.std is None else f" +/- {estimate.std:.2g}"
-        return f"(array){spread} {estimate.unit}"
-    if estimate.std is None:
-        return f"{estimate.value:.6g} {estimate.unit}"
-    percent = f" ({100 * estimate.std / abs(estimate.value):.2g}%)" if estimate.value else ""
-    return f"{estimate.value:.6g} +/- {estimate.std:.2g} {estimate.unit}{percent}"
-
-
-def _known(estimate: Estimate | None) -> str:
-    if estimate is None or not isinstance(estimate.value, float):
-        return ""
-    spread = "unknown std" if estimate.std is None else f"± {estimate.std:.2g}"
-    return f"(before {estimate.value:.6g} {spread})"
+        estimate, known = after[path], before.get(path)
+        if isinstance(estimate.value, float):
+            prior = None if known is None else float(known.value)
+            spread = None if known is None else known.std
+            rows.append(Variable(path, estimate.value, estimate.std, estimate.unit, prior, spread, estimate.source))
+    return tuple(rows)
 
 
 def fit_report(
@@ -47,6 +38,7 @@ def fit_report(
     changed: Sequence[str],
     correlations: Sequence[tuple[str, str, float]],
     findings: Sequence[str],
+    variables: Sequence[Variable] = (),
 ) -> str:
     """The whole report as text.
 
@@ -63,6 +55,8 @@ def fit_report(
         Paths that the fit was free to move.
     correlations : sequence of (name, name, number)
     findings : sequence of str
+    variables : sequence of Variable
+        What the fit was free to move; empty takes the scalars of ``changed``.
     """
     lines = [f"[[Fit]] {session}", "[[Fit Statistics]]"]
     lines += [f"    {line}" for line in statistics]
@@ -74,11 +68,9 @@ def fit_report(
             lines += [f"        {text}" for text in rest]
     for table in tables:
         lines += ["[[Table]]", *(f"    {line}" for line in table.splitlines())]
-    lines.append("[[Variables]]")
-    lines += parameter_lines(before, after, changed) or ["    (none)"]
-    if correlations:
-        lines.append("[[Correlations]] (above 0.5, strongest first)")
-        lines += [f"    C({first}, {second}) = {size:+.3f}" for first, second, size in correlations]
+    pairs = {(first, second): size for first, second, size in correlations}
+    rows = variables or file_variables(before, after, changed)
+    lines += variables_report(rows, pairs) if rows else ["[[Variables]]", "    (none)"]
     lines.append("[[Findings]]")
     lines += [fill(text, 110, initial_indent="    - ", subsequent_indent="      ") for text in findings] or [
         "    none: the recordings and what was known before agree"

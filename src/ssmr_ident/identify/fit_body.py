@@ -1,0 +1,157 @@
+"""A robot's parameters from the samples of its free responses: noise, starts, simulator, in that order."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ssmr_ident.core.errors import SimulationError
+from ssmr_ident.identify.defects import defect
+from ssmr_ident.identify.free_decays import BodyDecay
+from ssmr_ident.identify.output_error import DecaySamples
+from ssmr_ident.identify.posterior import Observation, Posterior, Unknown, most_probable
+from ssmr_ident.physics.robot import Robot
+from ssmr_ident.physics.slots import Effects
+
+Array = np.ndarray
+
+SETTLED = 0.05
+"""Largest move of any parameter, in its standard deviations, at which the defect correction has settled."""
+
+CORRECTIONS = 5
+"""Defect corrections tried; decays of a few degrees settle in two, sliding contacts hardly ever."""
+
+WORSE = 10.0
+"""Rise of chi-square (odds of 150 to 1) at which the simulator is said to show what the recordings do not."""
+
+HOPELESS = 1.2
+"""Rise of the samples' chi-square, before any parameter moves, from which no refit is tried."""
+
+SPREAD = 0.7
+"""Standard deviation of random starts about the prior, in prior standard deviations."""
+
+
+@dataclass(frozen=True, eq=False)
+class BodyFit:
+    """Output error of a robot's decays.
+
+    Parameters
+    ----------
+    posterior : Posterior
+    decays : tuple of BodyDecay
+        With the noise that was found.
+    agreeing, tried : int
+        Starts that led to the best optimum, and all.
+    settled : bool
+        False where the simulator's own motion fits worse, or its correction did not come to rest; the fit is then that
+        of small motions.
+    largest_defect : float
+        Largest difference between the two over all samples, in noise standard deviations.
+    """
+
+    posterior: Posterior
+    decays: tuple[BodyDecay, ...]
+    agreeing: int
+    tried: int
+    settled: bool
+    largest_defect: float
+
+
+def fit_body(
+    decays: Sequence[BodyDecay],
+    builder: Callable[[Mapping[str, float]], Robot],
+    unknowns: Sequence[Unknown],
+    observations: Sequence[Observation] = (),
+    start: Mapping[str, float] | None = None,
+    random_starts: int = 1,
+    seed: int = 0,
+    effects: Effects | None = None,
+) -> BodyFit:
+    """Maximum a posteriori over the samples of all decays and other observations together.
+
+    Parameters
+    ----------
+    decays : sequence of BodyDecay
+    builder : callable
+        From parameter values to a Robot.
+    unknowns : sequence of Unknown
+    observations : sequence of Observation
+        Of other experiments.
+    start : mapping of str to float, optional
+        A first start, such as the fit of the modes; the prior is always one.
+    random_starts : int
+        Drawn about the prior.
+    seed : int
+    effects : mapping, optional
+        Physics beyond the baseline that the simulator runs with.
+
+    Returns
+    -------
+    BodyFit
+
+    Notes
+    -----
+    Noise is first guessed from second differences; where the fitted model leaves the second half of a record quiet,
+    its level and colour are taken from the residual there, and the fit is repeated.
+    """
+    rng = np.random.default_rng(seed)
+    decays = tuple(decays)
+    samples = DecaySamples(decays, builder)
+    starts: list[Mapping[str, float]] = [start] if start else []
+    starts.append({u.name: u.prior for u in unknowns})
+    starts += [_drawn(unknowns, rng) for _ in range(random_starts)]
+    fits = [most_probable(unknowns, observations, [samples], begin, max_iterations=60) for begin in starts]
+    costs = np.array([_cost(fit) for fit in fits])
+    best = fits[int(np.argmin(costs))]
+    agreeing = int(np.sum(costs < costs.min() + 1.0))
+
+    noise = [np.array([n.std for n in decay.noises]) for decay in decays]
+    residuals = best.systems[0].residuals
+    decays = tuple(
+        decay.with_noise_of(residual * std, spent=6)
+        for decay, residual, std in zip(decays, residuals, noise, strict=True)
+    )
+    small = most_probable(unknowns, observations, [DecaySamples(decays, builder)], _values(best))
+    best, settled, largest = small, False, 0.0
+    for _ in range(CORRECTIONS):
+        values, states = _values(best), best.systems[0].starts
+        try:
+            defects = [defect(d, builder(values), x, effects) for d, x in zip(decays, states, strict=True)]
+        except SimulationError:
+            best = small
+            break
+        largest = max(float(np.max(np.abs(d.whitened(part)))) for d, part in zip(decays, defects, strict=True))
+        samples = DecaySamples(decays, builder, defects)
+        if samples.cost(values) > HOPELESS * small.systems[0].cost + WORSE:
+            best = small
+            break
+        after = most_probable(unknowns, observations, [samples], values, max_iterations=30)
+        if _cost(after) > _cost(small) + WORSE:
+            best = small
+            break
+        moved = float(np.max(np.abs(after.values - best.values) / after.stds))
+        best = after
+        if moved < SETTLED:
+            settled = True
+            break
+    return BodyFit(best, decays, agreeing, len(starts), settled, largest)
+
+
+def _drawn(unknowns: Sequence[Unknown], rng: np.random.Generator) -> dict[str, float]:
+    """A start about the prior; what is above 0 beforehand stays above 0, so that no motion grows."""
+    start = {}
+    for unknown in unknowns:
+        value = unknown.value(SPREAD * rng.standard_normal()) if unknown.prior_std is not None else unknown.prior
+        start[unknown.name] = max(value, 0.2 * unknown.prior) if unknown.prior > 0 else value
+    return start
+
+
+def _values(posterior: Posterior) -> dict[str, float]:
+    return {u.name: float(v) for u, v in zip(posterior.unknowns, posterior.values, strict=True)}
+
+
+def _cost(posterior: Posterior) -> float:
+    scaled = [u.scaled(v) for u, v in zip(posterior.unknowns, posterior.values, strict=True)]
+    return float(np.sum(np.square(scaled))) + posterior.chi_square + sum(s.cost for s in posterior.systems)
