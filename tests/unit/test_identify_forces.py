@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from ssmr_ident.identify.curves import block_pull, load_curve
-from ssmr_ident.identify.friction import speed_knee
 from ssmr_ident.identify.ramps import find_ramps
 from ssmr_ident.identify.sawtooth import take_apart
+from ssmr_ident.identify.speed_knee import speed_knee
 from ssmr_ident.identify.stiffness import behind_cable, belt_stiffness, compare_laws, in_series
 
 

@@ -28,7 +28,7 @@ def fit_decay(
     *,
     start_s: float | None = None,
     modes: int | None = None,
-    max_modes: int = 2,
+    max_modes: int = 3,
     mains_hz: float | None = 60.0,
     unit: str = "",
 ) -> DecayFit:
@@ -77,7 +77,7 @@ def fit_decays(
     *,
     starts_s: Sequence[float | None] | None = None,
     modes: int | None = None,
-    max_modes: int = 2,
+    max_modes: int = 3,
     mains_hz: float | None = 60.0,
     unit: str = "",
 ) -> DecayFit:

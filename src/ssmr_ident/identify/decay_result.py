@@ -3,9 +3,14 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 
+import lmfit
 import numpy as np
+
+from ssmr_ident.identify.lmfit_report import Variable, matrix_correlations, variables_report
+from ssmr_ident.identify.poles import Block, PoleFit, fit_poles, modelled
 
 
 @dataclass(frozen=True)
@@ -79,6 +84,8 @@ class DecayFit:
     iterations : int
     unit : str
         Of the signal.
+    blocks : tuple of Block
+        The whitened records that were fitted.
     """
 
     modes: tuple[Mode, ...]
@@ -95,6 +102,7 @@ class DecayFit:
     samples: int
     iterations: int
     unit: str = ""
+    blocks: tuple[Block, ...] = field(default=(), repr=False)
 
     @property
     def dominant(self) -> Mode:
@@ -118,34 +126,85 @@ class DecayFit:
         lines.append(f"    Schwarz criterion: {tried}")
         verdict = "white" if self.adequate else "NOT white: standard deviations from a sandwich"
         lines.append(f"    residual/noise variance {self.misfit:.3g}; residual {verdict} (p = {self.whiteness_p:.2g})")
-        lines.append("[[Variables]]")
+        lines += variables_report(self.variables(), matrix_correlations(self.names, self.covariance), least=0.1)
         for number, mode in enumerate(self.modes, 1):
-            percent = 100 * mode.omega_n_std / mode.omega_n
-            xi_percent = 100 * mode.xi_std / abs(mode.xi or 1)
             lines.append(
-                f"    omega_n_{number}: {mode.omega_n:.6g} +/- {mode.omega_n_std:.2g} rad/s ({percent:.2g}%), "
-                f"bound {mode.omega_n_bound:.2g}"
+                f"    mode {number}: f = {mode.frequency_hz:.5g} Hz, lambda = {mode.decay_rate:.4g} 1/s; "
+                f"Cramér–Rao bounds {mode.omega_n_bound:.2g} rad/s and {mode.xi_bound:.2g}"
             )
-            lines.append(
-                f"    xi_{number}:      {mode.xi:.5g} +/- {mode.xi_std:.2g} ({xi_percent:.2g}%), "
-                f"bound {mode.xi_bound:.2g}"
-            )
-            lines.append(f"      f = {mode.frequency_hz:.5g} Hz, lambda = {mode.decay_rate:.4g} 1/s")
-            for record in range(mode.amplitudes.shape[0]):
-                lines.append(
-                    "      amplitude "
-                    + ", ".join(
-                        f"{a:.4g} +/- {s:.2g} {self.unit} at {b:.3f} rad"
-                        for a, s, b in zip(
-                            mode.amplitudes[record], mode.amplitude_stds[record], mode.phases[record], strict=True
-                        )
-                    )
-                )
-        lines.append("[[Correlations]]")
-        scale = np.sqrt(np.maximum(np.diag(self.covariance), 1e-300))
-        names = [f"{name}_{k + 1}" for k in range(len(self.modes)) for name in ("omega_n", "xi")]
-        pairs = [(abs(self.covariance[i, j] / scale[i] / scale[j]), i, j) for i in range(len(names)) for j in range(i)]
-        for size, i, j in sorted(pairs, reverse=True)[:4]:
-            if size > 0.1:
-                lines.append(f"    C({names[j]}, {names[i]}) = {self.covariance[i, j] / scale[i] / scale[j]:+.3f}")
         return "\n".join(lines)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of ``covariance``'s rows: omega_n_1, xi_1, omega_n_2, …"""
+        return tuple(f"{name}_{k}" for k in range(1, len(self.modes) + 1) for name in ("omega_n", "xi"))
+
+    def variables(self) -> list[Variable]:
+        """ω_n and ξ of each mode, then amplitudes and phases per record and channel."""
+        rows = []
+        for number, mode in enumerate(self.modes, 1):
+            rows.append(Variable(f"omega_n_{number}", mode.omega_n, mode.omega_n_std, "rad/s"))
+            rows.append(Variable(f"xi_{number}", mode.xi, mode.xi_std, "1"))
+        records, channels = self.modes[0].amplitudes.shape
+        for number, mode in enumerate(self.modes, 1):
+            for r in range(records):
+                for c in range(channels):
+                    place = f"_{number}" + (f"_record_{r + 1}" if records > 1 else "")
+                    place += f"_channel_{c + 1}" if channels > 1 else ""
+                    size, std = float(mode.amplitudes[r, c]), float(mode.amplitude_stds[r, c])
+                    rows.append(Variable(f"A{place}", size, std, self.unit))
+                    rows.append(Variable(f"B{place}", float(mode.phases[r, c]), None, "rad"))
+        return rows
+
+    def minimize(self) -> lmfit.minimizer.MinimizerResult:
+        """lmfit's own fit of ω_n and ξ, polished from this optimum on the whitened residual.
+
+        Amplitudes, offsets and mains lines are eliminated inside, so every residual is the best for its ω_n and ξ.
+        Standard deviations and correlations are replaced by those of ``covariance``, which also holds where the
+        residual is not white.
+        """
+        parameters = lmfit.Parameters()
+        for number, mode in enumerate(self.modes, 1):
+            parameters.add(f"omega_n_{number}", value=mode.omega_n, min=0.0)
+            parameters.add(f"xi_{number}", value=mode.xi, min=-1.0, max=1.0)
+
+        def residual(now: lmfit.Parameters) -> np.ndarray:
+            values = np.array(list(now.valuesdict().values()))
+            return whitened_residual(self.blocks, values[0::2], values[1::2])
+
+        result = lmfit.Minimizer(residual, parameters, calc_covar=False).least_squares(x_scale="jac")
+        result.covar = self.covariance
+        result.var_names = list(self.names)
+        result.errorbars = True
+        stds = np.sqrt(np.maximum(np.diag(self.covariance), 0.0))
+        sizes = matrix_correlations(self.names, self.covariance)
+        for index, name in enumerate(self.names):
+            result.params[name].stderr = float(stds[index])
+            result.params[name].correl = {
+                (second if name == first else first): size
+                for (first, second), size in sizes.items()
+                if name in (first, second)
+            }
+        return result
+
+    def report(self) -> str:
+        """lmfit's printed report of :meth:`minimize`, units and eliminated amplitudes added."""
+        text = lmfit.fit_report(self.minimize(), min_correl=0.1)
+        head = text[: text.index("[[Variables]]")].rstrip()
+        sizes = matrix_correlations(self.names, self.covariance)
+        return "\n".join([head, *variables_report(self.variables(), sizes, least=0.1)])
+
+
+def whitened_residual(blocks: Sequence[Block], omega_n: np.ndarray, xi: np.ndarray) -> np.ndarray:
+    """Residual of all records with the best amplitudes, offsets and mains lines, (n,) float.
+
+    Parameters
+    ----------
+    blocks : sequence of Block
+    omega_n, xi : (k,) float [rad/s], [1]
+    """
+    frequencies = omega_n * np.sqrt(np.maximum(1.0 - xi**2, 1e-12))
+    # no iteration: the linear solution alone
+    fit: PoleFit = fit_poles(blocks, omega_n * xi, frequencies, max_iterations=0)
+    parts = [block.samples - modelled(block, fit, index) for index, block in enumerate(blocks)]
+    return np.concatenate([part.ravel() for part in parts])

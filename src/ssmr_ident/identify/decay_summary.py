@@ -87,6 +87,7 @@ def summarise(
         samples=fit.samples,
         iterations=fit.iterations,
         unit=unit,
+        blocks=tuple(blocks),
     )
 
 

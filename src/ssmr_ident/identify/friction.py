@@ -1,12 +1,13 @@
-"""Friction coefficients from pulls, and friction over slip speed with its knee (section 3.3)."""
+"""Friction coefficients from pulls (section 3.3)."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
-from ssmr_ident.identify.sawtooth import Pull
+from ssmr_ident.identify.sawtooth import Pull, Tooth
 from ssmr_ident.physics.robot import Robot
 from ssmr_ident.physics.statics import rest_loads
 
@@ -69,29 +70,42 @@ def gripping_load(robot: Robot, gripping: tuple[int, ...], direction: str, heigh
     return float(sum(loads[wheel - 1] for wheel in gripping))
 
 
-def friction_of(pull: Pull, load: float, load_std: float = 0.0, zero: float = 0.0) -> Friction:
+def friction_of(
+    pull: Pull, load: float | Callable[[float], float], load_std: float = 0.0, zero: float = 0.0
+) -> Friction:
     """Coefficients of a pull.
 
     Parameters
     ----------
     pull : Pull
-    load : float [N]
-        On the gripping wheels.
+    load : float [N], or callable
+        On the gripping wheels; a callable gives it at a pulling force, which matters where one side or one wheel
+        grips, for the pull itself then loads or unloads it. Each tooth is taken over the load at its own force.
     load_std : float [N]
     zero : float [N]
         What the load cell reads without a pull.
+
+    Notes
+    -----
+    A wheel that lets go early bounces, and small teeth follow before the next full one. They never reach µ_s·N,
+    so only teeth whose drop is at least half of the largest fifth's count for the means.
     """
+    at = load if callable(load) else (lambda _force: load)
     if pull.stick_slip:
-        peaks = (np.array([tooth.peak for tooth in pull.teeth]) - zero) / load
-        troughs = (np.array([tooth.trough for tooth in pull.teeth]) - zero) / load
+        teeth = full_teeth(pull)
+        peaks = np.array([(tooth.peak - zero) / at(tooth.peak - zero) for tooth in teeth])
+        troughs = np.array([(tooth.trough - zero) / at(tooth.trough - zero) for tooth in teeth])
         count = np.sqrt(len(peaks))
         upper, lower = float(np.mean(peaks)), float(np.mean(troughs))
-        upper_std, lower_std = float(np.std(peaks, ddof=1)) / count, float(np.std(troughs, ddof=1)) / count
+        scatter = (float(np.std(peaks, ddof=1)), float(np.std(troughs, ddof=1))) if len(peaks) > 1 else (np.inf, np.inf)
+        upper_std, lower_std = scatter[0] / count, scatter[1] / count
+        mean_load = at(float(np.mean([tooth.peak for tooth in teeth])) - zero)
     else:
         peaks = troughs = np.empty(0)
-        upper = lower = (pull.level - zero) / load
-        upper_std = lower_std = pull.level_std / load
-    relative = load_std / load
+        mean_load = at(pull.level - zero)
+        upper = lower = (pull.level - zero) / mean_load
+        upper_std = lower_std = pull.level_std / mean_load
+    relative = load_std / mean_load
     return Friction(
         mu_static=upper,
         mu_static_std=float(np.hypot(upper_std, upper * relative)),
@@ -99,65 +113,12 @@ def friction_of(pull: Pull, load: float, load_std: float = 0.0, zero: float = 0.
         mu_kinetic_std=float(np.hypot(lower_std, lower * relative)),
         static_over_teeth=peaks,
         kinetic_over_teeth=troughs,
-        load=load,
+        load=mean_load,
     )
 
 
-@dataclass(frozen=True)
-class SpeedKnee:
-    """Friction that falls linearly with slip speed and is flat beyond a knee.
-
-    Parameters
-    ----------
-    at_rest, flat : float
-        Value at speed 0 and beyond the knee, in the unit of the input.
-    knee : float [m/s]
-    at_rest_std, flat_std, knee_std : float
-    """
-
-    at_rest: float
-    flat: float
-    knee: float
-    at_rest_std: float
-    flat_std: float
-    knee_std: float
-
-
-def speed_knee(speed: Array, friction: Array) -> SpeedKnee:
-    """Fit friction over slip speed: f = flat + (at_rest − flat)·max(0, 1 − v/knee).
-
-    Parameters
-    ----------
-    speed : (n,) float [m/s]
-        At least 5, on both sides of the knee.
-    friction : (n,) float
-        Force or coefficient.
-
-    Raises
-    ------
-    ValueError
-        With fewer than five speeds.
-    """
-    speed, friction = np.asarray(speed, float), np.asarray(friction, float)
-    if len(np.unique(speed)) < 5:
-        raise ValueError(f"a knee needs at least 5 different speeds; got {len(np.unique(speed))}")
-
-    def solve(knee: float) -> tuple[Array, float, Array]:
-        share = np.maximum(0.0, 1.0 - speed / knee)
-        columns = np.column_stack([share, 1.0 - share])
-        solution = np.linalg.lstsq(columns, friction, rcond=None)[0]
-        residual = friction - columns @ solution
-        return solution, float(residual @ residual), columns
-
-    ordered = np.unique(speed[speed > 0])
-    grid = np.linspace(ordered[0] * 1.001, ordered[-1], 400)
-    knee = float(grid[int(np.argmin([solve(value)[1] for value in grid]))])
-    width = float(grid[1] - grid[0])
-    fine = np.linspace(max(knee - width, ordered[0] * 1e-3), knee + width, 81)
-    knee = float(fine[int(np.argmin([solve(value)[1] for value in fine]))])
-    solution, rss, columns = solve(knee)
-    slope = np.where(speed < knee, (solution[0] - solution[1]) * speed / knee**2, 0.0)
-    jacobian = np.column_stack([columns, slope])
-    variance = rss / max(len(speed) - 3, 1)
-    stds = np.sqrt(np.diag(np.linalg.pinv(jacobian.T @ jacobian, hermitian=True)) * variance)
-    return SpeedKnee(float(solution[0]), float(solution[1]), knee, float(stds[0]), float(stds[1]), float(stds[2]))
+def full_teeth(pull: Pull) -> tuple[Tooth, ...]:
+    """Teeth whose drop is at least half of what the largest fifth of drops have on average."""
+    drops = np.array([tooth.peak - tooth.trough for tooth in pull.teeth])
+    largest = float(np.mean(np.sort(drops)[-max(1, len(drops) // 5) :]))
+    return tuple(tooth for tooth, drop in zip(pull.teeth, drops, strict=True) if drop >= 0.5 * largest)

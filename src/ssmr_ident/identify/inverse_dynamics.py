@@ -8,6 +8,7 @@ plain model goes astray; the regressors here hold hardly any noise, so least squ
 
 from __future__ import annotations
 
+import lmfit
 import numpy as np
 from scipy.signal import butter, sosfiltfilt
 
@@ -28,6 +29,22 @@ def usable_band(position: Array, step: float) -> float:
     below = np.flatnonzero(smooth[width:] < 100 * floor)
     first = frequency[width + below[0]] if len(below) else 0.1 / step
     return float(np.clip(first, 5.0 / (len(position) * step), 0.2 / step))
+
+
+COLUMNS = ("mass", "damping", "friction", "offset")
+
+
+def _by_lmfit(start: Array, table: Array, target: Array) -> Array:
+    """lmfit's least squares from the linear solution, mass and friction kept above 0 where they began there."""
+    parameters = lmfit.Parameters()
+    for name, value in zip(COLUMNS, start, strict=False):
+        parameters.add(name, value=float(value), min=0.0 if name in ("mass", "friction") and value > 0 else -np.inf)
+
+    def residual(now: lmfit.Parameters) -> Array:
+        return target - table @ np.array(list(now.valuesdict().values()))
+
+    result = lmfit.Minimizer(residual, parameters, calc_covar=False).least_squares(jac="2-point", x_scale="jac")
+    return np.array(list(result.params.valuesdict().values()))
 
 
 def fit_drive(
@@ -84,7 +101,9 @@ def fit_drive(
         evidence[name] += len(chosen_columns) * np.log(len(target))
         fits[name] = (solution, residual, part)
     chosen = min(evidence, key=lambda name: evidence[name]) if coulomb else "mass and viscous damper"
-    solution, residual, part = fits[chosen]
+    start, _, part = fits[chosen]
+    solution = _by_lmfit(start, part, target)
+    residual = target - part @ solution
     inverse = np.linalg.inv(part.T @ part)
     # A fifth of a period of the corner between points; two seconds of them go together at most.
     bandwidth = min(round(2.0 / (keep * step)), len(target) // 10)

@@ -68,7 +68,9 @@ def as_parameters(
 
 
 def variables_report(
-    variables: Sequence[Variable], correlations: Mapping[tuple[str, str], float] | None = None
+    variables: Sequence[Variable],
+    correlations: Mapping[tuple[str, str], float] | None = None,
+    least: float = LEAST_CORRELATION,
 ) -> list[str]:
     """Lines of lmfit's report on variables and correlations, units and priors added.
 
@@ -76,9 +78,13 @@ def variables_report(
     ----------
     variables : sequence of Variable
     correlations : mapping of (name, name) to float, optional
+    least : float
+        Smallest correlation shown.
     """
     parameters, full = as_parameters(variables, correlations)
-    text = lmfit.fit_report(parameters, show_correl=True, min_correl=LEAST_CORRELATION, sort_pars=False)
+    text = lmfit.fit_report(parameters, show_correl=True, min_correl=least, sort_pars=False)
+    if correlations and "[[Correlations]]" not in text:
+        text += f"\n[[Correlations]] (unreported correlations are < {least:.3f})"
     by_name = {variable.name: variable for variable in variables}
     width = max((len(variable.name) for variable in variables), default=0) + 1
     lines = []

@@ -305,7 +305,8 @@ def _summary(objective: _Objective, point: Array, converged: bool) -> Posterior:
         wide = covariance @ (weighted + np.eye(count) + meat) @ covariance
         sandwich = np.sqrt(np.maximum(np.diag(wide) / np.diag(covariance), 1.0))
         covariance = covariance * np.outer(sandwich, sandwich)
-    scaled_stds = np.sqrt(np.diag(covariance))
+    # Far from any optimum rounding can leave a variance below 0.
+    scaled_stds = np.sqrt(np.maximum(np.diag(covariance), 1e-24))
     return Posterior(
         unknowns=tuple(unknowns),
         values=np.array(list(values.values())),

@@ -10,11 +10,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+import lmfit
 import numpy as np
-from scipy.optimize import least_squares
 from scipy.stats import chi2
 from scipy.stats import t as student
 
+from ssmr_ident.identify.lmfit_report import Variable, matrix_correlations, variables_report
 from ssmr_ident.identify.noise import long_run_variance, whiteness
 
 Array = np.ndarray
@@ -80,20 +81,29 @@ class RigFit:
         return np.sqrt(np.maximum(np.diag(self.covariance), 0.0))
 
     def __str__(self) -> str:
-        stds = self.stds
         lines = ["[[Fit Statistics]]", f"    {self.method}"]
         lines += [f"    unexplained {value:.3g} % of {name}" for name, value in self.unexplained_percent.items()]
         for model, score in sorted((self.evidence or {}).items(), key=lambda item: item[1]):
             lines.append(f"    Schwarz criterion {score:.1f}: {model}")
-        lines.append("[[Variables]]")
-        for name, value, std in zip(
-            ("mass", "damping", "stiffness"), (self.mass, self.damping, self.stiffness), stds, strict=True
-        ):
-            lines.append(f"    {name}: {value:.6g} +/- {std:.2g}")
+        return "\n".join([*lines, *self._variables(rotary=False)])
+
+    def report(self, rotary: bool = False) -> str:
+        """lmfit's report, with units; ``rotary`` for an inertia on a torsion spring."""
+        return "\n".join(["[[Model]]", f"    {self.method}", *self._variables(rotary)])
+
+    def _variables(self, rotary: bool) -> list[str]:
+        units = ("kg m^2", "N m s/rad", "N m/rad", "N m") if rotary else ("kg", "N s/m", "N/m", "N")
+        names = ("inertia" if rotary else "mass", "damping", "stiffness")
+        values = (self.mass, self.damping, self.stiffness)
+        rows = [
+            Variable(name, value, float(std), unit)
+            for name, value, std, unit in zip(names, values, self.stds, units[:3], strict=True)
+            if std > 0 or value != 0
+        ]
         if self.friction_std:
-            lines.append(f"    Coulomb friction: {self.friction:.4g} +/- {self.friction_std:.2g}")
-            lines.append(f"    force offset: {self.offset:.4g} +/- {self.offset_std:.2g}")
-        return "\n".join(lines)
+            rows.append(Variable("Coulomb friction", self.friction, self.friction_std, units[3]))
+            rows.append(Variable("force offset", self.offset, self.offset_std, units[3]))
+        return variables_report(rows, matrix_correlations(names, self.covariance))
 
 
 class _Response:
@@ -128,6 +138,13 @@ class _Response:
             return wave.real, wave.imag
         root = math.sqrt(-inside)
         return np.exp(-(decay - root) * self.times), np.exp(-(decay + root) * self.times)
+
+
+RATIOS = ("log_stiffness_over_mass", "log_damping_over_mass")
+
+
+def _logs(parameters: lmfit.Parameters) -> Array:
+    return np.array([parameters[name].value for name in RATIOS])
 
 
 def fit_rig(
@@ -185,26 +202,27 @@ def fit_rig(
     starts = [origin + np.array([shift, 0.0]) for shift in (0.0, -0.2, 0.2)]
     for _ in range(2):
         costs = [sum(float(r @ r) for r in solve(point)[0]) for point in starts]
-        found = least_squares(
-            lambda logs: np.concatenate(solve(logs)[0]),
-            starts[int(np.argmin(costs))],
-            x_scale=[0.1, 0.5],
-            xtol=1e-10,
-        )
-        weights = weights / np.array([max(float(np.std(r)), 1e-12) for r in solve(found.x)[0]])
-        starts = [found.x]
-    residuals, gain, drivens = solve(found.x)
+        first = starts[int(np.argmin(costs))]
+        parameters = lmfit.Parameters()
+        for name, value in zip(RATIOS, first, strict=True):
+            # a factor of 10⁴ either way of where the search begins
+            parameters.add(name, value=value, min=value - 9.2, max=value + 9.2)
+        search = lmfit.Minimizer(lambda p: np.concatenate(solve(_logs(p))[0]), parameters, calc_covar=False)
+        found = _logs(search.least_squares(x_scale=[0.1, 0.5], xtol=1e-10).params)
+        weights = weights / np.array([max(float(np.std(r)), 1e-12) for r in solve(found)[0]])
+        starts = [found]
+    residuals, gain, drivens = solve(found)
     for response in responses:
-        response.natural_square = math.exp(found.x[0])
+        response.natural_square = math.exp(found[0])
     jacobian = []
     for index in range(2):
         move = np.zeros(2)
         move[index] = 1e-5
-        ahead, behind = solve(found.x + move)[0], solve(found.x - move)[0]
+        ahead, behind = solve(found + move)[0], solve(found - move)[0]
         jacobian.append([(a - b) / 2e-5 for a, b in zip(ahead, behind, strict=True)])
     spread = _spread(channels, jacobian, drivens, residuals, shared)
     mass = 1.0 / gain
-    ratio_k, ratio_d = np.exp(found.x)
+    ratio_k, ratio_d = np.exp(found)
     # (log k/m, log d/m, gain) to (m, d, k)
     turn = np.array(
         [

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, field
 
+import lmfit
 import numpy as np
+
+from ssmr_ident.identify.lmfit_report import Variable, variables_report
 
 Array = np.ndarray
 
@@ -40,6 +44,9 @@ def belt_stiffness(measured: float) -> float:
     return measured / 2.0
 
 
+UNITS = {"force_zero": "N", "stiffness": "N/m", "stiffness_2": "N/m", "knee": "m", "k3": "N/m^3"}
+
+
 @dataclass(frozen=True)
 class StiffnessLaw:
     """One law fitted to force over deflection.
@@ -49,10 +56,12 @@ class StiffnessLaw:
     name : str
         ``linear``, ``two slopes`` or ``cubic``.
     values, stds : dict of str to float
-        In SI: force_zero [N], stiffness [N/m], and knee [m], stiffness_2 [N/m], or k3 [N/m^3].
+        In SI: force_zero [N], stiffness [N/m], and knee [m], stiffness_2 [N/m], or k3 [N/m^3]; standard deviations
+        count that neighbouring samples go together.
     evidence : float
         Schwarz's criterion, less is better.
     scatter : float [N]
+    correlations : dict of (str, str) to float
     """
 
     name: str
@@ -60,6 +69,13 @@ class StiffnessLaw:
     stds: dict[str, float]
     evidence: float
     scatter: float
+    correlations: dict[tuple[str, str], float] = field(default_factory=dict)
+
+    def report(self) -> str:
+        """lmfit's report, with units."""
+        variables = [Variable(key, value, self.stds[key], UNITS[key]) for key, value in self.values.items()]
+        head = ["[[Model]]", f"    {self.name}", "[[Fit Statistics]]", f"    scatter {self.scatter:.4g} N"]
+        return "\n".join([*head, *variables_report(variables, self.correlations)])
 
 
 @dataclass(frozen=True)
@@ -91,6 +107,21 @@ class StiffnessChoice:
         return "\n".join(lines)
 
 
+def _linear(x: Array, force_zero: float, stiffness: float) -> Array:
+    return force_zero + stiffness * x
+
+
+def _cubic(x: Array, force_zero: float, stiffness: float, k3: float) -> Array:
+    return force_zero + stiffness * x + k3 * x**3
+
+
+def _two_slopes(x: Array, force_zero: float, stiffness: float, stiffness_2: float, knee: float) -> Array:
+    return force_zero + stiffness * np.minimum(x, knee) + stiffness_2 * np.maximum(x - knee, 0.0)
+
+
+LAWS: dict[str, Callable[..., Array]] = {"linear": _linear, "cubic": _cubic, "two slopes": _two_slopes}
+
+
 def compare_laws(deflection: Array, force: Array) -> StiffnessChoice:
     """One straight line, two joined lines, or a cubic: which law a stretch of force over deflection follows.
 
@@ -101,68 +132,62 @@ def compare_laws(deflection: Array, force: Array) -> StiffnessChoice:
 
     Notes
     -----
-    Neighbouring samples go together, so the evidence counts n·(1 − r)/(1 + r) of them, r being the
-    first-order correlation of the best law's residual.
+    Each law is an ``lmfit.Model``, started at its linear least squares (for the knee: the best of a grid) and kept
+    within the stretch. Neighbouring samples go together, so the evidence counts n·(1 − r)/(1 + r) of them, r being
+    the first-order correlation of the best law's residual.
     """
     deflection, force = np.asarray(deflection, float), np.asarray(force, float)
     offset = deflection - deflection[0]
-    ones = np.ones(len(offset))
-    fits: dict[str, tuple[tuple[Array, Array, float, Array], tuple[str, ...], int, float | None]] = {
-        "linear": (_solve(np.column_stack([ones, offset]), force), ("force_zero", "stiffness"), 2, None),
-        "cubic": (
-            _solve(np.column_stack([ones, offset, offset**3]), force),
-            ("force_zero", "stiffness", "k3"),
-            3,
-            None,
-        ),
-    }
-    knees = np.linspace(offset.min(), offset.max(), 62)[3:-3]
-    trials = [_solve(_bent(offset, knee), force) for knee in knees]
-    pick = int(np.argmin([trial[2] for trial in trials]))
-    fine = np.linspace(knees[max(pick - 1, 0)], knees[min(pick + 1, len(knees) - 1)], 21)
-    trials = [_solve(_bent(offset, knee), force) for knee in fine]
-    pick = int(np.argmin([trial[2] for trial in trials]))
-    fits["two slopes"] = (trials[pick], ("force_zero", "stiffness", "change"), 4, float(fine[pick]))
-    least = min(fits.values(), key=lambda fit: fit[0][2])[0]
-    residual = least[3]
+    results = {name: _fitted(name, offset, force) for name in LAWS}
+    least = min(results.values(), key=lambda result: result.chisqr)
+    residual = np.asarray(least.residual)
     power = float(residual @ residual)
     correlation = float(np.clip(residual[1:] @ residual[:-1] / power, 0.0, 0.95)) if power > 0 else 0.0
     effective = max(len(force) * (1 - correlation) / (1 + correlation), 8.0)
+    widened = float(np.sqrt((1 + correlation) / (1 - correlation)))
     laws = []
-    for name, ((solution, spread, rss, _), keys, parameters, knee) in fits.items():
-        values = dict(zip(keys, map(float, solution), strict=True))
-        widened = np.sqrt((1 + correlation) / (1 - correlation))
-        stds = dict(zip(keys, map(float, np.sqrt(np.diag(spread)) * widened), strict=True))
-        if knee is not None:
-            change = values.pop("change")
-            stds.pop("change")
-            values |= {"stiffness_2": values["stiffness"] + change, "knee": knee}
-            both = spread[1, 1] + spread[2, 2] + 2 * spread[1, 2]
-            scatter = np.sqrt(rss / max(len(force) - 4, 1))
-            # Two lines that cross at an angle `change`, each known to about the std of its level.
-            level_std = scatter / np.sqrt(effective / 2)
-            stds |= {
-                "stiffness_2": float(np.sqrt(both) * widened),
-                "knee": float(level_std / max(abs(change), 1e-12)),
-            }
-        evidence = effective * np.log(max(rss, 1e-300) / len(force)) + parameters * np.log(effective)
-        laws.append(
-            StiffnessLaw(name, values, stds, float(evidence), float(np.sqrt(rss / max(len(force) - parameters, 1))))
-        )
+    for name, result in results.items():
+        count = result.nvarys
+        evidence = effective * np.log(max(result.chisqr, 1e-300) / len(force)) + count * np.log(effective)
+        correlations = {
+            (first, second): float(size)
+            for first, parameter in result.params.items()
+            for second, size in (parameter.correl or {}).items()
+            if first < second
+        }
+        stds = {key: float("inf") if p.stderr is None else widened * p.stderr for key, p in result.params.items()}
+        scatter = float(np.sqrt(result.chisqr / max(len(force) - count, 1)))
+        laws.append(StiffnessLaw(name, dict(result.params.valuesdict()), stds, float(evidence), scatter, correlations))
     return StiffnessChoice(tuple(sorted(laws, key=lambda law: law.evidence)))
+
+
+def _fitted(name: str, offset: Array, force: Array) -> lmfit.model.ModelResult:
+    """One law by lmfit, from its linear least squares."""
+    model = lmfit.Model(LAWS[name], independent_vars=["x"])
+    ones = np.ones(len(offset))
+    if name == "two slopes":
+        # The knee is the one non-linear parameter: a grid finds its valley.
+        knees = np.linspace(offset.min(), offset.max(), 62)[3:-3]
+        knee = float(knees[int(np.argmin([_solve(_bent(offset, knee), force)[1] for knee in knees]))])
+        zero, slope, change = _solve(_bent(offset, knee), force)[0]
+        parameters = model.make_params(force_zero=zero, stiffness=slope, stiffness_2=slope + change, knee=knee)
+        parameters["knee"].set(min=float(knees[0]), max=float(knees[-1]))
+    elif name == "cubic":
+        zero, slope, k3 = _solve(np.column_stack([ones, offset, offset**3]), force)[0]
+        parameters = model.make_params(force_zero=zero, stiffness=slope, k3=k3)
+    else:
+        zero, slope = _solve(np.column_stack([ones, offset]), force)[0]
+        parameters = model.make_params(force_zero=zero, stiffness=slope)
+    return model.fit(force, parameters, x=offset)
 
 
 def _bent(offset: Array, knee: float) -> Array:
     return np.column_stack([np.ones(len(offset)), offset, np.maximum(offset - knee, 0.0)])
 
 
-def _solve(columns: Array, target: Array) -> tuple[Array, Array, float, Array]:
-    """Least squares: solution, covariance, sum of squares, residual."""
+def _solve(columns: Array, target: Array) -> tuple[Array, float]:
+    """Least squares: solution and sum of squares."""
     scale = np.maximum(np.sqrt(np.mean(columns**2, axis=0)), 1e-300)
-    scaled = columns / scale
-    solution = np.linalg.lstsq(scaled, target, rcond=None)[0]
-    residual = target - scaled @ solution
-    rss = float(residual @ residual)
-    variance = rss / max(len(target) - columns.shape[1], 1)
-    spread = np.linalg.pinv(scaled.T @ scaled, hermitian=True) * variance / np.outer(scale, scale)
-    return solution / scale, spread, rss, residual
+    solution = np.linalg.lstsq(columns / scale, target, rcond=None)[0]
+    residual = target - columns / scale @ solution
+    return solution / scale, float(residual @ residual)

@@ -11,7 +11,7 @@ from ssmr_ident.campaign import Measurement
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.identify.curves import load_curve
 from ssmr_ident.identify.decay_result import Mode
-from ssmr_ident.identify.friction import friction_of, gripping_load
+from ssmr_ident.identify.friction import friction_of, full_teeth, gripping_load
 from ssmr_ident.identify.posterior import Observation, Posterior, Unknown
 from ssmr_ident.identify.robot_map import (
     SHARES,
@@ -113,12 +113,11 @@ def gather_pull(measurement: Measurement, builder: RobotBuilder, gathered: Gathe
     if direction == "longitudinal" and len(gripping) == 4:
         lines.append(f"K_belt = {pull.first.slope / 2 / 1e3:.3g} N/mm by (3.8)")
     if pull.slides:
-        load = gripping_load(robot, gripping, direction, height, pull.level)
-        friction = friction_of(pull, load)
+        friction = friction_of(pull, lambda force: gripping_load(robot, gripping, direction, height, force))
         lines.append(str(friction))
         result |= {"mu_static": friction.mu_static, "mu_kinetic": friction.mu_kinetic, "load_N": friction.load}
         if pull.stick_slip:
-            troughs = np.array([tooth.trough for tooth in pull.teeth])
+            troughs = np.array([tooth.trough for tooth in full_teeth(pull)])
             forces = {
                 "tire.mu_static": (pull.peak, 0.03 * pull.peak),
                 "tire.mu_kinetic": (troughs.mean(), troughs.std()),

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ssmr_ident.identify.friction import speed_knee
+from ssmr_ident.identify.speed_knee import speed_knee
 
 
 @dataclass(frozen=True)

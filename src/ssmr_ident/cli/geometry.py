@@ -1,0 +1,45 @@
+"""``ident geometry``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def command(
+    measurements: Annotated[Path, typer.Argument(help="Sheet of weighings, tilting angles and parts (YAML).")],
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="Where to write the entries for robot.yaml.")
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
+    quiet: Annotated[bool, typer.Option("-q", "--quiet", help="Print nothing.")] = False,
+    seed: Annotated[int, typer.Option(help="Of the draws that carry the parts' uncertainty to the inertia.")] = 0,
+) -> None:
+    """Centre of mass, contact points and inertia from weighing, tilting and a list of parts."""
+    import json
+
+    import numpy as np
+
+    from ssmr_ident.core.errors import InputError
+    from ssmr_ident.identify.measurements import robot_geometry
+    from ssmr_ident.session import write_parameters
+    from ssmr_ident.session.yaml_file import load_mapping
+
+    if output is not None and not output.absolute().parent.is_dir():
+        raise InputError(str(output), "its folder does not exist", "Make the folder, or write elsewhere with -o")
+    geometry = robot_geometry(load_mapping(measurements), str(measurements), seed)
+    parameters = geometry.parameters()
+    if output is not None:
+        write_parameters(output, parameters)
+    if as_json:
+        rows = {
+            path: {"value": np.asarray(entry.value).tolist(), "std": entry.std, "unit": entry.unit}
+            for path, entry in parameters.estimates.items()
+        }
+        typer.echo(json.dumps(rows, ensure_ascii=False, indent=1, allow_nan=False))
+    elif not quiet:
+        typer.echo(str(geometry))
+        if output is not None:
+            typer.echo(f"written: {output}")
