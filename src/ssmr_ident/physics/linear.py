@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ssmr_ident.physics.robot import Robot
-from ssmr_ident.physics.statics import rest_loads, rest_pose, tilt
+from ssmr_ident.physics.statics import loads_at, rest_pose, tilt
 
 COORDINATES = ("x", "y", "z", "roll", "pitch", "yaw")
 
@@ -54,10 +54,10 @@ class LinearRobot:
 
 def linear_robot(robot: Robot) -> LinearRobot:
     """Linearise the robot at rest on sticking tires (the coupled form of eq 5.11, thesis.md section 5)."""
-    _, roll, pitch = rest_pose(robot)
-    rotation = tilt(roll, pitch)
+    pose = rest_pose(robot)
+    rotation = tilt(pose[1], pose[2])
     arms = robot.contact_points @ rotation.T
-    loads = rest_loads(robot)
+    loads = loads_at(robot, pose)
     mass = np.zeros((6, 6))
     mass[:3, :3] = robot.mass * np.eye(3)
     mass[3:, 3:] = rotation @ robot.inertia @ rotation.T

@@ -27,20 +27,24 @@ def rest_pose(robot: Robot, cubic: float = 0.0) -> np.ndarray:
         arms, depth = _arms_and_depth(robot, pose)
         load = robot.stiffness[2] * depth + cubic * depth**3
         slope = robot.stiffness[2] + 3.0 * cubic * depth**2
-        residual = np.array([load.sum() - robot.mass * GRAVITY, load @ arms[:, 1], -load @ arms[:, 0]])
-        rows = np.column_stack([-np.ones(4), -arms[:, 1], arms[:, 0]])
-        rows = slope[:, None] * rows
-        jacobian = np.vstack([rows.sum(0), arms[:, 1] @ rows, -arms[:, 0] @ rows])
+        levers = np.stack([np.ones(4), arms[:, 1], -arms[:, 0]])
+        residual = levers @ load - np.array([robot.mass * GRAVITY, 0.0, 0.0])
+        jacobian = -(levers * slope) @ levers.T
         change = np.linalg.solve(jacobian, residual)
         pose = pose - change
-        if np.abs(change).max() < 1e-15:
+        if np.abs(change).max() < 1e-13:  # Newton: what is left now is the square of that
             break
     return pose
 
 
 def rest_loads(robot: Robot) -> np.ndarray:
     """Load on each wheel at rest, (4,) float [N]; equals the split of eq (2.24) for a symmetric robot."""
-    return robot.stiffness[2] * _arms_and_depth(robot, rest_pose(robot))[1]
+    return loads_at(robot, rest_pose(robot))
+
+
+def loads_at(robot: Robot, pose: np.ndarray) -> np.ndarray:
+    """Load on each wheel in a pose (height, roll, pitch), (4,) float [N], linear tires."""
+    return robot.stiffness[2] * _arms_and_depth(robot, pose)[1]
 
 
 def _arms_and_depth(robot: Robot, pose: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

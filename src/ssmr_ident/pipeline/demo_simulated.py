@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 from ssmr_ident.core.atomic import write_text
-from ssmr_ident.core.parameter import ParameterSet
+from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.pipeline.simulate import Request, simulate_to_file
 from ssmr_ident.session import write_parameters
 
@@ -33,11 +34,12 @@ _LOGS: tuple[tuple[str, Request, str], ...] = (
 
 
 def write_simulated_session(parameters: ParameterSet, folder: Path) -> None:
-    """Write seven noise-free logs, ``session.yaml`` and ``robot.yaml`` into an existing folder."""
-    write_parameters(folder / "robot.yaml", parameters)
+    """Write seven logs with the noise of an ordinary sensor, ``session.yaml`` and ``robot.yaml``."""
+    noise = {"noise.white_m_s2": Estimate(0.02, None, "m/s^2"), "noise.load_N": Estimate(0.3, None, "N")}
+    write_parameters(folder / "robot.yaml", parameters.updated(noise))
     lines = ["# Made by the simulator from the identified parameters.", "schema: ssmr-ident/session/1"]
     lines += ["name: simulated", "robot: robot.yaml", "recordings:"]
     for name, request, facts in _LOGS:
-        simulate_to_file(str(folder / "robot.yaml"), request, folder / name)
+        simulate_to_file(str(folder / "robot.yaml"), replace(request, noise=True), folder / name)
         lines.append(f"  - {{file: {name}, experiment: {request.experiment}, {facts}}}")
     write_text(folder / "session.yaml", "\n".join(lines) + "\n")
