@@ -23,6 +23,9 @@ def command(
             "damping). Left out: output-error wherever there are accelerations."
         ),
     ] = None,
+    figures: Annotated[
+        Path | None, typer.Option(help="Folder for figures: frequency and damping over amplitude, saw-teeth.")
+    ] = None,
     coulomb: Annotated[
         bool, typer.Option(help="Allow dry friction and a force offset for a drive without a spring.")
     ] = True,
@@ -39,9 +42,14 @@ def command(
     fit = fit_session(session, seed=seed, coulomb=coulomb, method=method)
     if output is not None:
         write_parameters(output, fit.parameters)
+    drawn = () if figures is None else fit.write_figures(figures)
     if as_json:
         typer.echo(json.dumps(fit.as_dict(), ensure_ascii=False, indent=1, allow_nan=False))
     elif not quiet:
         typer.echo(str(fit))
         if output is not None:
             typer.echo(f"written: {output}")
+        if figures is not None:
+            typer.echo(
+                f"figures: {len(drawn)} in {figures}" if drawn else "figures: none, for there was nothing to draw"
+            )

@@ -12,6 +12,8 @@ from ssmr_ident.campaign import Campaign, Measurement, load
 from ssmr_ident.core.errors import InputError, did_you_mean
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.identify.lmfit_report import Variable
+from ssmr_ident.report.figures_fit import NamedBackbone, NamedPull, backbone_figure, sawtooth_figure
+from ssmr_ident.report.style import save
 from ssmr_ident.report.text_fit import fit_report
 
 METHODS = ("output-error", "modal")
@@ -39,6 +41,9 @@ class SessionFit:
         As in diagnosis.yaml.
     variables : tuple of Variable
         Every unknown of the fit, arrays part by part; empty takes ``changed``.
+    backbones : tuple of NamedBackbone
+    pulls : tuple of NamedPull
+        For figures.
     """
 
     session: str
@@ -53,6 +58,8 @@ class SessionFit:
     findings: tuple[str, ...] = ()
     conflicts: tuple[Mapping[str, Any], ...] = field(default_factory=tuple)
     variables: tuple[Variable, ...] = ()
+    backbones: tuple[NamedBackbone, ...] = ()
+    pulls: tuple[NamedPull, ...] = ()
 
     def __str__(self) -> str:
         return fit_report(
@@ -66,6 +73,20 @@ class SessionFit:
             self.correlations,
             self.findings,
             self.variables,
+        )
+
+    def write_figures(self, folder: Path) -> tuple[Path, ...]:
+        """Draw frequency and damping over amplitude, and each pull taken apart; the files written.
+
+        Parameters
+        ----------
+        folder : Path
+            Made where it is missing.
+        """
+        drawn = [save(backbone_figure(self.backbones), folder / "backbone")] if self.backbones else []
+        return (
+            *drawn,
+            *(save(sawtooth_figure(pull), folder / f"sawtooth-{Path(pull.name).stem}") for pull in self.pulls),
         )
 
     def as_dict(self) -> dict[str, Any]:

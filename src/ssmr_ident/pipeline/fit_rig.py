@@ -10,7 +10,7 @@ import numpy as np
 
 from ssmr_ident.campaign import Campaign, Measurement
 from ssmr_ident.core.errors import InputError
-from ssmr_ident.core.parameter import ParameterSet
+from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.identify.backbone import backbone
 from ssmr_ident.identify.decay import fit_decay
 from ssmr_ident.identify.decay_result import DecayFit
@@ -20,6 +20,7 @@ from ssmr_ident.identify.posterior import Observation, Posterior, Unknown, most_
 from ssmr_ident.identify.rig import DERIVATIVES, ForcedRecord, RigFit, fit_rig
 from ssmr_ident.physics.rig import RIG_KEYS, rig_from_parameters
 from ssmr_ident.pipeline.fit import SessionFit
+from ssmr_ident.report.figures_fit import NamedBackbone
 
 ONE_MODE_LEAVES = 50.0
 """Percent of a forced record that a single mode may leave; beyond, mass and stiffness are not those of the rig."""
@@ -39,6 +40,7 @@ def fit_rig_session(campaign: Campaign, chosen: tuple[Measurement, ...], coulomb
     lines: dict[str, tuple[str, ...]] = {}
     results: dict[str, dict[str, Any]] = {}
     findings: list[str] = []
+    backbones: list[NamedBackbone] = []
     observations: list[Observation] = []
     forced = [m for m in chosen if m.entry.experiment == "forced"]
     free = [m for m in chosen if m.entry.experiment == "free_response"]
@@ -52,7 +54,7 @@ def fit_rig_session(campaign: Campaign, chosen: tuple[Measurement, ...], coulomb
         if not drive:
             findings += _modes_after_a_hit(forced, lines, results)
     for measurement in free:
-        observations.append(_free(measurement, keys, fixed, lines, results, findings))
+        observations.append(_free(measurement, keys, fixed, lines, results, findings, backbones))
     if not observations:
         findings.append("no recording here tells a parameter: all keep what the file says")
     if free and not forced and keys[0] not in fixed:
@@ -61,10 +63,13 @@ def fit_rig_session(campaign: Campaign, chosen: tuple[Measurement, ...], coulomb
         )
     posterior = most_probable(unknowns, observations)
     findings += posterior_findings(posterior)
+    fitted = _updated(parameters, posterior)
+    if forced and drive:
+        fitted = _with_friction(fitted, fit)
     return SessionFit(
         session=campaign.session.name,
         before=parameters,
-        parameters=_updated(parameters, posterior),
+        parameters=fitted,
         changed=tuple(unknown.name for unknown in unknowns),
         statistics=(f"{len(chosen)} recordings, {len(unknowns)} parameters with priors",),
         recordings=lines,
@@ -77,7 +82,16 @@ def fit_rig_session(campaign: Campaign, chosen: tuple[Measurement, ...], coulomb
         ),
         findings=tuple(findings),
         conflicts=tuple(conflicts(posterior)),
+        backbones=tuple(backbones),
     )
+
+
+def _with_friction(parameters: ParameterSet, fit: RigFit) -> ParameterSet:
+    """Friction that was fitted goes into the file as an effect, so that simulation and comparison have it too."""
+    if fit.friction <= 3.0 * fit.friction_std:
+        return parameters
+    estimate = Estimate(fit.friction, fit.friction_std, "N", "fit of the recordings")
+    return replace(parameters, effects={**parameters.effects, "dry_friction": {"F_c_N": estimate}})
 
 
 def _forced(forced: list[Measurement], parameters: ParameterSet, start: tuple[float, float, float]) -> RigFit:
@@ -222,6 +236,7 @@ def _free(
     lines: dict[str, tuple[str, ...]],
     results: dict[str, dict[str, Any]],
     findings: list[str],
+    backbones: list[NamedBackbone],
 ) -> Observation:
     recording = measurement.recording
     name = next((n for n in ("angle", "position", *DERIVATIVES) if n in recording), None)
@@ -242,6 +257,7 @@ def _free(
     trend = backbone(recording.time, samples, fit)
     result = _decay_numbers(fit)
     if trend is not None:
+        backbones.append(NamedBackbone(measurement.name, name, recording.channel(name).unit, trend))
         text += str(trend).splitlines()
         result |= {
             "small_amplitude_omega_n_rad_s": trend.small_omega_n,

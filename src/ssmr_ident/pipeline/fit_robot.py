@@ -37,6 +37,7 @@ from ssmr_ident.pipeline.fit_robot_forces import (
 )
 from ssmr_ident.pipeline.fit_robot_result import ROPE, in_file, path_of, strongest, tables, updated, variables
 from ssmr_ident.pipeline.fit_speeds import rate_findings, slip_findings
+from ssmr_ident.report.figures_fit import NamedBackbone
 from ssmr_ident.simulate.scenarios import ROPE_STIFFNESS
 
 SEEN_BY = {"roll": ("ay", "wx"), "pitch": ("ax", "wy"), "yaw": ("ay", "wz")}
@@ -75,7 +76,8 @@ def fit_robot_session(
     builder = RobotBuilder.of(campaign.parameters)
     decoupled = campaign.session.baseline == "decoupled"
     expected = predicted_modes(builder({}), decoupled=False)
-    gathered = Gathered()
+    contacts = campaign.parameters["contact_points_m"]
+    gathered = Gathered(shift_std=0.0 if contacts.fixed else contacts.std or 0.0)
     for measurement in chosen:
         experiment = measurement.entry.experiment
         if experiment == "free_response":
@@ -136,6 +138,8 @@ def fit_robot_session(
         findings=tuple(gathered.findings),
         conflicts=tuple(conflicts(posterior, known)),
         variables=variables(posterior, known),
+        backbones=tuple(gathered.backbones),
+        pulls=tuple(gathered.drawn_pulls),
     )
 
 
@@ -184,6 +188,8 @@ def _decay(measurement: Measurement, expected: dict[str, tuple[float, float]], g
     if not fit.adequate:
         lines.append(f"the residual holds structure: {fit.misfit:.3g} times the noise's variance")
     trend = backbone(recording.time, samples, fit)
+    if trend is not None:
+        gathered.backbones.append(NamedBackbone(measurement.name, f"{entry.motion} in {channel}", unit, trend))
     if trend is not None and not fit.adequate:
         falls = trend.omega_n[0] < trend.omega_n[-1]
         small = f"{trend.small_omega_n / 2 / np.pi:.3f} Hz"

@@ -15,18 +15,25 @@ from ssmr_ident.identify.friction import friction_of, full_teeth, gripping_load
 from ssmr_ident.identify.posterior import Observation, Posterior, Unknown
 from ssmr_ident.identify.robot_map import (
     SHARES,
+    SHIFTS,
     RobotBuilder,
     friction_observation,
     single_wheel_observation,
     slope_observation,
 )
-from ssmr_ident.identify.sawtooth import mean_with_wander, take_apart
+from ssmr_ident.identify.sawtooth import machine_moves, mean_with_wander, take_apart
 from ssmr_ident.pipeline.fit_robot_result import ON_FLOOR, ROPE
 from ssmr_ident.pipeline.fit_speeds import AtSpeed
+from ssmr_ident.report.figures_fit import NamedBackbone, NamedPull
 
 STEADY = 3.0
 """Spread of the sliding force over the noise of the first rise, below which a contact slides steadily: then the two
 friction coefficients cannot be told apart, and the level is both."""
+
+
+TROUGHS_DIFFER = 0.05
+"""Standard deviation, from pull to pull, of what troughs reach of µ_k·N: 0.97 to 1.14 in simulated pulls whose friction
+is known, taken as uniform."""
 
 
 @dataclass
@@ -46,6 +53,9 @@ class Gathered:
     shares: bool = False
     pulls: int = 0
     rope: bool = False
+    shift_std: float = 0.0
+    backbones: list[NamedBackbone] = field(default_factory=list)
+    drawn_pulls: list[NamedPull] = field(default_factory=list)
 
 
 def machine_position(measurement: Measurement) -> np.ndarray:
@@ -82,6 +92,9 @@ def gather_pull(measurement: Measurement, builder: RobotBuilder, gathered: Gathe
         raise InputError(where, f"no pull found: {error}", "Look at the log with ident inspect") from None
     robot = builder({})
     name, gripping = measurement.name, entry.wheels_gripping
+    position = machine_position(measurement)
+    moving = machine_moves(position)
+    gathered.drawn_pulls.append(NamedPull(name, position[moving], recording["force"][moving], pull))
     cable = entry.cable
     if cable == "rope":
         gathered.rope = True
@@ -113,14 +126,19 @@ def gather_pull(measurement: Measurement, builder: RobotBuilder, gathered: Gathe
     if direction == "longitudinal" and len(gripping) == 4:
         lines.append(f"K_belt = {pull.first.slope / 2 / 1e3:.3g} N/mm by (3.8)")
     if pull.slides:
-        friction = friction_of(pull, lambda force: gripping_load(robot, gripping, direction, height, force))
+        load_share = load_uncertainty(builder, gripping, direction, height, pull.level, gathered.shift_std)
+
+        def load(force: float) -> float:
+            return gripping_load(robot, gripping, direction, height, force)
+
+        friction = friction_of(pull, load, load_share * load(pull.level))
         lines.append(str(friction))
         result |= {"mu_static": friction.mu_static, "mu_kinetic": friction.mu_kinetic, "load_N": friction.load}
         if pull.stick_slip:
             troughs = np.array([tooth.trough for tooth in full_teeth(pull)])
             forces = {
                 "tire.mu_static": (pull.peak, 0.03 * pull.peak),
-                "tire.mu_kinetic": (troughs.mean(), troughs.std()),
+                "tire.mu_kinetic": (troughs.mean(), np.hypot(troughs.std(), TROUGHS_DIFFER * troughs.mean())),
             }
             gathered.teeth[name] = len(pull.teeth)
         elif pull.wander > STEADY * pull.first.scatter:
@@ -135,10 +153,39 @@ def gather_pull(measurement: Measurement, builder: RobotBuilder, gathered: Gathe
                 share = "share at peaks" if key == "tire.mu_static" else "share at troughs"
             key = _on_floor(key, entry.floor, gathered)
             gathered.observations.append(
-                friction_observation(name, key, float(force), float(std), direction, height, gripping, builder, share)
+                friction_observation(
+                    name,
+                    key,
+                    float(force),
+                    float(np.hypot(std, load_share * force)),
+                    direction,
+                    height,
+                    gripping,
+                    builder,
+                    share,
+                )
             )
     gathered.lines[name] = tuple(lines)
     gathered.results[name] = result
+
+
+def load_uncertainty(
+    builder: RobotBuilder, gripping: tuple[int, ...], direction: str, height: float, force: float, shift_std: float
+) -> float:
+    """Share of the gripping wheels' load that the centre of mass's place leaves open; 0 where all four grip.
+
+    Parameters
+    ----------
+    builder : RobotBuilder
+    gripping : tuple of int
+    direction : str
+    height, force : float [m], [N]
+    shift_std : float [m]
+        Of the centre of mass along x and y.
+    """
+    load = gripping_load(builder({}), gripping, direction, height, force)
+    moved = [gripping_load(builder({name: shift_std}), gripping, direction, height, force) for name in SHIFTS]
+    return float(np.hypot(*(np.array(moved) - load))) / load
 
 
 def gather_spinning(measurement: Measurement, builder: RobotBuilder, gathered: Gathered) -> None:
