@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from ssmr_ident.campaign import load
-from ssmr_ident.compare import compare
+from ssmr_ident.compare import Prediction, compare
+from ssmr_ident.compare.comparison import measure
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import Estimate
 from ssmr_ident.pipeline.compare import compare_session
@@ -134,3 +135,14 @@ def test_a_baseline_without_a_model_of_the_experiment_says_so(rig_session: Path)
     (rig_session / "session.yaml").write_text(text)
     with pytest.raises(InputError, match="has no model of forced"):
         compare_session(rig_session)
+
+
+def test_strong_hum_counts_by_the_gain_of_the_low_pass_alone() -> None:
+    """Three times the motion, at any phase: what is left of it is 1/(1 + (60/50)^20), ends included."""
+    time = np.arange(2000) / 1000
+    motion = np.exp(-3 * time) * np.sin(2 * np.pi * 6 * time)
+    for phase in (0.0, 1.0, 2.0):
+        hum = 3.0 * np.sin(2 * np.pi * 60 * time + phase)
+        prediction = Prediction(time, ("ay",), ("m/s^2",), (motion + hum)[:, None], motion[:, None])
+        left = np.linalg.norm(hum) / (1 + (60 / 50) ** 20)
+        assert measure(prediction)[0] == pytest.approx(100 * left / np.hypot(np.linalg.norm(motion), left), rel=0.03)
