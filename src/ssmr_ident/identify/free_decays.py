@@ -123,6 +123,16 @@ class BodyDecay:
             self, noises=tuple(fit_noise(tail[:, c], LARGEST_ORDER, spent // 2) for c in range(tail.shape[1]))
         )
 
+    def trusted_less(self, sizes: Array) -> BodyDecay:
+        """The same with each column's noise taken ``sizes`` times as large, (c,) float."""
+        return replace(
+            self,
+            noises=tuple(
+                AutoregressiveNoise(noise.filter, noise.std * float(size))
+                for noise, size in zip(self.noises, sizes, strict=True)
+            ),
+        )
+
 
 def body_decay(
     name: str, time: Array, channels: Sequence[tuple[int, Array]], bandwidth_hz: float, mains_hz: float | None = 60.0

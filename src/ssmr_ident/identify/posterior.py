@@ -8,98 +8,19 @@ prior, and says so.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Protocol
 
 import numpy as np
 from scipy.stats import chi2
 
 from ssmr_ident.identify.flatness import flat_directions
+from ssmr_ident.identify.objective import Objective, Observation, Samples, Unknown
 from ssmr_ident.identify.output_error import System
 
 Array = np.ndarray
 
-WIDE = 1.5
-"""Standard deviation of the logarithm where a file gives no std: a factor of 4.5 either way."""
-
-
-@dataclass(frozen=True)
-class Unknown:
-    """A parameter to be fitted.
-
-    Parameters
-    ----------
-    name : str
-        Key of the parameter file, or of a part of one (``height_m``).
-    unit : str
-    prior : float
-    prior_std : float or None
-        None: unknown, taken as ``WIDE`` in the logarithm.
-    positive : bool
-        Fitted as its logarithm, so that half and double are equally far and nothing ends at 0.
-    """
-
-    name: str
-    unit: str
-    prior: float
-    prior_std: float | None
-    positive: bool = True
-
-    @property
-    def logarithmic(self) -> bool:
-        return self.positive and self.prior > 0
-
-    @property
-    def spread(self) -> float:
-        """Prior standard deviation of the fitted quantity."""
-        if self.prior_std is None:
-            return WIDE if self.logarithmic else max(abs(self.prior), 1.0) * 10
-        return self.prior_std / self.prior if self.logarithmic else self.prior_std
-
-    def value(self, scaled: float) -> float:
-        """From the scaled coordinate (0 at the prior, 1 at one standard deviation)."""
-        if self.logarithmic:
-            return self.prior * math.exp(np.clip(scaled * self.spread, -12, 12))
-        return self.prior + scaled * self.spread
-
-    @property
-    def prior_spread(self) -> float:
-        """Prior standard deviation of the value itself."""
-        return self.spread * (self.prior if self.logarithmic else 1.0)
-
-    def slope(self, scaled: float) -> float:
-        """Derivative of the value by the scaled coordinate."""
-        return self.spread * (self.value(scaled) if self.logarithmic else 1.0)
-
-    def scaled(self, value: float) -> float:
-        """Back from a value to the scaled coordinate."""
-        return (math.log(value / self.prior) if self.logarithmic else value - self.prior) / self.spread
-
-    def std(self, scaled: float, scaled_std: float) -> float:
-        return scaled_std * self.slope(scaled)
-
-
-@dataclass(frozen=True)
-class Observation:
-    """A small result that the parameters must explain.
-
-    Parameters
-    ----------
-    name : str
-    labels : tuple of str
-        One per number.
-    values : (k,) float
-    covariance : (k, k) float
-    predict : callable
-        From a mapping of parameter names to values, the (k,) numbers it should have been.
-    """
-
-    name: str
-    labels: tuple[str, ...]
-    values: Array
-    covariance: Array
-    predict: Callable[[Mapping[str, float]], Array]
+__all__ = ["Observation", "Posterior", "Samples", "Unknown", "most_probable"]
 
 
 @dataclass(frozen=True)
@@ -161,64 +82,6 @@ class Posterior:
         return "\n".join(lines)
 
 
-class Samples(Protocol):
-    """Recordings whose samples are fitted directly, their nuisances eliminated inside."""
-
-    def cost(self, values: Mapping[str, float]) -> float: ...
-
-    def system(self, values: Mapping[str, float], moves: Mapping[str, float], correlated: bool = False) -> System: ...
-
-
-SMALL_MOVE = 1e-4
-"""Step of central differences, in prior standard deviations."""
-
-
-class _Objective:
-    """Twice the negative logarithm of the posterior over scaled coordinates (0 at the prior, 1 one std away)."""
-
-    def __init__(
-        self, unknowns: Sequence[Unknown], observations: Sequence[Observation], samples: Sequence[Samples]
-    ) -> None:
-        self.unknowns, self.observations, self.samples = unknowns, observations, samples
-        self.whiteners = [np.linalg.inv(np.linalg.cholesky(o.covariance)) for o in observations]
-
-    def values(self, scaled: Array) -> dict[str, float]:
-        return {u.name: u.value(s) for u, s in zip(self.unknowns, scaled, strict=True)}
-
-    def residual(self, scaled: Array) -> Array:
-        """Of the observations."""
-        values = self.values(scaled)
-        parts = [w @ (o.values - o.predict(values)) for o, w in zip(self.observations, self.whiteners, strict=True)]
-        return np.concatenate(parts) if parts else np.zeros(0)
-
-    def cost(self, scaled: Array) -> float:
-        residual = self.residual(scaled)
-        values = self.values(scaled)
-        return float(residual @ residual + scaled @ scaled) + sum(s.cost(values) for s in self.samples)
-
-    def slopes(self, scaled: Array) -> Array:
-        """Derivatives of the observations' residual, (k, n)."""
-        columns = []
-        for index in range(len(scaled)):
-            move = np.zeros(len(scaled))
-            move[index] = SMALL_MOVE
-            columns.append((self.residual(scaled + move) - self.residual(scaled - move)) / (2 * SMALL_MOVE))
-        return np.column_stack(columns)
-
-    def sampled(self, scaled: Array, correlated: bool = False) -> tuple[list[System], Array, Array, Array]:
-        """Systems of the samples; gradient, information and meat in scaled coordinates."""
-        chain = np.array([u.slope(s) for u, s in zip(self.unknowns, scaled, strict=True)])
-        moves = {u.name: SMALL_MOVE * abs(c) for u, c in zip(self.unknowns, chain, strict=True)}
-        systems = [s.system(self.values(scaled), moves, correlated) for s in self.samples]
-        size = len(scaled)
-        gradient, information, meat = np.zeros(size), np.zeros((size, size)), np.zeros((size, size))
-        for system in systems:
-            gradient += chain * system.gradient
-            information += np.outer(chain, chain) * system.information
-            meat += np.outer(chain, chain) * system.meat
-        return systems, gradient, information, meat
-
-
 def most_probable(
     unknowns: Sequence[Unknown],
     observations: Sequence[Observation],
@@ -248,7 +111,7 @@ def most_probable(
     Standard deviations are then those of a sandwich where that is wider (White 1982, Newey and West 1987).
     """
     count = len(unknowns)
-    objective = _Objective(unknowns, observations, samples)
+    objective = Objective(unknowns, observations, samples)
     point = np.array([u.scaled(start[u.name]) if start and u.name in start else 0.0 for u in unknowns])
     current = objective.cost(point)
     damping, converged = 1e-3, False
@@ -276,7 +139,7 @@ def most_probable(
     return _summary(objective, point, converged)
 
 
-def _summary(objective: _Objective, point: Array, converged: bool) -> Posterior:
+def _summary(objective: Objective, point: Array, converged: bool) -> Posterior:
     unknowns, observations = objective.unknowns, objective.observations
     count = len(unknowns)
     residual, slope = objective.residual(point), objective.slopes(point)

@@ -44,9 +44,8 @@ def fit_rig_session(campaign: Campaign, chosen: tuple[Measurement, ...], coulomb
     observations: list[Observation] = []
     forced = [m for m in chosen if m.entry.experiment == "forced"]
     free = [m for m in chosen if m.entry.experiment == "free_response"]
-    for measurement in chosen:
-        if measurement not in forced and measurement not in free:
-            lines[measurement.name] = (f"{measurement.entry.experiment}: not fitted on a rig",)
+    others = [m for m in chosen if m not in forced and m not in free]
+    lines |= {m.name: (f"{m.entry.experiment}: not fitted on a rig",) for m in others}
     if forced:
         drive = rig.stiffness == 0.0 and keys[2] in fixed
         fit = _drive(forced, coulomb) if drive else _forced(forced, parameters, (rig.mass, rig.damping, rig.stiffness))

@@ -11,9 +11,9 @@ from ssmr_ident.core.errors import InputError
 from ssmr_ident.identify.backbone import backbone
 from ssmr_ident.identify.decay import fit_decay
 from ssmr_ident.identify.findings import amplitude_findings, conflicts, posterior_findings
+from ssmr_ident.identify.force_observations import SHARES, with_shifts_unknown
 from ssmr_ident.identify.posterior import Unknown, most_probable
 from ssmr_ident.identify.robot_map import (
-    SHARES,
     RobotBuilder,
     match_further,
     modal_observations,
@@ -21,7 +21,6 @@ from ssmr_ident.identify.robot_map import (
     predicted_modes,
     robot_unknowns,
     set_aside,
-    with_shifts_unknown,
 )
 from ssmr_ident.pipeline.fit import SessionFit
 from ssmr_ident.pipeline.fit_robot_decays import body_statistics, fit_samples

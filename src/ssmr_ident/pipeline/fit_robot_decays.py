@@ -86,7 +86,8 @@ def _report(fit: BodyFit, gathered: Gathered) -> None:
     system = fit.posterior.systems[0]
     tests = sum(residual.shape[1] for residual in system.residuals)
     left = {}
-    for decay, residual in zip(fit.decays, system.residuals, strict=True):
+    for decay, weighted, sizes in zip(fit.decays, system.residuals, fit.distrust, strict=True):
+        residual = weighted * sizes
         early = residual[: len(residual) // 4]
         misfit = float(np.mean(early**2))
         p_value = min(1.0, tests * min(whiteness(residual[:, c]) for c in range(residual.shape[1])))
@@ -105,11 +106,13 @@ def _report(fit: BodyFit, gathered: Gathered) -> None:
         )
     widened = float(np.max(fit.posterior.sandwich))
     if left and max([*left.values(), widened]) > NAMED:
+        least = max(float(np.max(sizes)) for sizes in fit.distrust)
         worst = max(left, key=lambda name: left[name])
         gathered.findings.append(
             f"{len(left)} of {len(fit.decays)} decays leave more than noise behind the full simulator (most in "
-            f"{worst}: {left[worst]:.3g} times its variance in the first quarter); standard deviations were widened "
-            f"up to {widened:.2g} times for it"
+            f"{worst}: {left[worst]:.3g} times its variance in the first quarter): the model misses something; "
+            f"their channels were trusted up to {least:.3g} times less, and standard deviations widened up to "
+            f"{widened:.2g} times"
         )
     if not fit.settled:
         gathered.findings.append(

@@ -11,16 +11,15 @@ from ssmr_ident.campaign import Measurement
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.identify.curves import load_curve
 from ssmr_ident.identify.decay_result import Mode
-from ssmr_ident.identify.friction import friction_of, full_teeth, gripping_load
-from ssmr_ident.identify.posterior import Observation, Posterior, Unknown
-from ssmr_ident.identify.robot_map import (
+from ssmr_ident.identify.force_observations import (
     SHARES,
-    SHIFTS,
-    RobotBuilder,
     friction_observation,
     single_wheel_observation,
     slope_observation,
 )
+from ssmr_ident.identify.friction import friction_of, full_teeth, gripping_load
+from ssmr_ident.identify.posterior import Observation, Posterior, Unknown
+from ssmr_ident.identify.robot_map import SHIFTS, RobotBuilder
 from ssmr_ident.identify.sawtooth import machine_moves, mean_with_wander, take_apart
 from ssmr_ident.pipeline.fit_robot_result import ON_FLOOR, ROPE
 from ssmr_ident.pipeline.fit_speeds import AtSpeed
