@@ -1,0 +1,214 @@
+"""What a diagnosis says: verdict, what was left out, how sure, and what it is worth on recordings never fitted."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from ssmr_ident.core.parameter import Estimate, ParameterSet
+from ssmr_ident.diagnose.evidence import Evidence
+
+SCHEMA = "ssmr-ident/diagnosis/1"
+MISSING, NOTHING, UNDETERMINED = "missing_physics", "nothing_missing", "undetermined"
+UNIT = {"nrmse_percent": "%", "log_psd_db": "dB"}
+
+
+@dataclass(frozen=True)
+class Located:
+    """Where the misfit sits, one place.
+
+    Parameters
+    ----------
+    recording, channel : str
+    time_s, band_hz : (float, float)
+        The recording's own time.
+    region : str
+        Of the state space, as a condition (``|s| > 1.2 mm``); empty where none orders the residual.
+    share : float
+        Of the session's misfit, 0 … 1.
+    sentence : str
+        The same in words, with numbers.
+    """
+
+    recording: str
+    channel: str
+    time_s: tuple[float, float]
+    band_hz: tuple[float, float]
+    region: str
+    share: float
+    sentence: str = ""
+
+
+@dataclass(frozen=True)
+class Conflict:
+    """A parameter that a fit pulls away from what is known of it; ``sigmas`` is signed."""
+
+    parameter: str
+    prior: float
+    fitted: float
+    sigmas: float
+    unit: str = ""
+
+
+@dataclass(frozen=True)
+class NamedEffect:
+    """Physics that was left out.
+
+    Parameters
+    ----------
+    id : str
+        Of the catalogue, or ``unlisted``.
+    sentence, equation : str
+        What it does, for a reader who is no specialist; the law with its formula (plain text).
+    parameters : mapping of str to Estimate
+    confidence : float
+        Posterior share among the explanations tried, 0 … 1.
+    indistinguishable_from : tuple of str
+        Ids that fit this data as well.
+    form : str
+        Which formula of this physics fits best, where more than one was tried.
+    """
+
+    id: str
+    sentence: str
+    equation: str
+    parameters: Mapping[str, Estimate]
+    confidence: float
+    indistinguishable_from: tuple[str, ...] = ()
+    form: str = ""
+
+
+@dataclass(frozen=True)
+class Tried:
+    """An explanation (ids joined by ``+``; ``baseline`` for none) and how it fared.
+
+    ``heldout_metric`` is in the unit of the fit's metric; ``log_evidence`` is natural, the baseline's being 0.
+    """
+
+    id: str
+    heldout_metric: float
+    log_evidence: float
+
+
+@dataclass(frozen=True)
+class Worth:
+    """Mean of the metric over recordings: of the baseline, with the effects added, and what noise alone leaves.
+
+    ``improvement`` is the 95 % interval of before − after over recordings.
+    """
+
+    before: float
+    after: float
+    noise_floor: float
+    recordings: tuple[str, ...] = ()
+    improvement: tuple[float, float] | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Diagnosis:
+    """The answer of ``ident diagnose``.
+
+    Parameters
+    ----------
+    session, verdict : str
+    located, conflicts, effects, tried : tuples
+        Most important first.
+    metric : str
+        ``nrmse_percent`` or ``log_psd_db``.
+    training, heldout : Worth
+    next_experiment : str
+        What to record next, empty where nothing is left to tell apart.
+    before, after : ParameterSet
+        The baseline at its best, and with the effects (equal where nothing is missing).
+    summary : str
+        The verdict in one sentence.
+    notes : tuple of str
+        What limits the answer, in sentences: recordings kept back, clipped channels, weak spots.
+    evidence : Evidence
+        What the figures are drawn from.
+    """
+
+    session: str
+    verdict: str
+    located: tuple[Located, ...]
+    conflicts: tuple[Conflict, ...]
+    effects: tuple[NamedEffect, ...]
+    tried: tuple[Tried, ...]
+    metric: str
+    training: Worth
+    heldout: Worth
+    next_experiment: str
+    before: ParameterSet
+    after: ParameterSet
+    summary: str
+    notes: tuple[str, ...] = ()
+    evidence: Evidence = field(default_factory=Evidence)
+
+    def as_dict(self) -> dict[str, Any]:
+        """The contract's diagnosis.yaml; key order is the file's."""
+        return {
+            "schema": SCHEMA,
+            "session": self.session,
+            "verdict": self.verdict,
+            "summary": self.summary,
+            "located": [
+                {"recording": p.recording, "channel": p.channel, "time_s": [float(t) for t in p.time_s],
+                 "band_hz": [float(f) for f in p.band_hz], "region": p.region, "share_of_misfit": float(p.share),
+                 "sentence": p.sentence}
+                for p in self.located
+            ],
+            "parameters_in_conflict": [
+                {"parameter": c.parameter, "prior": c.prior, "fitted": c.fitted, "sigmas": c.sigmas, "unit": c.unit}
+                for c in self.conflicts
+            ],
+            "effects": [
+                {"id": e.id, "sentence": e.sentence, "equation": e.equation, "form": e.form,
+                 "parameters": {name: _plain(estimate) for name, estimate in e.parameters.items()},
+                 "confidence": float(e.confidence), "indistinguishable_from": list(e.indistinguishable_from)}
+                for e in self.effects
+            ],
+            "explanations_tried": [
+                {"id": t.id, "heldout_metric": t.heldout_metric, "log_evidence": t.log_evidence} for t in self.tried
+            ],
+            "fit": {"metric": self.metric, "training": _worth(self.training), "heldout": _worth(self.heldout)},
+            "next_experiment": self.next_experiment,
+            "notes": list(self.notes),
+        }  # fmt: skip
+
+    def without_evidence(self) -> Diagnosis:
+        """For keeping many of them."""
+        return replace(self, evidence=Evidence())
+
+    def __str__(self) -> str:
+        unit = UNIT[self.metric]
+        lines = [f"{self.session}: {self.verdict.replace('_', ' ')}", f"  {self.summary}"]
+        for effect in self.effects:
+            tie = f"; fits as well: {', '.join(effect.indistinguishable_from)}" if effect.indistinguishable_from else ""
+            lines.append(f"  {effect.id}  (confidence {effect.confidence:.2f}{tie})  {effect.equation}")
+            lines += [f"      {name} = {estimate}" for name, estimate in effect.parameters.items()]
+        for name, worth in (("fitted", self.training), ("held out", self.heldout)):
+            lines.append(
+                f"  {name:<9} before {worth.before:.3g} {unit}, after {worth.after:.3g} {unit}, "
+                f"noise floor {worth.noise_floor:.3g} {unit}"
+            )
+        lines += [f"  where: {place.sentence}" for place in self.located[:3] if place.sentence]
+        for c in self.conflicts[:5]:
+            lines.append(f"  moved: {c.parameter} {c.prior:.4g} -> {c.fitted:.4g} {c.unit} ({c.sigmas:+.1f} std)")
+        lines += [f"  note: {note}" for note in self.notes]
+        if self.next_experiment:
+            lines.append(f"  next: {self.next_experiment}")
+        return "\n".join(lines)
+
+
+def _worth(worth: Worth) -> dict[str, Any]:
+    plain: dict[str, Any] = {"before": worth.before, "after": worth.after, "noise_floor": worth.noise_floor}
+    if worth.recordings:
+        plain["recordings"] = list(worth.recordings)
+    if worth.improvement is not None:
+        plain["improvement_95"] = list(worth.improvement)
+    return plain
+
+
+def _plain(estimate: Estimate) -> dict[str, Any]:
+    return {"value": float(estimate.value), "std": estimate.std, "unit": estimate.unit}
