@@ -5,7 +5,7 @@ from __future__ import annotations
 import importlib
 import os
 import sys
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -17,9 +17,13 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 VERBS = ("inspect", "spectrum", "geometry", "fit", "simulate", "compare", "effects", "demo")
 
+UsageError: type[Exception] = typer.BadParameter.__bases__[0]
+"""Of the click that typer brings along, whichever that is."""
+
 app = typer.Typer(
     name="ident",
     help="Parameters, simulation and comparison from accelerometer and force logs.",
+    epilog="Tab completion: ident --install-completion, or --show-completion to look at it first.",
     no_args_is_help=True,
     add_completion=True,
     pretty_exceptions_enable=False,
@@ -46,16 +50,40 @@ def _root(
 
 for _verb in VERBS:
     _module = importlib.import_module(f"ssmr_ident.cli.{_verb}")
-    app.command(_verb)(_module.command)
+    # paragraphs of an epilog keep their line ends, single lines do not
+    app.command(_verb, epilog="\n\n".join(("Examples:", *getattr(_module, "EXAMPLES", ()))))(_module.command)
 
 
 def main() -> None:
-    """Run ``ident``: exit 0 done, 2 the input or the call is wrong, 1 the tool failed."""
+    """Run ``ident``: exit 0 done, 2 the input or the call is wrong, 1 the tool failed, 130 stopped by the user."""
     try:
-        app()
+        sys.exit(app(standalone_mode=False) or 0)
+    except UsageError as error:
+        _complain(*_usage(error))
     except InputError as error:
-        print(f"ident: {' '.join(str(error).split())}", file=sys.stderr)
-        sys.exit(2)
+        _complain(str(error))
     except SimulationError as error:
         print(f"ident: simulation failed: {error}", file=sys.stderr)
         sys.exit(1)
+    except (typer.Abort, KeyboardInterrupt):
+        print("ident: stopped; what was being written is not there", file=sys.stderr)
+        sys.exit(130)
+
+
+def _usage(error: Any) -> tuple[str, str]:
+    """A wrong call in one line, with the nearest name and where to read on."""
+    context = error.ctx
+    if type(error).__name__ == "NoArgsIsHelpError":  # whose message is the help, unless rich has printed it already
+        print(error.format_message(), end="")
+        sys.exit(2)
+    text = error.format_message().rstrip(".")
+    near = getattr(error, "possibilities", None)
+    if near:
+        text = f"{text.partition(' (Possible')[0].rstrip('.?')}. Did you mean {' or '.join(sorted(near))}"
+    mark = "?" if "Did you mean" in text and not text.endswith("?") else "" if text.endswith("?") else "."
+    return text + mark, f"See {context.command_path if context else 'ident'} --help."
+
+
+def _complain(*parts: str) -> None:
+    print(f"ident: {' '.join(' '.join(parts).split())}", file=sys.stderr)
+    sys.exit(2)

@@ -7,6 +7,11 @@ from typing import Annotated
 
 import typer
 
+EXAMPLES = (
+    "ident compare data/raw/free_response --params out/parameters.yaml -o out/compare",
+    "ident compare my-session --json",
+)
+
 
 def command(
     session: Annotated[Path, typer.Argument(help="Session folder, or its session.yaml.")],
@@ -19,10 +24,7 @@ def command(
     as_json: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
     quiet: Annotated[bool, typer.Option("-q", "--quiet", help="Print nothing but errors.")] = False,
 ) -> None:
-    """Simulate every recording of a session with given parameters and say how far they are apart.
-
-    Example: ident compare data/raw/free_response --params out/parameters.yaml -o out/compare
-    """
+    """Simulate every recording of a session with given parameters and say how far they are apart."""
     from ssmr_ident.cli.progress import progress
     from ssmr_ident.pipeline.compare import compare_session
 

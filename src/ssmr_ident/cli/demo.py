@@ -7,6 +7,11 @@ from typing import Annotated
 
 import typer
 
+EXAMPLES = (
+    "ident demo -o out",
+    "ident demo --thesis",
+)
+
 
 def command(
     output: Annotated[Path, typer.Option("-o", "--output", help="Folder for parameters, report and tables.")] = Path(
@@ -21,10 +26,7 @@ def command(
     as_json: Annotated[bool, typer.Option("--json", help="Print the table as JSON.")] = False,
     quiet: Annotated[bool, typer.Option("-q", "--quiet", help="Print nothing.")] = False,
 ) -> None:
-    """Raw logs to spectra, to parameters, to a simulation, and back to the logs.
-
-    Example: ident demo -o out
-    """
+    """Raw logs to spectra, to parameters, to a simulation, and back to the logs."""
     import json
 
     from ssmr_ident.cli.progress import doing, stages

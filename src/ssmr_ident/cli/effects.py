@@ -7,6 +7,12 @@ from typing import Annotated
 
 import typer
 
+EXAMPLES = (
+    "ident effects",
+    "ident effects dry_friction -o dry_friction.png",
+    "ident effects --json",
+)
+
 
 def command(
     effect_id: Annotated[
@@ -18,10 +24,8 @@ def command(
     as_json: Annotated[bool, typer.Option("--json", help="Print as JSON; infinite numbers as text.")] = False,
     quiet: Annotated[bool, typer.Option("-q", "--quiet", help="Print nothing but errors.")] = False,
 ) -> None:
-    """The physics that a model may have left out: equation, parameters, signature, and what each does to a recording.
-
-    Example: ident effects dry_friction -o dry_friction.png
-    """
+    """Physics that a model may have left out: equation, parameters, signature, and what each does to a recording."""
+    from ssmr_ident.cli.progress import doing
     from ssmr_ident.core.errors import InputError
     from ssmr_ident.physics.effects import CATALOGUE
     from ssmr_ident.pipeline.effects import catalogue_text, draw, effect_text, effect_values, find
@@ -35,7 +39,10 @@ def command(
             typer.echo(catalogue_text())
         return
     effect = find(effect_id)
-    written = None if output is None else draw(effect, output)
+    written = None
+    if output is not None:
+        with doing(f"simulating with and without {effect.id}", hidden=quiet or as_json):
+            written = draw(effect, output)
     if as_json:
         _print_json({**effect_values(effect), "figure": None if written is None else str(written)})
     elif not quiet:

@@ -7,6 +7,12 @@ from typing import Annotated
 
 import typer
 
+EXAMPLES = (
+    "ident fit data/raw/free_response -o out/params.yaml",
+    "ident fit my-session -o params.yaml --figures figures",
+    "ident fit my-session --method modal --json",
+)
+
 
 def command(
     session: Annotated[Path, typer.Argument(help="Session folder, or its session.yaml.")],
@@ -33,13 +39,15 @@ def command(
     """Frequencies, damping, stiffness, inertia, friction from the recordings, with uncertainties."""
     import json
 
+    from ssmr_ident.cli.progress import stages
     from ssmr_ident.core.errors import InputError
     from ssmr_ident.pipeline.fit import fit_session
     from ssmr_ident.session import write_parameters
 
     if output is not None and not output.absolute().parent.is_dir():
         raise InputError(str(output), "its folder does not exist", "Make the folder, or write elsewhere with -o")
-    fit = fit_session(session, seed=seed, coulomb=coulomb, method=method)
+    with stages(hidden=quiet or as_json) as step:
+        fit = fit_session(session, seed=seed, coulomb=coulomb, method=method, progress=step)
     if output is not None:
         write_parameters(output, fit.parameters)
     drawn = () if figures is None else fit.write_figures(figures)

@@ -7,6 +7,11 @@ from typing import Annotated
 
 import typer
 
+EXAMPLES = (
+    "ident geometry docs/howto/measurements.yaml",
+    "ident geometry measurements.yaml -o geometry.yaml",
+)
+
 
 def command(
     measurements: Annotated[Path, typer.Argument(help="Sheet of weighings, tilting angles and parts (YAML).")],

@@ -8,6 +8,13 @@ from typing import Annotated, Literal
 
 import typer
 
+EXAMPLES = (
+    "ident inspect roll-1.xlsx pull-3.txt",
+    "ident inspect data/raw/pulls",
+    "ident inspect press.txt --units load=lbf,position=in",
+    "ident inspect roll-1.xlsx --json",
+)
+
 
 def command(
     paths: Annotated[list[Path], typer.Argument(metavar="FILE...", help="Logs, or folders with logs in them.")],

@@ -36,7 +36,7 @@ def progress(what: str, hidden: bool = False) -> Iterator[Callable[[int, int], N
 
 
 @contextmanager
-def doing(hidden: bool = False) -> Iterator[Callable[[str], None]]:
+def doing(what: str = "", hidden: bool = False) -> Iterator[Callable[[str], None]]:
     """Yield a function that shows what is being done, for work whose length is not known beforehand."""
     from rich.console import Console
 
@@ -44,5 +44,5 @@ def doing(hidden: bool = False) -> Iterator[Callable[[str], None]]:
     if hidden or not console.is_terminal:
         yield lambda text: None
         return
-    with console.status("") as status:
+    with console.status(what) as status:
         yield status.update

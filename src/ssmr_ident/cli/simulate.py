@@ -10,6 +10,16 @@ import typer
 CHOICES = "free_response, pull, swivel, straight, wheel_drag, vertical_compression, forced"
 
 
+FIRST_RUN = "simulating (the first run on a machine compiles the simulator, some ten seconds)"
+
+EXAMPLES = (
+    "ident simulate p3at-extended -e free_response --motion pitch --noise --seed 7 -o pitch-1.xlsx",
+    "ident simulate params.yaml -e swivel --yaw-rate-deg-s 45 -o swivel.csv",
+    "ident simulate p3at-extended -e pull --direction lateral --cable rope -o pull-1.txt",
+    "ident simulate rig.yaml -e forced --force shaker.csv -o answer.csv",
+)
+
+
 def command(
     params: Annotated[str, typer.Argument(help="Parameter file, or a bundled robot: p3at-extended, p3at-platform.")],
     experiment: Annotated[str, typer.Option("--experiment", "-e", help=f"One of {CHOICES}.")],
@@ -39,10 +49,8 @@ def command(
     quiet: Annotated[bool, typer.Option("-q", "--quiet", help="Print nothing.")] = False,
     seed: Annotated[int, typer.Option(help="Of the noise.")] = 0,
 ) -> None:
-    """Simulate one experiment and write it as a log.
-
-    Example: ident simulate p3at-extended -e swivel --yaw-rate-deg-s 45 -o swivel.csv
-    """
+    """Simulate one experiment and write it as a log."""
+    from ssmr_ident.cli.progress import doing
     from ssmr_ident.pipeline.simulate import Request, simulate_to_file
 
     request = Request(
@@ -51,7 +59,8 @@ def command(
         wheel_rate_rad_s=wheel_rate_rad_s, free_normal=free_normal, yaw_rate_deg_s=yaw_rate_deg_s,
         speed_m_s=speed_m_s, force=force, duration_s=duration_s, rate_hz=rate_hz, noise=noise, seed=seed,
     )  # fmt: skip
-    recording = simulate_to_file(params, request, output)
+    with doing(FIRST_RUN, hidden=quiet or as_json):
+        recording = simulate_to_file(params, request, output)
     if as_json:
         import json
 

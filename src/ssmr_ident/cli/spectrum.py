@@ -18,6 +18,13 @@ RANGE_HELP = (
 LOW_PASS_HELP = "Of the trace and the amplitude. Left out: 50, for free responses of the robot 20."
 
 
+EXAMPLES = (
+    "ident spectrum data/raw/free_response -o out/spectra",
+    "ident spectrum roll-1.xlsx --range 0:2 --low-pass 20 -o spectra",
+    "ident spectrum rig.csv --band 0.2:20 --json",
+)
+
+
 def command(
     paths: Annotated[
         list[Path], typer.Argument(metavar="FILE-or-SESSION...", help="A session folder, or one or more logs.")

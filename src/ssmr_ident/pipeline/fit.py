@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -123,6 +123,7 @@ def fit_session(
     coulomb: bool = True,
     parameters: ParameterSet | None = None,
     method: str | None = None,
+    progress: Callable[[str, int, int], None] | None = None,
 ) -> SessionFit:
     """Fit a session folder.
 
@@ -138,6 +139,8 @@ def fit_session(
     method : {"output-error", "modal"} or None
         How a robot's free responses are fitted; None takes output error wherever it can be had. Rigs and blocks have
         one method, which is output error already.
+    progress : callable, optional
+        Called with what is being done, how much of it is done, and of how much.
 
     Returns
     -------
@@ -150,22 +153,27 @@ def fit_session(
     """
     if method not in (None, *METHODS):
         raise InputError("--method", f"is {method!r}, expected {' or '.join(METHODS)}", did_you_mean(method, METHODS))
-    campaign = load(path)
+    step = progress or (lambda stage, done, total: None)
+    campaign = load(path, lambda done, total: step("reading logs", done, total))
     if parameters is not None:
         campaign = replace(campaign, parameters=parameters)
     chosen = fitted_measurements(campaign)
     if campaign.session.baseline == "sdof":
         from ssmr_ident.pipeline.fit_rig import fit_rig_session
 
+        step("fitting the rig", 0, 1)
         fit = fit_rig_session(campaign, chosen, coulomb)
+        step("fitting the rig", 1, 1)
     elif campaign.session.baseline == "drag":
         from ssmr_ident.pipeline.fit_drag import fit_drag_session
 
+        step("fitting the block", 0, 1)
         fit = fit_drag_session(campaign, chosen)
+        step("fitting the block", 1, 1)
     else:
         from ssmr_ident.pipeline.fit_robot import fit_robot_session
 
-        fit = fit_robot_session(campaign, chosen, method, seed)
+        fit = fit_robot_session(campaign, chosen, method, seed, step)
     return _with_provenance(fit, campaign, chosen, seed, {"coulomb": coulomb, "method": method or "best"})
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -47,7 +48,11 @@ MOST_MODES = 3
 
 
 def fit_robot_session(
-    campaign: Campaign, chosen: tuple[Measurement, ...], method: str | None = None, seed: int = 0
+    campaign: Campaign,
+    chosen: tuple[Measurement, ...],
+    method: str | None = None,
+    seed: int = 0,
+    step: Callable[[str, int, int], None] = lambda stage, done, total: None,
 ) -> SessionFit:
     """Fit a robot (``rigid6``) or the thesis' pure rotations (``decoupled``).
 
@@ -60,6 +65,8 @@ def fit_robot_session(
         there are accelerations and the baseline has a simulator.
     seed : int
         Of the random starts.
+    step : callable
+        Called with what is being done, how much of it is done, and of how much.
 
     Raises
     ------
@@ -77,7 +84,8 @@ def fit_robot_session(
     expected = predicted_modes(builder({}), decoupled=False)
     contacts = campaign.parameters["contact_points_m"]
     gathered = Gathered(shift_std=0.0 if contacts.fixed else contacts.std or 0.0)
-    for measurement in chosen:
+    for index, measurement in enumerate(chosen):
+        step("each recording by itself", index, len(chosen))
         experiment = measurement.entry.experiment
         if experiment == "free_response":
             _decay(measurement, expected, gathered)
@@ -90,6 +98,8 @@ def fit_robot_session(
         else:
             gathered.lines[measurement.name] = (f"{experiment}: not fitted here, its parameters keep their prior",)
             gathered.results[measurement.name] = {"experiment": experiment, "fitted": False}
+    step("each recording by itself", len(chosen), len(chosen))
+    step("all recordings together", 0, 1)
     gathered.findings += _structure_left(gathered.results)
     gathered.findings += stick_slip_findings(gathered)
     for floor, levels in gathered.slipping.items():
@@ -111,6 +121,7 @@ def fit_robot_session(
     if method != "modal" and not decoupled and gathered.modes:
         body = fit_samples(campaign, chosen, unknowns, gathered, posterior, seed)
         posterior = posterior if body is None else body.posterior
+    step("all recordings together", 1, 1)
     fitted = updated(campaign.parameters, posterior)
     gathered.findings += floor_findings(posterior, gathered)
     if gathered.rope:
