@@ -39,6 +39,9 @@ class Robot:
         Of eq (6.1).
     cable_stiffness, cable_damping : float [N/m], [N s/m]
     accelerometer : Accelerometer
+    sliding_speed : float [m/s]
+        Over which friction falls from mu_static to mu_kinetic while a contact slides along both axes together;
+        0 keeps the thesis' relay, axis by axis.
     """
 
     mass: float
@@ -56,6 +59,7 @@ class Robot:
     cable_stiffness: float
     cable_damping: float
     accelerometer: Accelerometer
+    sliding_speed: float = 0.0
 
     @property
     def height(self) -> float:
@@ -121,6 +125,7 @@ def robot_from_parameters(parameters: ParameterSet) -> Robot:
         # thesis section 4: D_cable = 4 sqrt(m K_cable), so that the steel cable does not ring
         cable_damping=parameters.number("cable.damping_N_s_m", 4.0 * float(np.sqrt(mass * cable))),
         accelerometer=accelerometer_from_parameters(parameters),
+        sliding_speed=parameters.number("tire.sliding_speed_m_s", 0.0),
     )
 
 

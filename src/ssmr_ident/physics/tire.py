@@ -1,6 +1,8 @@
-"""Grip of one tire: the relay of eq (6.4) under the slip-dependent limits of (4.10)-(4.12)."""
+"""Grip of one tire: the relay of eq (6.4) axis by axis, or sliding of both axes together, under (4.10)-(4.12)."""
 
 from __future__ import annotations
+
+import math
 
 from ssmr_ident.core.kernel import kernel
 
@@ -82,3 +84,74 @@ def contact_force(deflection, sliding, velocity, hub, beside, stiffness, damping
     if direction * velocity > direction * landing:
         velocity = landing
     return True, velocity, damping * velocity - force
+
+
+@kernel
+def weakened(mu_static, mu_kinetic, speed, width):
+    """mu_k + (mu_s - mu_k)·exp(-(u/v_s)²); speed u and width v_s : float [m/s]."""
+    ratio = speed / width
+    return mu_kinetic + (mu_static - mu_kinetic) * math.exp(-ratio * ratio)
+
+
+@kernel
+def combined_share(rim_speed, slip_x, slip_y, lambda_max):
+    """(4.10)-(4.12) for both axes as one: min(|slip|/(lambda_max·|r·omega|), 1), and 1 for a wheel at rest.
+
+    For small slips mu_ix and mu_iy are the two components of this vector; only where the thesis cuts each of them at 1
+    its length is cut instead, so that sliding has no preferred axes.
+    """
+    limit = abs(rim_speed) * lambda_max
+    if limit < 1e-9:
+        return 1.0
+    return min(math.sqrt(slip_x * slip_x + slip_y * slip_y) / limit, 1.0)
+
+
+@kernel
+def sliding_force(deflection, velocity, slip, beside, stiffness, damping, mass, limit, step):
+    """Tire force of a contact that slides against the direction in which it moves over the floor.
+
+    The contact point obeys m_t dv/dt = K·s + D·(slip - v) - limit·v/|v|, and stands still while the carcass does not
+    exceed ``limit``. v is that in the middle of the coming step, the deflection's change over half of it taken
+    implicitly, so that a light contact on a stiff carcass does not ask for a short step. |v| is the one unknown left:
+    the reciprocal length that Newton works on is a straight line where both axes are alike.
+
+    Parameters
+    ----------
+    deflection, velocity, slip, beside : (float, float)
+        Of the carcass [m], of the contact point [m/s], of the hub over the rolling contact [m/s], and forces of
+        whatever acts beside the carcass [N], each along x and y.
+    stiffness, damping : (float, float)
+        [N/m], [N s/m].
+    mass : float [kg]
+        m_t.
+    limit : float [N]
+        Friction at the speed of the last step.
+    step : float [s]
+
+    Returns
+    -------
+    (bool, float, float, float, float)
+        Sliding or not, contact velocity (x, y) [m/s], force on the hub (x, y) [N].
+    """
+    force_x = stiffness[0] * deflection[0] + damping[0] * slip[0] + beside[0]
+    force_y = stiffness[1] * deflection[1] + damping[1] * slip[1] + beside[1]
+    inertia, half = mass / step, 0.5 * step
+    push_x = force_x + half * stiffness[0] * slip[0] + inertia * velocity[0]
+    push_y = force_y + half * stiffness[1] * slip[1] + inertia * velocity[1]
+    length = math.sqrt(push_x * push_x + push_y * push_y)
+    if length <= limit:
+        return False, 0.0, 0.0, -force_x, -force_y
+    drag_x = damping[0] + inertia + half * stiffness[0]
+    drag_y = damping[1] + inertia + half * stiffness[1]
+    speed = (length - limit) / max(drag_x, drag_y)  # never above the root, so Newton comes from one side
+    for _ in range(20):
+        along_x, along_y = push_x / (drag_x * speed + limit), push_y / (drag_y * speed + limit)
+        square = along_x * along_x + along_y * along_y
+        slope = drag_x * along_x * along_x / (drag_x * speed + limit)
+        slope += drag_y * along_y * along_y / (drag_y * speed + limit)
+        change = (math.sqrt(square) - 1.0) * square / slope
+        speed += change
+        if abs(change) <= 1e-12 * speed:
+            break
+    sliding_x, sliding_y = push_x * speed / (drag_x * speed + limit), push_y * speed / (drag_y * speed + limit)
+    return True, sliding_x, sliding_y, damping[0] * sliding_x - force_x, damping[1] * sliding_y - force_y

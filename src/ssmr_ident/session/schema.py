@@ -49,6 +49,9 @@ KEYS: dict[str, Key] = {
     "tire.radius_m": Key("m", "wheel radius", 0.0),
     "tire.mu_static": Key("1", "friction at which a sticking contact lets go", 0.0),
     "tire.mu_kinetic": Key("1", "friction at which a sliding contact sticks again", 0.0),
+    "tire.sliding_speed_m_s": Key(
+        "m/s", "sliding speed over which friction falls from mu_static to mu_kinetic, both axes together; 0: relay", 0.0
+    ),
     "tire.lambda_max": Key("1", "longitudinal slip at which the grip is used up (eq 4.10-4.12)", 0.0),
     "motor.gain_1_s": Key("1/s", "velocity controller: d(omega)/dt = gain (omega_ref - omega), eq 6.1", 0.0),
     "belt.stiffness_N_m": Key("N/m", "one drive belt, seen at the wheel's rim", 0.0),
@@ -63,6 +66,8 @@ KEYS: dict[str, Key] = {
     "accelerometer.polarity.x": Key("1", "+1 or -1"),
     "accelerometer.polarity.y": Key("1", "+1 or -1"),
     "accelerometer.polarity.z": Key("1", "+1 or -1: at rest a z-up accelerometer reads +g"),
+    "floor.height_m": Key("m", "rms height of the floor's fine unevenness, the calibration floor included", 0.0),
+    "floor.length_m": Key("m", "correlation length of the floor's fine unevenness", 0.0),
     "noise.white_m_s2": Key("m/s^2", "standard deviation per sample of the accelerometers", 0.0),
     "noise.hum_m_s2": Key("m/s^2", "amplitude of the mains line on the accelerometers", 0.0),
     "noise.load_N": Key("N", "standard deviation per sample of the load cell", 0.0),

@@ -5,7 +5,7 @@ from __future__ import annotations
 # Layout of the parameter vector; p_a, contact points, inverse inertia, inertia and gripping wheels follow the scalars.
 MASS, KX, KY, KZ, DX, DY, DZ, PATCH_MASS, RADIUS = range(9)
 MU_STATIC, MU_KINETIC, LAMBDA_MAX, SLIP_COUPLING, MOTOR_GAIN, GRAVITY_G, RELEASE_DRAG = range(9, 16)
-SENSOR, POINTS, INVERSE_INERTIA, INERTIA, GRIPPING, PARAMETERS = 16, 19, 31, 40, 49, 53
+SENSOR, POINTS, INVERSE_INERTIA, INERTIA, GRIPPING, SLIDING_SPEED, PARAMETERS = 16, 19, 31, 40, 49, 53, 54
 
 # x y z roll pitch yaw | u v w p q r | left right | carcass deflections (x, y) of each wheel | sway and its rate (x, y)
 START = 26

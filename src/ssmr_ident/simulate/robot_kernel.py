@@ -37,7 +37,7 @@ from ssmr_ident.physics.slots import (
     ROLLING,
     STRIBECK_SPEED,
 )
-from ssmr_ident.physics.tire import contact_force, grip_shares
+from ssmr_ident.physics.tire import combined_share, contact_force, grip_shares, sliding_force, weakened
 from ssmr_ident.simulate.floor import contact_speed, floor_height, rough_height
 from ssmr_ident.simulate.layout import (
     DX,
@@ -60,6 +60,7 @@ from ssmr_ident.simulate.layout import (
     RADIUS,
     RELEASE_DRAG,
     SENSOR,
+    SLIDING_SPEED,
     SLIP_COUPLING,
 )  # fmt: skip
 from ssmr_ident.simulate.mast import accelerate_with_mast
@@ -122,6 +123,7 @@ def run(
     kx, ky, kz, dx, dy, dz = p[KX], p[KY], p[KZ], p[DX], p[DY], p[DZ]
     patch, radius, lambda_max, gain = p[PATCH_MASS], p[RADIUS], p[LAMBDA_MAX], p[MOTOR_GAIN]
     coupling, drag_share, nominal_load = p[SLIP_COUPLING], p[RELEASE_DRAG], 0.25 * p[MASS] * p[GRAVITY_G]
+    sliding_speed, together = p[SLIDING_SPEED], p[SLIDING_SPEED] > 0.0
     inv, tensor = p[INVERSE_INERTIA : INVERSE_INERTIA + 9], p[INERTIA : INERTIA + 9]
     beside = (
         e[_CUBIC] != 0.0 or e[_QUADRATIC] != 0.0 or e[_FRICTION] != 0.0 or e[_ALPHA] != 1.0
@@ -216,7 +218,11 @@ def run(
                 slip[i, 0] -= belt_rate[side]
             share_x, share_y = 1.0, 1.0
             if coupling != 0.0:
-                share_x, share_y = grip_shares(rim, slip[i, 0], hub_y, lambda_max)
+                if together:
+                    share_x = combined_share(rim, slip[i, 0], hub_y, lambda_max)
+                    share_y = share_x
+                else:
+                    share_x, share_y = grip_shares(rim, slip[i, 0], hub_y, lambda_max)
                 share_x, share_y = 1.0 - coupling * (1.0 - share_x), 1.0 - coupling * (1.0 - share_y)
             mu_s, mu_k = p[MU_STATIC], p[MU_KINETIC]
             if load_law:
@@ -225,7 +231,12 @@ def run(
                     _load_law(mu_k, weight, nominal_load, e[LOAD_EXPONENT]),
                 )
             release = drag_share
-            if falling:  # friction over speed takes the place of the relay's lower limit, and acts while sliding
+            if together:
+                speed = contact_speed(contact[i, 0], contact[i, 1])
+                mu_s = weakened(mu_s, mu_k, speed, sliding_speed)
+                if falling:
+                    mu_s = _stribeck(mu_s, e[KINETIC_SHARE], speed, e[STRIBECK_SPEED])
+            elif falling:  # friction over speed takes the place of the relay's lower limit, and acts while sliding
                 speed = contact_speed(contact[i, 0], contact[i, 1])
                 mu_k, release = _stribeck(mu_s, e[KINETIC_SHARE], speed, e[STRIBECK_SPEED]), 1.0
             beside_x, beside_y = 0.0, 0.0
@@ -235,16 +246,24 @@ def run(
                 beside_x = element_force(deflection[i, 0], rate_x, kept, kx, kx / ky, share_x_gap, True, law)
                 kept = hidden[3 * i + 1, 0], hidden[3 * i + 1, 1], hidden[3 * i + 1, 2]
                 beside_y = element_force(deflection[i, 1], rate_y, kept, ky, 1.0, 1.0, True, law)
-            limit, grip = mu_s * share_x * weight, mu_k * share_x * weight
-            sliding[i, 0], contact[i, 0], force_x = contact_force(
-                deflection[i, 0], sliding[i, 0], contact[i, 0], slip[i, 0], beside_x, kx, dx, patch,
-                limit, grip, release * grip, step,
-            )  # fmt: skip
-            limit, grip = mu_s * share_y * weight, mu_k * share_y * weight
-            sliding[i, 1], contact[i, 1], force_y = contact_force(
-                deflection[i, 1], sliding[i, 1], contact[i, 1], hub_y, beside_y, ky, dy, patch,
-                limit, grip, release * grip, step,
-            )  # fmt: skip
+            if together:
+                slides, contact_x, contact_y, force_x, force_y = sliding_force(
+                    (deflection[i, 0], deflection[i, 1]), (contact[i, 0], contact[i, 1]), (slip[i, 0], hub_y),
+                    (beside_x, beside_y), (kx, ky), (dx, dy), patch, mu_s * share_x * weight, step,
+                )  # fmt: skip
+                sliding[i, 0] = sliding[i, 1] = slides
+                contact[i, 0], contact[i, 1] = contact_x, contact_y
+            else:
+                limit, grip = mu_s * share_x * weight, mu_k * share_x * weight
+                sliding[i, 0], contact[i, 0], force_x = contact_force(
+                    deflection[i, 0], sliding[i, 0], contact[i, 0], slip[i, 0], beside_x, kx, dx, patch,
+                    limit, grip, release * grip, step,
+                )  # fmt: skip
+                limit, grip = mu_s * share_y * weight, mu_k * share_y * weight
+                sliding[i, 1], contact[i, 1], force_y = contact_force(
+                    deflection[i, 1], sliding[i, 1], contact[i, 1], hub_y, beside_y, ky, dy, patch,
+                    limit, grip, release * grip, step,
+                )  # fmt: skip
             if sliding[i, 0] or sliding[i, 1]:
                 any_sliding += 1.0
             if stretching:

@@ -162,6 +162,7 @@ def pack_robot(robot: Robot, scenario: Scenario, release_drag: float = 0.0) -> n
     p[k.INVERSE_INERTIA : k.INVERSE_INERTIA + 9] = np.linalg.inv(robot.inertia).ravel()
     p[k.INERTIA : k.INERTIA + 9] = robot.inertia.ravel()
     p[k.GRIPPING : k.GRIPPING + 4] = [float(i in scenario.wheels_gripping) for i in (1, 2, 3, 4)]
+    p[k.SLIDING_SPEED] = robot.sliding_speed
     return p
 
 
