@@ -12,7 +12,7 @@ from ssmr_ident.compare.outcome import Prediction
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.identify.release import find_release
-from ssmr_ident.physics.linear import LinearRobot, accelerometer_rows, linear_robot, responses
+from ssmr_ident.physics.linear import LinearRobot, accelerometer_rows, linear_robot, pure_rotations, responses
 from ssmr_ident.physics.robot import GRAVITY, Robot, robot_from_parameters
 from ssmr_ident.physics.sensor import low_pass_coefficients
 from ssmr_ident.physics.slots import Effects, effect_values
@@ -58,7 +58,7 @@ def predict(parameters: ParameterSet, measurement: Measurement, decoupled: bool 
     rows = [AXES.index(name) for name in names]
     if decoupled and "translation_coupling" in effects:
         decoupled = False
-    model = _decoupled(linear_robot(robot), robot) if decoupled else linear_robot(robot)
+    model = pure_rotations(robot) if decoupled else linear_robot(robot)
     jacobian = _jacobian(model, robot, time - time[0], even.sample_rate, rows)
     if decoupled:
         jacobian[:, :, [0, 1, 2, 6, 7, 8]] = 0.0
@@ -217,22 +217,3 @@ def _jacobian(model: LinearRobot, robot: Robot, time: np.ndarray, sample_rate: f
     # the simulator's low-pass starts as if the first value had always been there
     settled = lfilter_zi(forward, feedback)[:, None, None] * course[:1]
     return lfilter(forward, feedback, course, axis=0, zi=settled)[0]
-
-
-def _decoupled(model: LinearRobot, robot: Robot) -> LinearRobot:
-    """Pure rotations about the CoM (5.3): no translation, no products of inertia, no coupling, no m g h."""
-    tire_k, tire_d, points = robot.stiffness, robot.damping, robot.contact_points
-    squares = (points**2).sum(axis=0)
-    stiffness, damping = (
-        np.diag([k[1] * squares[2] + k[2] * squares[1], k[0] * squares[2] + k[2] * squares[0],
-                 k[0] * squares[1] + k[1] * squares[0]])
-        for k in (tire_k, tire_d)
-    )  # fmt: skip
-    empty = np.zeros((3, 3))
-    locked = np.block([[np.eye(3) * 1e6, empty], [empty, empty]])  # holds the CoM in place
-    inertia = np.diag(np.diag(robot.inertia))
-    return LinearRobot(
-        np.block([[np.eye(3) * robot.mass, empty], [empty, inertia]]),
-        np.block([[empty, empty], [empty, damping]]),
-        locked + np.block([[empty, empty], [empty, stiffness]]),
-    )

@@ -33,14 +33,14 @@ def predict(campaign: Campaign, measurement: Measurement, parameters: ParameterS
     if baseline == "sdof" and experiment in ("forced", "free_response"):
         return forced.predict(parameters, measurement)
     if baseline == "drag" and experiment in ("wheel_drag", "pull"):
-        return pulled.predict_block(parameters, measurement)
+        return pulled.predict(parameters, measurement)
     if baseline in ("rigid6", "decoupled"):
         if experiment == "free_response":
             return decay.predict(parameters, measurement, decoupled=baseline == "decoupled")
         if experiment == "pull":
-            return pulled.predict_robot(parameters, measurement)
+            return pulled.predict(parameters, measurement)
         if experiment in ("wheel_drag", "vertical_compression"):
-            return pulled.predict_wheel(parameters, measurement)
+            return pulled.predict(parameters, measurement)
         if experiment in ("swivel", "straight"):
             return turning.predict(parameters, measurement)
     raise InputError(

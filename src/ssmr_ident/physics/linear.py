@@ -72,6 +72,23 @@ def linear_robot(robot: Robot) -> LinearRobot:
     return LinearRobot(mass, damping, stiffness)
 
 
+def pure_rotations(robot: Robot) -> LinearRobot:
+    """Rotations about a CoM that stays where it is (5.3): no products of inertia, no coupling, no m g h."""
+    squares = (robot.contact_points**2).sum(axis=0)
+    stiffness, damping = (
+        np.diag([k[1] * squares[2] + k[2] * squares[1], k[0] * squares[2] + k[2] * squares[0],
+                 k[0] * squares[1] + k[1] * squares[0]])
+        for k in (robot.stiffness, robot.damping)
+    )  # fmt: skip
+    empty = np.zeros((3, 3))
+    locked = np.block([[np.eye(3) * 1e6, empty], [empty, empty]])  # holds the CoM in place
+    return LinearRobot(
+        np.block([[np.eye(3) * robot.mass, empty], [empty, np.diag(np.diag(robot.inertia))]]),
+        np.block([[empty, empty], [empty, damping]]),
+        locked + np.block([[empty, empty], [empty, stiffness]]),
+    )
+
+
 def _cross(arm: np.ndarray) -> np.ndarray:
     """Matrix of the cross product: _cross(a) @ b = a × b."""
     return np.array([[0.0, -arm[2], arm[1]], [arm[2], 0.0, -arm[0]], [-arm[1], arm[0], 0.0]])

@@ -26,6 +26,7 @@ def simulate_rig(
     oversampling: int = 4,
     bandwidth_hz: float = math.inf,
     effects: Effects | None = None,
+    fine: bool = False,
 ) -> np.ndarray:
     """Motion of the rig under a sampled force.
 
@@ -46,6 +47,9 @@ def simulate_rig(
     bandwidth_hz : float
         Of the accelerometer, a second-order low-pass; it acts on the acceleration alone.
     effects : mapping of effect id to parameters
+    fine : bool
+        ``force`` has been made ``oversampling`` times finer already, ((n - 1)·oversampling + 1,): who runs one force
+        many times need not interpolate it every time.
 
     Returns
     -------
@@ -59,7 +63,7 @@ def simulate_rig(
     InputError
         An unknown effect or parameter, or one that no rig has.
     """
-    n = len(force)
+    n = (len(force) - 1) // oversampling + 1 if fine else len(force)
     active = checked(effects or {})
     for effect_id in active:
         if not CATALOGUE[effect_id].rig:
@@ -67,15 +71,15 @@ def simulate_rig(
             raise InputError(f"effects: {effect_id}", "does not act on a rig with one mass", f"Those that do: {known}")
     if "sensor_bandwidth" in active:
         bandwidth_hz = min(bandwidth_hz, active["sensor_bandwidth"]["bandwidth_hz"])
-    if math.isfinite(bandwidth_hz):  # the bilinear low-pass is true to 0.1 % in phase from here on
+    if math.isfinite(bandwidth_hz) and not fine:  # the bilinear low-pass is true to 0.1 % in phase from here on
         oversampling = max(oversampling, math.ceil(8.0 * bandwidth_hz / sample_rate))
-    fine = force if oversampling == 1 else band_limited(force, oversampling)
+    driving = force if fine or oversampling == 1 else band_limited(force, oversampling)
     step = 1.0 / (sample_rate * oversampling)
     out = np.empty((n, 3))
     e = effect_vector(active)
     beside = not np.array_equal(e, effect_vector({}))
     laws = (rig.mass, rig.damping, rig.stiffness, e, beside, low_pass_coefficients(bandwidth_hz, step))
-    _run(*_propagators(rig, step), *laws, fine, position, velocity, step, oversampling, out)
+    _run(*_propagators(rig, step), *laws, driving, position, velocity, step, oversampling, out)
     if not np.isfinite(out[-1]).all():
         row = int(np.flatnonzero(~np.isfinite(out).all(axis=1))[0])
         raise SimulationError(

@@ -1,0 +1,5 @@
+"""Recordings as inverse problems, one kind of experiment a file."""
+
+from ssmr_ident.identify.trials.trial import Trial
+
+__all__ = ["Trial"]

@@ -1,0 +1,169 @@
+"""A robot's free response as a trial: the state at the release is what differs from one release to the next."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from ssmr_ident.campaign import Measurement
+from ssmr_ident.core.errors import InputError, SimulationError
+from ssmr_ident.identify.body_response import body_response, sensor_gains
+from ssmr_ident.identify.free_decays import LARGEST_ORDER, BodyDecay, body_decay
+from ssmr_ident.identify.noise import fit_noise
+from ssmr_ident.identify.output_error import START_SCALES
+from ssmr_ident.identify.robot_map import RobotBuilder
+from ssmr_ident.identify.trials.pure_rotation import PureRotation, seen_axis
+from ssmr_ident.identify.trials.trial import Array, Trial, Values
+from ssmr_ident.physics.linear import COORDINATES
+from ssmr_ident.physics.robot import Robot
+from ssmr_ident.physics.slots import Effects
+from ssmr_ident.simulate.scenarios import Scenario
+from ssmr_ident.simulate.simulation import simulate
+
+AXES = ("ax", "ay", "az")
+SWAY = ("sway_x", "sway_y")
+STATES = (*COORDINATES, *(f"{name}_rate" for name in COORDINATES), *SWAY, *(f"{name}_rate" for name in SWAY))
+SCALES = np.concatenate([START_SCALES, [0.02, 0.02, 1.0, 1.0]])
+"""Standard deviations of the starting state, ten times what a push by hand gives; the last four are a mast's."""
+
+STEP = 2e-4
+"""Of the simulator [s]."""
+
+LOUD = 1.25
+"""Rms of a quarter of a second over the quiet tail's, above which a decay counts as not over yet: samples in which
+nothing moves tell nothing of the physics, and cost as much as the others."""
+
+LONGEST_QUIET = 0.35
+"""Share of a record's end from which the noise is taken."""
+
+
+def decay_trial(measurement: Measurement, builder: RobotBuilder, decoupled: bool = False) -> Trial:
+    """Prepare a free response.
+
+    Parameters
+    ----------
+    measurement : Measurement
+        With at least one of ax, ay, az.
+    builder : RobotBuilder
+        From values to a robot.
+    decoupled : bool
+        Pure rotations (5.3) in place of the six degrees of freedom, seen in the channel that (5.8) reads them from.
+
+    Raises
+    ------
+    InputError
+        No accelerations, or nothing that decays.
+    """
+    recording, sensor = measurement.recording, builder.nominal.accelerometer
+    wanted = (seen_axis(measurement),) if decoupled else AXES
+    names = tuple(name for name in wanted if name in recording and np.ptp(recording[name]) > 0)
+    if not names:
+        found = ", ".join(recording.names)
+        raise InputError(
+            recording.provenance.file,
+            f"needs {' or '.join(wanted)} that changes; found {found}",
+            "Map the columns by channels:",
+        )
+    channels = [(AXES.index(name), recording[name]) for name in names]
+    decay = body_decay(measurement.name, recording.time, channels, sensor.bandwidth_hz)
+    whole = decay.nuisances()
+    quiet = int((1.0 - LONGEST_QUIET) * len(decay.samples))
+    rest = decay.samples - whole @ np.linalg.lstsq(whole[quiet:], decay.samples[quiet:], rcond=None)[0]
+    noises = tuple(fit_noise(rest[quiet:, c], LARGEST_ORDER, whole.shape[1]) for c in range(len(names)))
+    kept = _loud_until(rest, quiet, decay.step)
+    decay = replace(decay, samples=decay.samples[:kept], noises=noises)
+    limit = 0.999 * sensor.range_m_s2
+    skip, length = _window(decay)
+    raw = decay.record.samples[skip:length].reshape(kept, decay.block, -1)
+    counts = np.all(np.abs(raw) < limit, axis=1)
+    model = PureRotation(names[0]) if decoupled else None
+
+    def simulated(values: Values, effects: Effects, nuisance: Array) -> Array:
+        course = _course(builder(values), effects, nuisance, decay, length)
+        return decay.averaged(course[:, list(decay.axes)])
+
+    def run(values: Values, effects: Effects, nuisance: Array) -> Array:
+        if model is None:
+            return simulated(values, effects, nuisance)
+        coupled = "translation_coupling" in effects
+        others = {name: effect for name, effect in effects.items() if name != "translation_coupling"}
+        if coupled:
+            return simulated(values, others, nuisance)
+        pure = decay.averaged(model.responses(builder(values), length, decay.record.step) @ nuisance[:12])
+        if not others:
+            return pure
+        # what an effect adds to the six degrees of freedom, added to the pure rotation
+        return pure + simulated(values, others, nuisance) - simulated(values, {}, nuisance)
+
+    def begin(values: Values, effects: Effects) -> Array:
+        robot = builder(values)
+        if model is None:
+            return _linear_start(trial, _columns(robot, decay))
+        whole = model.responses(robot, length, decay.record.step)[:, 0]
+        return _linear_start(trial, decay.averaged(whole)[:, None, :])
+
+    trial = Trial(
+        measurement.name,
+        "free_response",
+        names,
+        decay.record.start_s + decay.first + decay.step * np.arange(kept),
+        decay.samples,
+        noises,
+        whole[:kept] if whole.shape[1] else np.ones((kept, 1)),
+        run,
+        begin,
+        STATES,
+        SCALES,
+        None if counts.all() else counts,
+        {"clipped": float((~counts).sum())},
+    )
+    return trial
+
+
+def _window(decay: BodyDecay) -> tuple[int, int]:
+    """First and last sample of the record that the blocks are made of."""
+    skip = round((decay.first - (decay.block - 1) / 2 * decay.record.step) / decay.record.step)
+    return skip, skip + len(decay.samples) * decay.block
+
+
+def _loud_until(rest: Array, quiet: int, step: float) -> int:
+    """Blocks until the motion is over in all channels."""
+    width = max(4, round(0.25 / step))
+    count = len(rest)
+    size = np.std(rest[quiet:], axis=0) + 1e-300
+    rms = np.array([np.sqrt(np.mean(rest[i : i + width] ** 2, axis=0)) for i in range(0, count - width, width)])
+    loud = np.flatnonzero((rms > LOUD * size).any(axis=1))
+    last = (int(loud[-1]) + 2) * width if len(loud) else count
+    return max(min(count, last), min(count, round(0.5 / step)))
+
+
+def _course(robot: Robot, effects: Effects, nuisance: Array, decay: BodyDecay, length: int) -> Array:
+    state = nuisance * SCALES
+    names = (*COORDINATES, *SWAY)
+    offset = dict(zip(names, map(float, (*state[:6], *state[12:14])), strict=True))
+    velocity = dict(zip(names, map(float, (*state[6:12], *state[14:])), strict=True))
+    scenario = Scenario("free_response", length * decay.record.step, offset=offset, velocity=velocity)
+    try:
+        return simulate(robot, scenario, 1.0 / decay.record.step, step=STEP, effects=effects).values
+    except SimulationError:
+        return np.full((length, 3), math.nan)
+
+
+def _columns(robot: Robot, decay: BodyDecay) -> Array:
+    """Small motions on the block grid over the scaled starting state, (n, c, 12)."""
+    response = body_response(robot)
+    times = decay.first + decay.step * np.arange(len(decay.samples))
+    bandwidth = robot.accelerometer.bandwidth_hz
+    gains = sensor_gains(response.poles, bandwidth, decay.record.step) * decay.averaging(response.poles)
+    waves = response.waves(times)
+    weights = response.weights(np.broadcast_to(gains, (len(decay.axes), len(gains))), decay.axes)
+    return np.stack([waves @ weight for weight in weights], axis=1) * START_SCALES
+
+
+def _linear_start(trial: Trial, columns: Array) -> Array:
+    design = trial.whitened(columns)
+    gram = design.T @ design + np.eye(design.shape[1])
+    start = np.linalg.solve(gram, design.T @ trial.white_target)
+    return np.concatenate([start, np.zeros(len(SCALES) - len(start))])

@@ -1,0 +1,171 @@
+"""A rig under a measured force, or let go, as a trial: start, zero of the force and gain of a second sensor vary."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ssmr_ident.campaign import MOTIONS, Measurement
+from ssmr_ident.core.errors import InputError, SimulationError
+from ssmr_ident.core.parameter import ParameterSet
+from ssmr_ident.identify.decay_record import spread
+from ssmr_ident.identify.noise import AutoregressiveNoise
+from ssmr_ident.identify.trials.trial import Array, Trial, Values
+from ssmr_ident.physics.rig import RIG_KEYS, Rig, rig_from_parameters
+from ssmr_ident.physics.slots import Effects
+from ssmr_ident.signals.grid import even_samples
+from ssmr_ident.simulate.rig import band_limited, simulate_rig
+
+COLUMN = {"position": 0, "angle": 0, "velocity": 1, "angular_rate": 1, "acceleration": 2, "acceleration_2": 2}
+INPUTS = ("force", "torque")
+
+LOWEST_RATE_HZ, RATE_PER_FREQUENCY = 250.0, 12.0
+"""Block averages keep at least this rate, and this many blocks in a period of the rig."""
+
+OVERSAMPLING = 4
+
+FREQUENCY_REACH = 0.5
+"""Share by which a rig's natural frequency may lie above the file's and still be sampled well."""
+
+
+@dataclass(frozen=True)
+class RigBuilder:
+    """From values to a rig."""
+
+    nominal: Rig
+
+    @staticmethod
+    def of(parameters: ParameterSet) -> RigBuilder:
+        return RigBuilder(rig_from_parameters(parameters))
+
+    def __call__(self, values: Values) -> Rig:
+        rig = self.nominal
+        mass, damping, stiffness = (
+            values.get(key, default)
+            for key, default in zip(RIG_KEYS[rig.rotary], (rig.mass, rig.damping, rig.stiffness), strict=True)
+        )
+        return Rig(mass, damping, stiffness, rig.rotary)
+
+
+def forced_trial(measurement: Measurement, parameters: ParameterSet) -> Trial:
+    """Prepare a rig's recording.
+
+    Parameters
+    ----------
+    measurement : Measurement
+        With a motion, and a force or torque unless it swings freely.
+    parameters : ParameterSet
+
+    Raises
+    ------
+    InputError
+        No motion, or one that does not change.
+    """
+    builder = RigBuilder.of(parameters)
+    recording = measurement.recording
+    outputs = tuple(name for name in (*MOTIONS, "acceleration_2") if name in recording and np.ptp(recording[name]) > 0)
+    drive = next((name for name in INPUTS if name in recording), None)
+    if not outputs:
+        where, found = recording.provenance.file, ", ".join(recording.names)
+        raise InputError(where, f"needs a motion that changes; found {found}", "Map the columns by channels:")
+    wanted = (*outputs, drive) if drive else outputs
+    even = even_samples(recording.time, np.column_stack([recording[name] for name in wanted]))
+    measured, rate = even.samples[:, : len(outputs)], even.sample_rate
+    force = even.samples[:, -1] if drive else np.zeros(len(measured))
+    bandwidth = parameters.number("accelerometer.bandwidth_hz", math.inf)
+    if bandwidth >= 0.5 * rate:
+        # the force comes through a sensor and a converter of the same kind: what both delay alike cancels
+        bandwidth = math.inf
+    natural = math.sqrt(max(builder.nominal.stiffness, 0.0) / builder.nominal.mass) / (2.0 * math.pi)
+    needed = max(LOWEST_RATE_HZ, RATE_PER_FREQUENCY * (1.0 + FREQUENCY_REACH) * natural)
+    block = max(1, int(rate / needed))
+    count = len(measured) // block
+    slow = math.isfinite(bandwidth)
+    factor = max(OVERSAMPLING, math.ceil(8.0 * bandwidth / rate)) if slow else OVERSAMPLING
+    fine = band_limited(force, factor)
+    columns = [COLUMN[name] for name in outputs]
+    second = outputs.index("acceleration_2") if "acceleration_2" in outputs and len(outputs) > 1 else None
+    nuisances = ("start_position", "start_velocity", *(("force_zero",) if drive else ()))
+    nuisances += ("gain_2",) if second is not None else ()
+    scales = _scales(builder.nominal, measured, outputs, force, rate)[: 3 if drive else 2]
+    scales = np.append(scales, 1.0) if second is not None else scales
+    free = not drive
+
+    def averaged(signal: Array) -> Array:
+        return signal[: count * block].reshape(count, block, -1).mean(axis=1)
+
+    def run(values: Values, effects: Effects, nuisance: Array) -> Array:
+        state = nuisance * scales
+        rig = builder(values)
+        try:
+            motion = simulate_rig(
+                rig,
+                fine if free else fine + state[2],
+                rate,
+                float(state[0]),
+                float(state[1]),
+                oversampling=factor,
+                bandwidth_hz=values.get("accelerometer.bandwidth_hz", bandwidth) if slow else math.inf,
+                effects=effects,
+                fine=True,
+            )[:, columns]
+        except SimulationError:
+            return np.full((count, len(columns)), math.nan)
+        if second is not None:
+            motion[:, second] *= state[-1]
+        return averaged(motion)
+
+    target = averaged(measured)
+    noises = tuple(AutoregressiveNoise(np.ones(1), spread(target[:, c])) for c in range(len(outputs)))
+
+    def begin(values: Values, effects: Effects) -> Array:
+        return linear_start(trial, lambda nuisance: run(values, {}, nuisance), second)
+
+    trial = Trial(
+        measurement.name,
+        measurement.entry.experiment,
+        outputs,
+        even.start + (np.arange(count) + 0.5 * (block - 1) / block) * block / rate,
+        target,
+        noises,
+        np.ones((count, 1)),
+        run,
+        begin,
+        nuisances,
+        scales,
+    )
+    return trial
+
+
+def linear_start(trial: Trial, run, second: int | None = None) -> Array:  # type: ignore[no-untyped-def]
+    """Nuisances that enter linearly, by least squares with their priors."""
+    size = len(trial.scales)
+    base = np.zeros(size)
+    if second is not None:
+        base[-1] = 1.0
+    centre = run(base)
+    columns = []
+    for index in range(size - (second is not None)):
+        moved = base.copy()
+        moved[index] += 1.0
+        columns.append(run(moved) - centre)
+    design = trial.whitened(np.stack(columns, axis=-1))
+    # a channel in metres and one in m/s^2 count by their own noise, which differences of samples only guess at
+    rest = trial.white_target - trial.whitened(centre)
+    weight = 1.0 / max(float(np.std(trial.white_target)), 1e-300)
+    design, rest = design * weight, rest * weight
+    found = np.linalg.solve(design.T @ design + 1e-6 * np.eye(design.shape[1]), design.T @ rest)
+    base[: len(found)] += found
+    return base
+
+
+def _scales(rig: Rig, measured: Array, outputs: tuple[str, ...], force: Array, rate: float) -> Array:
+    """Prior standard deviations of start and force zero: the size of the recorded motion and force themselves."""
+    omega = math.sqrt(rig.stiffness / rig.mass) if rig.stiffness > 0 else 2.0 * math.pi / (len(measured) / rate)
+    column = COLUMN[outputs[0]]
+    size = float(np.std(measured[:, 0])) + abs(float(measured[0, 0])) * (column == 0)
+    position = size / omega**column
+    zero = max(float(np.std(force)), 1e-12)
+    return np.array([2.0 * position, 2.0 * position * omega, zero])

@@ -1,0 +1,166 @@
+"""Pulls and bench tests as trials: the slack before the cable tightens varies, and the load cell's zero."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from scipy.optimize import minimize_scalar
+
+from ssmr_ident.campaign import Measurement
+from ssmr_ident.core.errors import InputError, SimulationError
+from ssmr_ident.core.parameter import ParameterSet
+from ssmr_ident.identify.decay_record import spread
+from ssmr_ident.identify.noise import AutoregressiveNoise
+from ssmr_ident.identify.robot_map import RobotBuilder
+from ssmr_ident.identify.trials.trial import Array, Trial, Values
+from ssmr_ident.physics.rig import Block, block_from_parameters
+from ssmr_ident.physics.robot import Robot
+from ssmr_ident.physics.slots import Effects
+from ssmr_ident.session import Entry
+from ssmr_ident.signals.grid import even_samples
+from ssmr_ident.simulate.bench import compress_wheel, drag_wheel, pull_block
+from ssmr_ident.simulate.scenarios import Scenario, cable_properties, fixture_needed
+from ssmr_ident.simulate.simulation import simulate
+
+STEADY = 0.005
+"""Share of the travel by which a head at constant speed may be off a straight line."""
+
+Force = Callable[[Values, Effects, Array, float], Array]
+"""``force(values, effects, head, step)``: what the load cell reads, (n,) [N]."""
+
+
+def pull_trial(measurement: Measurement, parameters: ParameterSet) -> Trial:
+    """Prepare a pull of the robot or a block, a drag of one wheel, or a compression.
+
+    Parameters
+    ----------
+    measurement : Measurement
+        With a force, and a position or a constant speed.
+    parameters : ParameterSet
+
+    Raises
+    ------
+    InputError
+        Neither a position nor a speed.
+    """
+    force = force_model(measurement.entry, parameters)
+    measured, travel, step, start = travelled(measurement)
+    elapsed = step * np.arange(len(travel))
+    speed = float(np.polyfit(elapsed, travel, 1)[0])
+    steady = bool(np.abs(travel - speed * elapsed).max() < STEADY * travel.max())
+    size = float(travel.max())
+
+    def simulated(values: Values, effects: Effects, slack: float) -> Array:
+        try:
+            return force(values, effects, np.maximum(travel - slack, 0.0), step)
+        except SimulationError:
+            return np.full(len(travel), np.nan)
+
+    def run(values: Values, effects: Effects, nuisance: Array) -> Array:
+        return simulated(values, effects, float(np.clip(nuisance[0], 0.0, 0.5)) * size)[:, None]
+
+    def begin(values: Values, effects: Effects) -> Array:
+        slack = find_slack(measured, travel, step, lambda slack: simulated(values, effects, slack), steady)
+        return np.array([slack / size])
+
+    return Trial(
+        measurement.name,
+        measurement.entry.experiment,
+        ("force",),
+        start + elapsed,
+        measured[:, None],
+        (AutoregressiveNoise(np.ones(1), spread(measured)),),
+        np.ones((len(measured), 1)),
+        run,
+        begin,
+        ("slack",),
+        np.ones(1),
+        facts={"travel_m": size},
+    )
+
+
+def travelled(measurement: Measurement) -> tuple[Array, Array, float, float]:
+    """Force [N], travel of the head from its start [m], step and start of the grid [s]."""
+    recording, entry = measurement.recording, measurement.entry
+    if "position" in recording:
+        even = even_samples(recording.time, np.column_stack([recording["force"], recording["position"]]))
+        travel = even.samples[:, 1] - even.samples[0, 1]
+        if abs(travel.min()) > abs(travel.max()):
+            travel = -travel
+    elif entry.speed_mm_s:
+        even = even_samples(recording.time, recording["force"][:, None])
+        travel = entry.speed_mm_s * 1e-3 * (even.time - even.time[0])
+    else:
+        raise InputError(recording.provenance.file, "has no position, and session.yaml no speed_mm_s", "Give one")
+    return even.samples[:, 0], travel, 1.0 / even.sample_rate, even.start
+
+
+def force_model(entry: Entry, parameters: ParameterSet) -> Force:
+    """The simulator of an entry's experiment."""
+    if "tire.stiffness_y_N_m" not in parameters:
+        block = block_from_parameters(parameters)
+        return lambda values, effects, head, step: pull_block(_block(block, values), head, step, effects)
+    builder = RobotBuilder.of(parameters)
+    if entry.experiment == "vertical_compression":
+        return lambda values, effects, head, step: compress_wheel(builder(values), head, step, effects=effects)
+    if entry.experiment == "wheel_drag":
+        free = entry.free_normal
+        return lambda values, effects, head, step: drag_wheel(builder(values), head, step, free, effects)
+    return lambda values, effects, head, step: _pulled(builder(values), entry, head, step, effects)
+
+
+def _pulled(robot: Robot, entry: Entry, head: Array, step: float, effects: Effects) -> Array:
+    stiffness, damping = cable_properties(entry.cable)
+    rate = entry.wheel_rate_rad_s or 0.0
+    scenario = Scenario(
+        "pull",
+        len(head) * step,
+        head=head,
+        head_step=step,
+        direction=entry.direction or "lateral",
+        height=0.05 if entry.height_m is None else entry.height_m,
+        wheels_gripping=entry.wheels_gripping,
+        cable_stiffness=stiffness,
+        cable_damping=damping,
+        wheel_rates=np.full((1, 2), rate),
+        held=fixture_needed(entry.wheels_gripping, rate),
+    )
+    return simulate(robot, scenario, 1.0 / step, effects=effects)["force"]
+
+
+def _block(nominal: Block, values: Values) -> Block:
+    return Block(
+        values.get("mass_kg", nominal.mass),
+        values.get("mu_static", nominal.mu_static),
+        values.get("mu_kinetic", nominal.mu_kinetic),
+        values.get("cable.stiffness_N_m", nominal.cable_stiffness),
+    )
+
+
+def find_slack(force: Array, travel: Array, step: float, run_behind: Callable[[float], Array], steady: bool) -> float:
+    """Travel of the head before the cable tightens [m], by least squares with the load cell's zero eliminated.
+
+    Up to a third of the travel; a log that starts under load is told apart by the zero. A head that moves at constant
+    speed makes slack a delay, so one simulation serves for all; otherwise each slack is simulated.
+    """
+    elapsed = step * np.arange(len(travel))
+    speed = float(np.polyfit(elapsed, travel, 1)[0])
+    behind = delayed(run_behind(0.0), elapsed, speed) if steady else run_behind
+
+    def misfit(slack: float) -> float:
+        rest = force - behind(slack)
+        cost = float(np.sum((rest - rest.mean()) ** 2))
+        return cost if np.isfinite(cost) else np.inf
+
+    grid = np.linspace(0.0, travel.max() / 3.0, 400 if steady else 9)
+    costs = [misfit(slack) for slack in grid]
+    best = int(np.argmin(costs))
+    low, high = grid[max(best - 1, 0)], grid[min(best + 1, len(grid) - 1)]
+    refined = minimize_scalar(misfit, bounds=(low, high), method="bounded", options={"maxiter": 12})
+    return float(refined.x) if refined.fun < costs[best] else float(grid[best])
+
+
+def delayed(tight: Array, elapsed: Array, speed: float) -> Callable[[float], Array]:
+    """Force behind a slack, from the force without: nothing until the head has travelled it."""
+    return lambda slack: np.interp(elapsed - slack / speed, elapsed, tight, left=0.0)
