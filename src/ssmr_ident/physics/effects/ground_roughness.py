@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 
 from ssmr_ident.core.kernel import kernel
@@ -14,13 +16,18 @@ CELL = 0.004  # m; the floor repeats after about two metres
 
 def field(height: float, length: float, seed: float) -> np.ndarray:
     """A periodic random floor, (CELLS, CELLS) float [m], Gaussian with the given rms and correlation length [m]."""
-    random = np.random.default_rng(int(seed))
+    return height * _unit_field(length, int(seed))
+
+
+@lru_cache(maxsize=12)
+def _unit_field(length: float, seed: int) -> np.ndarray:
+    random = np.random.default_rng(seed)
     wave = 2.0 * np.pi * np.fft.fftfreq(CELLS, CELL)
     square = wave[:, None] ** 2 + wave[None, : CELLS // 2 + 1] ** 2
     shape = np.exp(-square * length**2 / 8.0)  # gives the correlation exp(-(r/length)²)
     shape[0, 0] = 0.0
     floor = np.fft.irfft2(np.fft.rfft2(random.standard_normal((CELLS, CELLS))) * shape, s=(CELLS, CELLS))
-    return floor * (height / floor.std())
+    return floor / floor.std()
 
 
 @kernel
