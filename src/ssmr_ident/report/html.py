@@ -2,37 +2,72 @@
 
 from __future__ import annotations
 
-import io
+import hashlib
+import os
 import re
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 from importlib import resources
+from itertools import count
 from pathlib import Path
 
 import jinja2
-from matplotlib import rc_context
+from markupsafe import Markup
 from matplotlib.figure import Figure
 
 from ssmr_ident import __version__
 from ssmr_ident.core.atomic import write_text
-from ssmr_ident.report.style import STYLE
+from ssmr_ident.report.svg import drawn, inline
+
+_BEGINS_WITH_NUMBER = re.compile(r"^\(?[−+-]?(\d|∞|$)|^–$")
+
+
+@dataclass(frozen=True)
+class Number:
+    """A cell that is sorted by ``value`` and reads as ``text``."""
+
+    text: str
+    value: float
+
+
+Cell = str | Number
 
 
 @dataclass(frozen=True)
 class Table:
-    """A table; the first column is text, the others are numbers as text."""
+    """A table; columns whose cells all begin with a number are set as numbers. Readers may sort by any column."""
 
     caption: str
     header: tuple[str, ...]
-    rows: tuple[tuple[str, ...], ...]
+    rows: tuple[tuple[Cell, ...], ...]
+
+    def numeric(self, column: int) -> bool:
+        """Whether a column is set as numbers."""
+        cells = [row[column] for row in self.rows]
+        return column > 0 and all(isinstance(c, Number) or bool(_BEGINS_WITH_NUMBER.match(c)) for c in cells)
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """One drawing as SVG text; ``alt`` says it in words, ``name`` is its file's where it is written beside the page."""
+
+    svg: str
+    alt: str
+    name: str = ""
 
 
 @dataclass(frozen=True)
 class Picture:
-    """A figure as SVG text with its caption and alternative text."""
+    """One or several drawings under one caption; side by side where there is room."""
 
-    svg: str
+    drawings: tuple[Drawing, ...]
     caption: str
-    alt: str
+    title: str = ""
+
+    @property
+    def wide(self) -> bool:
+        """Whether it is a single drawing too wide for a phone."""
+        return len(self.drawings) == 1 and float(self.drawings[0].svg.split('width="')[1].split("pt")[0]) > 400
 
 
 @dataclass(frozen=True)
@@ -47,8 +82,40 @@ class Section:
 
 
 @dataclass(frozen=True)
+class Fact:
+    """A number that belongs to the verdict: what it is, itself with its unit, and what stands beside it.
+
+    ``share`` (0 … 1) draws a bar below it; facts with bars are read against each other.
+    """
+
+    label: str
+    value: str
+    note: str = ""
+    share: float | None = None
+    tone: str = ""
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What stands first: a few words, one sentence, and the numbers it rests on.
+
+    ``tone`` is ``found``, ``clear`` or ``open``; ``equation`` is plain text.
+    """
+
+    label: str
+    tone: str
+    sentence: str
+    facts: tuple[Fact, ...] = ()
+    equation: str = ""
+    advice: str = ""
+
+
+@dataclass(frozen=True)
 class Page:
-    """A whole report; ``lead`` is what a reader needs who reads nothing else."""
+    """A whole report; ``verdict`` or ``lead`` is what a reader needs who reads nothing else.
+
+    ``files`` holds name and SHA-256 of what was read.
+    """
 
     title: str
     lead: tuple[str, ...]
@@ -56,23 +123,45 @@ class Page:
     command: str
     files: tuple[tuple[str, str], ...] = ()
     version: str = __version__
+    verdict: Verdict | None = None
+    seed: int | None = None
+    remarks: tuple[str, ...] = field(default=())
+
+
+def drawing(figure: Figure, alt: str, name: str = "") -> Drawing:
+    """A figure as a drawing."""
+    return Drawing(drawn(figure), alt, name)
 
 
 def picture(figure: Figure, caption: str, alt: str) -> Picture:
-    """A figure as inline SVG; ids are made unique so that several can stand on one page."""
-    buffer = io.StringIO()
-    with rc_context(STYLE):
-        figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": None})
-    svg = buffer.getvalue()
-    svg = svg[svg.index("<svg") :]
-    mark = re.sub(r"\W+", "", alt)[:40]
-    svg = re.sub(r'(\bid="|url\(#|href="#)', rf"\g<1>{mark}-", svg)
-    return Picture(svg, caption, alt)
+    """A single figure with its caption and alternative text."""
+    return Picture((drawing(figure, alt),), caption)
+
+
+def file_hashes(files: Sequence[Path]) -> tuple[tuple[str, str], ...]:
+    """Name below the folder that all files share, and SHA-256, of each file."""
+    if not files:
+        return ()
+    resolved = [Path(file).resolve() for file in files]
+    base = Path(os.path.commonpath([file.parent for file in resolved]))
+    return tuple(
+        (str(file.relative_to(base)), hashlib.sha256(file.read_bytes()).hexdigest()) for file in dict.fromkeys(resolved)
+    )
+
+
+def render_page(page: Page) -> str:
+    """The page as one HTML text: style, script and figures inside, nothing to load."""
+    folder = resources.files("ssmr_ident.report") / "templates"
+    environment = jinja2.Environment(
+        autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True
+    )
+    numbered = count(1)
+    environment.filters["inline"] = lambda d: Markup(inline(d.svg, f"d{next(numbered)}", d.alt))
+    inside = {name: Markup((folder / f"report.{name}").read_text(encoding="utf-8")) for name in ("css", "js")}
+    template = environment.from_string((folder / "report.html").read_text(encoding="utf-8"))
+    return template.render(page=page, **inside)
 
 
 def write_page(path: Path, page: Page) -> Path:
     """Render a page; the file appears whole or not at all."""
-    folder = resources.files("ssmr_ident.report") / "templates"
-    environment = jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True)
-    text = environment.from_string((folder / "report.html").read_text(encoding="utf-8")).render(page=page)
-    return write_text(path, text)
+    return write_text(path, render_page(page))

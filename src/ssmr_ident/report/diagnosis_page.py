@@ -1,0 +1,163 @@
+"""The page of a diagnosis: the verdict and its numbers first, then proof, place, explanations, what had hidden it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from ssmr_ident.core.atomic import write_text
+from ssmr_ident.diagnose.diagnosis import MISSING, NOTHING, UNIT, Diagnosis
+from ssmr_ident.report.diagnosis_pictures import after_name
+from ssmr_ident.report.diagnosis_sections import sections
+from ssmr_ident.report.figures_diagnosis import readable
+from ssmr_ident.report.html import Fact, Page, Verdict, file_hashes, render_page, write_page
+from ssmr_ident.report.numbers import alike, interval, number
+
+FIGURES = "figures"
+
+
+def write_report(diagnosis: Diagnosis, path: Path, command: str, seed: int, files: Sequence[Path]) -> Path:
+    """Write the page and, in a folder ``figures`` beside it, each of its drawings as SVG.
+
+    Parameters
+    ----------
+    diagnosis : Diagnosis
+    path : Path
+        Of the page.
+    command : str
+        The call that made it.
+    seed : int
+    files : sequence of Path
+        What was read; printed with its SHA-256.
+    """
+    page = diagnosis_page(diagnosis, command, seed, file_hashes(files))
+    folder = Path(path).parent / FIGURES
+    folder.mkdir(parents=True, exist_ok=True)
+    for section in page.sections:
+        for figure in section.figures:
+            for item in figure.drawings:
+                write_text(folder / f"{item.name}.svg", item.svg)
+    return write_page(path, page)
+
+
+def render_report(diagnosis: Diagnosis, command: str, seed: int, files: Sequence[Path] = ()) -> str:
+    """The page as one HTML text."""
+    return render_page(diagnosis_page(diagnosis, command, seed, file_hashes(files)))
+
+
+def diagnosis_page(
+    diagnosis: Diagnosis, command: str, seed: int | None = None, files: tuple[tuple[str, str], ...] = ()
+) -> Page:
+    """The page as a value.
+
+    Parameters
+    ----------
+    diagnosis : Diagnosis
+    command : str
+    seed : int or None
+    files : tuple of (str, str)
+        Name and SHA-256.
+    """
+    spent = diagnosis.evidence.seconds
+    remarks = (f"Time: {', '.join(f'{name} {number(value, 2)} s' for name, value in spent.items())}.",) if spent else ()
+    return Page(
+        f"Diagnosis of {diagnosis.session}",
+        (),
+        sections(diagnosis),
+        command,
+        files,
+        verdict=verdict(diagnosis),
+        seed=seed,
+        remarks=remarks,
+    )
+
+
+def verdict(diagnosis: Diagnosis) -> Verdict:
+    """What stands first."""
+    if diagnosis.verdict == MISSING:
+        names = " and ".join(_name(effect.id) for effect in diagnosis.effects)
+        label, tone = f"Missing physics: {names}", "found"
+        equation = ";  ".join(effect.equation for effect in diagnosis.effects)
+        facts = _found(diagnosis)
+    elif diagnosis.verdict == NOTHING:
+        label, tone, equation = "Nothing is missing", "clear", ""
+        facts = _clear(diagnosis)
+    else:
+        label, tone, equation = "Undetermined: something is missing, these recordings cannot say what", "open", ""
+        facts = _open(diagnosis)
+    advice = diagnosis.next_experiment if diagnosis.verdict != MISSING or _tied(diagnosis) else ""
+    return Verdict(label, tone, diagnosis.summary, facts, equation, advice)
+
+
+def _found(diagnosis: Diagnosis) -> tuple[Fact, ...]:
+    sure = [f"{_name(e.id)}: {number(100 * e.confidence)} %" for e in diagnosis.effects]
+    ties = sorted({_name(id) for e in diagnosis.effects for id in e.indistinguishable_from})
+    facts = [*_before_after(diagnosis)]
+    if sure:
+        one = len(sure) == 1
+        facts.append(
+            Fact(
+                "How sure of the name",
+                f"{number(100 * diagnosis.effects[0].confidence)} %" if one else "; ".join(sure),
+                f"fits as well: {', '.join(ties)}" if ties else "of the explanations tried",
+            )
+        )
+    return tuple(facts)
+
+
+def _clear(diagnosis: Diagnosis) -> tuple[Fact, ...]:
+    worth, unit = diagnosis.heldout, UNIT[diagnosis.metric]
+    tried = [t for t in diagnosis.tried if t.id != "baseline"]
+    largest = max(worth.before, worth.noise_floor)
+    left, floor = alike((worth.before, worth.noise_floor))
+    facts = [
+        Fact("Model, on held-out recordings", f"{left} {unit}", _spread(diagnosis), worth.before / largest),
+        Fact("Noise alone would leave", f"{floor} {unit}", "the noise floor", worth.noise_floor / largest),
+        Fact("Explanations tried", f"{len(tried)}", "none earns its place"),
+    ]
+    moved = max((abs(c.sigmas) for c in diagnosis.conflicts), default=None)
+    if moved is not None:
+        facts.append(Fact("Parameter moved farthest", f"{number(moved, 2)} std", "of what was known of it"))
+    return tuple(facts)
+
+
+def _open(diagnosis: Diagnosis) -> tuple[Fact, ...]:
+    candidates = [_name(e.id) for e in diagnosis.effects]
+    candidates += [_name(id) for e in diagnosis.effects for id in e.indistinguishable_from]
+    facts = list(_before_after(diagnosis))
+    if candidates:
+        facts.append(Fact("Still possible", str(len(set(candidates))), ", ".join(dict.fromkeys(candidates))))
+    return tuple(facts)
+
+
+def _before_after(diagnosis: Diagnosis) -> tuple[Fact, ...]:
+    worth, unit = diagnosis.heldout, UNIT[diagnosis.metric]
+    largest = max(worth.before, worth.after, worth.noise_floor)
+    before, after, floor = alike((worth.before, worth.after, worth.noise_floor))
+    gain = "one held-out recording gives no interval" if len(worth.recordings) == 1 else ""
+    if worth.improvement is not None:
+        gain = f"improved by {interval(*worth.improvement, unit)} (95 %)"
+    count = len(worth.recordings)
+    on = f"on {count} recording{'s' if count > 1 else ''} never fitted" if count else "on recordings never fitted"
+    facts = [Fact("Model before", f"{before} {unit}", on, worth.before / largest, "before")]
+    if name := after_name(diagnosis):
+        facts.append(Fact(name.capitalize(), f"{after} {unit}", gain, worth.after / largest, "after"))
+    facts.append(Fact("Noise alone would leave", f"{floor} {unit}", "the noise floor", worth.noise_floor / largest))
+    return tuple(facts)
+
+
+def _spread(diagnosis: Diagnosis) -> str:
+    """Range over held-out recordings."""
+    values = {o.recording: o.metric[0] for o in diagnosis.evidence.overlays if o.heldout}
+    if len(values) < 2:
+        return "distance from the recordings"
+    unit = UNIT[diagnosis.metric]
+    return f"{interval(min(values.values()), max(values.values()), unit)} over {len(values)} recordings"
+
+
+def _tied(diagnosis: Diagnosis) -> bool:
+    return any(effect.indistinguishable_from for effect in diagnosis.effects)
+
+
+def _name(id: str) -> str:
+    return "physics that is in no list" if id == "unlisted" else readable(id)
