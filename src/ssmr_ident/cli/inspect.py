@@ -62,11 +62,12 @@ def command(
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Only warnings and errors.")] = False,
 ) -> None:
     """What a log holds: reader, channels, units, rate, length, gaps, clipping, mains hum."""
-    from ssmr_ident.cli.inspect_log import logs_in, summary_of
+    from ssmr_ident.cli.inspect_log import summary_of
     from ssmr_ident.cli.inspect_save import save_choices
     from ssmr_ident.cli.inspect_screen import show
     from ssmr_ident.core.errors import InputError
     from ssmr_ident.readers import ReadOptions, read
+    from ssmr_ident.readers.folder import logs_in
 
     try:
         options = ReadOptions(

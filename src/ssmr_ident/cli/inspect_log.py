@@ -1,11 +1,9 @@
-"""Which logs ``ident inspect`` looks at, and what it says about one."""
+"""What ``ident inspect`` says about one recording."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
 from dataclasses import asdict, dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,20 +12,6 @@ from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.recording import Recording
 from ssmr_ident.readers.health import LogHealth, health_of
 from ssmr_ident.signals.clean import mains_line
-
-LOG_EXTENSIONS = {
-    ".xlsx",
-    ".xlsm",
-    ".lvm",
-    ".tdms",
-    ".csv",
-    ".txt",
-    ".dat",
-    ".asc",
-    ".tsv",
-    ".mtwdata",
-    ".mtxdata",
-}
 
 
 @dataclass(frozen=True)
@@ -93,30 +77,3 @@ def summary_of(recording: Recording, mains_hz: float) -> LogSummary:
         if math.isfinite(line.amplitude) and math.isfinite(line.amplitude_std):
             hum[channel.name] = (line.amplitude, line.amplitude_std)
     return LogSummary(recording, health_of(recording), mains_hz, hum)
-
-
-def logs_in(paths: Iterable[Path]) -> tuple[list[Path], list[InputError]]:
-    """Files as named, and the logs in folders that are named.
-
-    Returns
-    -------
-    files : list of Path
-    errors : list of InputError
-        Folders without logs.
-    """
-    files: list[Path] = []
-    errors: list[InputError] = []
-    for path in paths:
-        if not path.is_dir():
-            files.append(path)
-            continue
-        found = sorted(
-            entry
-            for entry in path.iterdir()
-            if entry.suffix.lower() in LOG_EXTENSIONS and not entry.name.startswith(("~$", ".")) and entry.is_file()
-        )
-        if not found:
-            kinds = ", ".join(sorted(LOG_EXTENSIONS))
-            errors.append(InputError(str(path), "is a folder without logs", f"Logs end in {kinds}."))
-        files += found
-    return files, errors

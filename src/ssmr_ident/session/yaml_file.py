@@ -13,6 +13,9 @@ from ssmr_ident.core.errors import InputError
 _SIZE_LIMIT = 4_000_000  # bytes; a hand-written file is a thousand times smaller
 
 
+_QUESTION = re.compile(r"^([^#]*:\s*TODO\s*(?:[,}][^#]*)?)(?:#(.*))?$")
+
+
 class _Loader(yaml.SafeLoader):
     """SafeLoader that refuses a key given twice and aliases (the road to exponential files)."""
 
@@ -48,14 +51,16 @@ def load_mapping(path: Path) -> dict[str, Any]:
     Raises
     ------
     InputError
-        The file is absent, too large, not YAML, or not a mapping.
+        The file is absent, too large, not YAML, not a mapping, or a line still says TODO.
     """
     if not path.is_file():
         raise InputError(str(path), "no such file", "Give the path of an existing YAML file")
     if path.stat().st_size > _SIZE_LIMIT:
         raise InputError(str(path), f"{path.stat().st_size} bytes is too large for a parameter or session file")
     try:
-        loader = _Loader(path.read_text(encoding="utf-8-sig"))
+        text = path.read_text(encoding="utf-8-sig")
+        _refuse_questions(path, text)
+        loader = _Loader(text)
         try:
             content = loader.get_single_data()
         finally:
@@ -71,3 +76,15 @@ def load_mapping(path: Path) -> dict[str, Any]:
     if not isinstance(content, dict):
         raise InputError(str(path), f"holds a {type(content).__name__}, expected a mapping of keys")
     return content
+
+
+def _refuse_questions(path: Path, text: str) -> None:
+    """A value that says TODO is a question which `ident new` left; the comment behind it is the question."""
+    for number, line in enumerate(text.splitlines(), start=1):
+        asked = _QUESTION.match(line)
+        if asked:
+            raise InputError(
+                f"{path}:{number}",
+                f"still says TODO: {line.partition('#')[0].strip(' -')}",
+                f"Fill in: {asked[2].strip()}" if asked[2] else "Fill this line in",
+            )

@@ -1,0 +1,78 @@
+"""What the name of a log suggests about how it was made. A name is a hint to be checked, never proof."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+FLOORS = ("carpet", "concrete", "tile", "tiles", "wood", "parquet", "asphalt", "gravel", "grass", "vinyl", "rubber")
+_EXPERIMENT = {
+    "free_response": "free release decay ring ringdown hammer tap",
+    "swivel": "swivel turn spin rotate",
+    "straight": "straight",
+    "pull": "pull tug tow",
+    "wheel_drag": "drag",
+    "vertical_compression": "compress compression press vertical",
+    "forced": "forced shaker sweep chirp noise sine prbs",
+}
+_OF_WORD = {word: experiment for experiment, words in _EXPERIMENT.items() for word in words.split()}
+_MOTION = {"roll": "roll", "pitch": "pitch", "yaw": "yaw"}
+_DIRECTION = {"lateral": "lateral", "lat": "lateral", "sideways": "lateral", "longitudinal": "longitudinal"}
+_DIRECTION |= {"long": "longitudinal", "lengthwise": "longitudinal", "forward": "longitudinal"}
+
+
+@dataclass(frozen=True)
+class NameHints:
+    """What words and numbers in a name say; None or empty for what they do not."""
+
+    experiment: str | None = None
+    motion: str | None = None
+    direction: str | None = None
+    floor: str | None = None
+    frame: str | None = None
+    cable: str | None = None
+    role: str | None = None
+    trial: int | None = None
+    speed_m_s: float | None = None
+    yaw_rate_deg_s: float | None = None
+    wheels: bool = False
+    spinning: bool = False
+
+
+def hints_of(stem: str) -> NameHints:
+    """Read a file's name without its ending.
+
+    >>> hints = hints_of("v0-w30-t20-frame-concrete")
+    >>> hints.yaw_rate_deg_s, hints.floor, hints.frame, hints.trial
+    (30.0, 'concrete', 'frame', None)
+    >>> hints_of("pull_lateral_rope_2").direction, hints_of("pull_lateral_rope_2").trial
+    ('lateral', 2)
+    """
+    words = [word for word in re.split(r"[^a-zA-Z0-9.+]+|(?<=[a-zA-Z])(?=\d+$)", stem.lower()) if word]
+    last = words[-1] if words else ""
+    rate, speed = (re.search(rf"(?:^|[-_ ]){letter}(-?\d+(?:\.\d+)?)(?=[-_ ]|$)", stem) for letter in "wv")
+    motion, direction = _first(words, _MOTION), _first(words, _DIRECTION)
+    experiment = _first(words, _OF_WORD) or ("free_response" if motion else "pull" if direction else None)
+    if experiment is None and rate is not None:
+        experiment = "swivel" if float(rate[1]) else "straight"
+    role = "calibration" if any(word.startswith("calib") for word in words) else None
+    if any(word.startswith(("heldout", "holdout")) for word in words):
+        role = "heldout"
+    return NameHints(
+        experiment=experiment,
+        motion=motion,
+        direction=direction,
+        floor=next((word for word in words if word in FLOORS), None),
+        frame=next((word for word in words if word in ("frame", "platform")), None),
+        cable=next((word for word in words if word in ("rope", "steel")), None),
+        role=role,
+        trial=int(last) if last.isdigit() and len(last) < 4 else None,
+        speed_m_s=float(speed[1]) if speed else None,
+        yaw_rate_deg_s=float(rate[1]) if rate else None,
+        wheels=any(word in ("wheel", "wheels") for word in words),
+        spinning="spinning" in words,
+    )
+
+
+def _first(words: list[str], known: dict[str, str]) -> str | None:
+    return next((known[word] for word in words if word in known), None)
