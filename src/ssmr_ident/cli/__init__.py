@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 import os
+import signal
 import sys
 from typing import Annotated, Any
 
@@ -56,6 +57,7 @@ for _verb in VERBS:
 
 def main() -> None:
     """Run ``ident``: exit 0 done, 2 the input or the call is wrong, 1 the tool failed, 130 stopped by the user."""
+    before = signal.signal(signal.SIGTERM, _stop)
     try:
         sys.exit(app(standalone_mode=False) or 0)
     except UsageError as error:
@@ -68,6 +70,13 @@ def main() -> None:
     except (typer.Abort, KeyboardInterrupt):
         print("ident: stopped; what was being written is not there", file=sys.stderr)
         sys.exit(130)
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
+def _stop(number: int, frame: Any) -> None:
+    """A polite kill ends like Ctrl-C: temporary files are taken away."""
+    raise KeyboardInterrupt
 
 
 def _usage(error: Any) -> tuple[str, str]:

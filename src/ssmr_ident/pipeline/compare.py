@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import csv
+import io
 from collections.abc import Callable
 from pathlib import Path
 
 from ssmr_ident.campaign import load
 from ssmr_ident.compare import Comparison, compare
+from ssmr_ident.core.atomic import write_text
 from ssmr_ident.report.overlay import overlay_figure
 from ssmr_ident.report.style import save
 from ssmr_ident.session import read_parameters
@@ -38,13 +40,14 @@ def compare_session(
 def write_comparison(result: Comparison, output: Path) -> None:
     """``compare.csv`` and one PNG per recording."""
     output.mkdir(parents=True, exist_ok=True)
-    with (output / "compare.csv").open("w", newline="", encoding="utf-8") as stream:
-        writer = csv.writer(stream)
-        writer.writerow(["file", "experiment", "metric", "channel", "value"])
-        for row in result.recordings:
-            writer.writerow([row.file, row.experiment, row.metric, "all", repr(row.value)])
-            for name, value in row.channels.items():
-                writer.writerow([row.file, row.experiment, row.metric, name, repr(value)])
+    stream = io.StringIO(newline="")
+    writer = csv.writer(stream)
+    writer.writerow(["file", "experiment", "metric", "channel", "value"])
+    for row in result.recordings:
+        writer.writerow([row.file, row.experiment, row.metric, "all", repr(row.value)])
+        for name, value in row.channels.items():
+            writer.writerow([row.file, row.experiment, row.metric, name, repr(value)])
+    write_text(output / "compare.csv", stream.getvalue())
     for row in result.recordings:
         figure = overlay_figure(row.prediction, f"{row.file}: {row.experiment.replace('_', ' ')}")
         save(figure, output / Path(row.file).stem)

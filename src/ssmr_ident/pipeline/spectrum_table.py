@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 import math
 import re
 from collections.abc import Iterable, Sequence
@@ -12,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from ssmr_ident.core.atomic import write_text
 from ssmr_ident.report.figures_speed import SpeedAverage, mean_and_spread
 from ssmr_ident.session import Entry
 from ssmr_ident.signals.analysis import ChannelAnalysis
@@ -134,11 +136,11 @@ def write_rows(path: Path, rows: Iterable[dict[str, Any]]) -> Path:
     """A CSV file; empty cells for what is not known, numbers to the last bit."""
     rows = list(rows)
     path.parent.mkdir(parents=True, exist_ok=True)
-    with path.open("w", newline="", encoding="utf-8") as stream:
-        writer = csv.DictWriter(stream, list(rows[0]))
-        writer.writeheader()
-        writer.writerows(rows)
-    return path
+    stream = io.StringIO(newline="")
+    writer = csv.DictWriter(stream, list(rows[0]))
+    writer.writeheader()
+    writer.writerows(rows)
+    return write_text(path, stream.getvalue())
 
 
 def speed_label(rows: Sequence[SpectrumRow]) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from pathlib import Path
 from typing import Any
 
@@ -9,6 +10,8 @@ import matplotlib as mpl
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+
+from ssmr_ident.core.atomic import write_bytes
 
 # Okabe & Ito (2008), "Color Universal Design": told apart with any common colour blindness, and in grey by order.
 INK = "#1a1a1a"
@@ -98,9 +101,16 @@ def axis_text(name: str, unit: str) -> str:
     return f"{quantity_text(name)} [{unit_text(unit)}]"
 
 
+class HouseFigure(Figure):
+    """A figure that a notebook shows without pyplot."""
+
+    def _repr_png_(self) -> bytes:
+        return drawn(self)
+
+
 def new_figure(width: float, height: float) -> Figure:
     """A figure of its own, outside pyplot's list of open ones. Width and height in inches."""
-    figure = Figure(figsize=(width, height), layout="constrained")
+    figure = HouseFigure(figsize=(width, height), layout="constrained")
     FigureCanvasAgg(figure)
     return figure
 
@@ -126,7 +136,13 @@ def save(figure: Figure, stem: Path, format: str = "png") -> Path:
     """
     path = stem.with_name(f"{stem.name}.{format}")
     path.parent.mkdir(parents=True, exist_ok=True)
+    return write_bytes(path, drawn(figure, format))
+
+
+def drawn(figure: Figure, format: str = "png") -> bytes:
+    """A figure as the bytes of a file."""
     undated: Any = {"png": {}, "svg": {"Date": None}, "pdf": {"CreationDate": None}}[format]
+    buffer = io.BytesIO()
     with mpl.rc_context(STYLE):
-        figure.savefig(path, format=format, metadata=undated)
-    return path
+        figure.savefig(buffer, format=format, metadata=undated)
+    return buffer.getvalue()
