@@ -29,23 +29,24 @@ def thinned(x: np.ndarray, y: np.ndarray, points: int = POINTS) -> tuple[np.ndar
     return x[order], y[order]
 
 
-def busiest_part(course: np.ndarray, difference: np.ndarray, cycles: int) -> slice:
-    """The stretch of at most ``cycles`` swings in which ``difference`` has most power; the whole where there are fewer.
+def busiest_part(course: np.ndarray, matter: np.ndarray, cycles: int) -> slice:
+    """The stretch of at most ``cycles`` swings in which ``matter`` has most power; the whole where there are fewer.
 
     Parameters
     ----------
     course : (n,) float
-        Its swings are counted, as half its changes of side about the mean.
-    difference : (n,) float
+        Its swings are counted at the mean frequency of its power: a long tail of noise adds next to none.
+    matter : (n,) float
     cycles : int
     """
     n = len(course)
-    side = np.signbit(course - course.mean())
-    swings = np.count_nonzero(side[1:] != side[:-1]) / 2
+    density = np.abs(np.fft.rfft(course - course.mean())) ** 2
+    total = float(density.sum())
+    swings = float(np.arange(len(density)) @ density) / total if total > 0 else 0.0
     if swings <= cycles:
         return slice(0, n)
     length = max(16, round(n * cycles / swings))
-    power = np.cumsum(np.concatenate([[0.0], difference**2]))
+    power = np.cumsum(np.concatenate([[0.0], matter**2]))
     gathered = power[length:] - power[:-length]
     first = int(np.argmax(gathered))
     return slice(first, first + length)

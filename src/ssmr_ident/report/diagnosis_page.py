@@ -59,7 +59,7 @@ def diagnosis_page(
         Name and SHA-256.
     """
     spent = diagnosis.evidence.seconds
-    remarks = (f"Time: {', '.join(f'{name} {number(value, 2)} s' for name, value in spent.items())}.",) if spent else ()
+    remarks = (("Time", ", ".join(f"{name} {number(value, 2)} s" for name, value in spent.items())),) if spent else ()
     return Page(
         f"Diagnosis of {diagnosis.session}",
         (),
@@ -99,7 +99,7 @@ def _found(diagnosis: Diagnosis) -> tuple[Fact, ...]:
             Fact(
                 "How sure of the name",
                 f"{number(100 * diagnosis.effects[0].confidence)} %" if one else "; ".join(sure),
-                f"fits as well: {', '.join(ties)}" if ties else "of the explanations tried",
+                f"fits as well: {', '.join(ties)}" if ties else "among the explanations tried",
             )
         )
     return tuple(facts)

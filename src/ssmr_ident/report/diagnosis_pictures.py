@@ -43,10 +43,10 @@ def proof(diagnosis: Diagnosis) -> tuple[Picture, ...]:
     if after:
         caption += f"Grey: recorded. Orange: what the model said before. Blue: the same {after}. "
     else:
-        caption += "Grey: recorded. Orange: what the model says. "
+        caption += "Grey: recorded. Blue: what the model says. "
     caption += (
         "Below each, what is left over when the model is taken off the recording; a perfect model would leave only "
-        "noise. Of a long recording, the part that differs most is drawn."
+        f"noise. Of a long recording, the part that {'differs' if after else 'moves'} most is drawn."
     )
     return (Picture(tuple(drawings), caption, "Recorded and simulated"),)
 
@@ -80,7 +80,8 @@ def explained(diagnosis: Diagnosis) -> tuple[Picture, ...]:
     caption = (
         "Each bar is a complete fit. First, the evidence: how much likelier the recordings are under this explanation "
         "than under the model as it was (0), with a price for every constant added; each 2.3 is a factor of ten. "
-        "Second, the distance from recordings never fitted: shorter is better. Blue: the answer."
+        "Second, the distance from recordings never fitted: shorter is better, and the dashed line is what noise "
+        "alone would leave. Blue: the answer."
     )
     caption += " Light blue: explains the recordings as well." if tied else ""
     return (Picture(drawings, caption, "Explanations against each other"),)

@@ -30,8 +30,8 @@ def _maps(diagnosis: Diagnosis) -> tuple[Picture, ...]:
             drawings.append(drawing(residual_map_panel(m, power, title), alt, f"residual-map-{index}-{tag}"))
         caption = (
             f"{name}: when (from left to right) and at which frequency (from low to high) the model differs from the "
-            "recording. Uncoloured is what noise alone makes. A line goes round each patch that noise alone would make "
-            f"in only one of 100 such maps: more than {number(m.threshold_db)} dB, marked on the scale."
+            "recording. Pale speckle is what noise alone makes. Full colour with a line round it is more than noise "
+            f"alone would show in one of 100 such maps: above {number(m.threshold_db)} dB, marked on the scale."
         )
         pictures.append(Picture(tuple(drawings), caption, "What is left over, by time and frequency"))
     return tuple(pictures)

@@ -12,7 +12,7 @@ from ssmr_ident.diagnose.diagnosis import Conflict, Tried
 from ssmr_ident.diagnose.evidence import Drift, Overlay
 from ssmr_ident.report import style
 from ssmr_ident.report.curves import busiest_part, thinned
-from ssmr_ident.report.numbers import NONE, number, unit
+from ssmr_ident.report.numbers import NONE, alike, number, unit
 
 PANEL = 3.9
 """Width [inch] of one panel: readable over a phone's whole width and as one of two columns."""
@@ -29,6 +29,11 @@ def readable(id: str) -> str:
     return id.replace("_", " ").replace("+", " + ")
 
 
+def first_look(after: str) -> tuple[str, str]:
+    """Colour and name of the baseline: blue is the answer's colour, so it is blue where it is the answer."""
+    return (style.ORANGE, "model before") if after else (style.BLUE, "model")
+
+
 @style.house
 def overlay_panel(overlay: Overlay, after: str) -> Figure:
     """Recorded and simulated above, what is left over below; of a long recording the part that differs most.
@@ -39,11 +44,12 @@ def overlay_panel(overlay: Overlay, after: str) -> Figure:
     after : str
         Name of the model with physics added; empty draws the model once.
     """
-    figure = style.new_figure(PANEL, 2.9)
+    figure = style.new_figure(PANEL, 3.0)
     above, below = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
-    part = busiest_part(overlay.measured, overlay.measured - overlay.before, CYCLES)
+    matter = overlay.measured - (overlay.before if after else overlay.measured.mean())
+    part = busiest_part(overlay.measured, matter, CYCLES)
     time, recorded = overlay.time[part], overlay.measured[part]
-    models = [(overlay.before[part], style.ORANGE, "model before" if after else "model")]
+    models = [(overlay.before[part], *first_look(after))]
     if after:
         models.append((overlay.after[part], style.BLUE, after))
     above.plot(*thinned(time, recorded), color=style.RAW, lw=2.6, label="recorded")
@@ -56,6 +62,7 @@ def overlay_panel(overlay: Overlay, after: str) -> Figure:
     below.set_ylabel(f"left over [{printed}]")
     above.set_xlim(time[0], time[-1])
     above.legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=3, borderaxespad=0.1, handlelength=1.4, columnspacing=1)
+    above.set_title(overlay.recording, loc="left", pad=14)
     figure.align_ylabels()
     return figure
 
@@ -75,7 +82,8 @@ def evidence_panel(tried: Sequence[Tried], chosen: str, tied: Collection[str]) -
     """
     figure = style.new_figure(PANEL, 0.75 + 0.24 * len(tried))
     axes = figure.subplots()
-    _bars(axes, tried, [t.log_evidence for t in tried], chosen, tied)
+    values = [t.log_evidence for t in tried]
+    _bars(axes, tried, values, [number(v, 4) for v in values], chosen, tied)
     axes.axvline(0, color=style.INK, lw=0.6)
     axes.set_xlabel("log evidence above the baseline's [–]")
     return figure
@@ -86,19 +94,26 @@ def metric_panel(tried: Sequence[Tried], chosen: str, tied: Collection[str], flo
     """Bars of the distance on held-out recordings, with the noise floor as a dashed line."""
     figure = style.new_figure(PANEL, 0.75 + 0.24 * len(tried))
     axes = figure.subplots()
-    _bars(axes, tried, [t.heldout_metric for t in tried], chosen, tied)
-    axes.axvline(floor, color=style.INK, lw=0.9, ls="--", label="noise alone")
-    axes.legend(loc="lower left", bbox_to_anchor=(0, 1), borderaxespad=0.1)
+    values = [t.heldout_metric for t in tried]
+    _bars(axes, tried, values, alike(values), chosen, tied)
+    axes.axvline(floor, color=style.INK, lw=0.9, ls="--")
     axes.set_xlabel(f"distance from held-out recordings [{unit_name}]")
     return figure
 
 
-def _bars(axes: Axes, tried: Sequence[Tried], values: Sequence[float], chosen: str, tied: Collection[str]) -> None:
+def _bars(
+    axes: Axes,
+    tried: Sequence[Tried],
+    values: Sequence[float],
+    texts: Sequence[str],
+    chosen: str,
+    tied: Collection[str],
+) -> None:
     rows = np.arange(len(tried))
     colours = [style.BLUE if t.id == chosen else style.SKY if t.id in tied else style.RAW for t in tried]
     known = np.nan_to_num(np.asarray(values, float), posinf=0.0, neginf=0.0)
     bars = axes.barh(rows, known, color=colours, height=0.7)
-    axes.bar_label(bars, [number(float(v)) for v in values], padding=2, fontsize=7)
+    axes.bar_label(bars, texts, padding=2, fontsize=7)
     axes.set_yticks(rows, [readable(t.id) for t in tried])
     axes.invert_yaxis()
     axes.grid(visible=False, axis="y")
@@ -123,9 +138,8 @@ def moved_panel(conflicts: Sequence[Conflict], after: Sequence[float | None], na
     axes = figure.subplots()
     rows = np.arange(len(conflicts))
     axes.axvspan(-2, 2, color=style.SHADE, lw=0, zorder=0)
-    axes.barh(
-        rows, [c.sigmas for c in conflicts], color=style.ORANGE, height=0.5, label="model before" if name else "model"
-    )
+    colour, label = first_look(name)
+    axes.barh(rows, [c.sigmas for c in conflicts], color=colour, height=0.5, label=label)
     known = [(row, value) for row, value in zip(rows, after, strict=True) if value is not None]
     if known:
         where, values = zip(*known, strict=True)
@@ -145,7 +159,7 @@ def moved_panel(conflicts: Sequence[Conflict], after: Sequence[float | None], na
     axes.set_yticks(rows, [c.parameter for c in conflicts])
     axes.invert_yaxis()
     axes.grid(visible=False, axis="y")
-    axes.set_xlabel("moved by [standard deviations of what was known]")
+    axes.set_xlabel("moved by [std of what was known]")
     axes.legend(loc="lower right", bbox_to_anchor=(1, 1), ncols=2, borderaxespad=0.1, columnspacing=1)
     return figure
 

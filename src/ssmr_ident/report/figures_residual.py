@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from ssmr_ident.diagnose.evidence import ForceSurface, ResidualMap
 from ssmr_ident.report import style
-from ssmr_ident.report.figures_diagnosis import PANEL
+from ssmr_ident.report.figures_diagnosis import PANEL, first_look
 from ssmr_ident.report.numbers import NONE, unit
 
 
@@ -17,9 +17,10 @@ def from_paper(name: str, colour: str) -> LinearSegmentedColormap:
     return LinearSegmentedColormap.from_list(name, [to_rgba(colour, 0.0), to_rgba(colour, 1.0)])
 
 
-LEFT_OVER = from_paper("left over", style.ORANGE)
-_ENDS = ((style.BLUE, 1.0), (style.BLUE, 0.0), (style.ORANGE, 0.0), (style.ORANGE, 1.0))
-EITHER_SIGN = LinearSegmentedColormap.from_list("either sign", [to_rgba(colour, opaque) for colour, opaque in _ENDS])
+_ENDS = ((0.0, style.BLUE, 1.0), (0.5, style.BLUE, 0.0), (0.5, style.ORANGE, 0.0), (1.0, style.ORANGE, 1.0))
+EITHER_SIGN = LinearSegmentedColormap.from_list(
+    "either sign", [(at, to_rgba(colour, opaque)) for at, colour, opaque in _ENDS]
+)
 
 
 @style.house
@@ -37,7 +38,14 @@ def residual_map_panel(residual: ResidualMap, power: np.ndarray, title: str) -> 
     axes = figure.subplots()
     top = max(float(np.nanmax(residual.before)), 1.5 * residual.threshold_db)
     image = axes.pcolormesh(
-        residual.time, residual.frequency, power, cmap=LEFT_OVER, vmin=0.0, vmax=top, shading="nearest", rasterized=True
+        residual.time,
+        residual.frequency,
+        power,
+        cmap=_pale_to(residual.threshold_db / top),
+        vmin=0.0,
+        vmax=top,
+        shading="nearest",
+        rasterized=True,
     )
     if np.nanmax(power) > residual.threshold_db > np.nanmin(power):
         axes.contour(
@@ -52,6 +60,14 @@ def residual_map_panel(residual: ResidualMap, power: np.ndarray, title: str) -> 
     axes.set_ylabel("frequency [Hz]")
     axes.set_title(title, loc="left")
     return figure
+
+
+def _pale_to(step: float) -> LinearSegmentedColormap:
+    """Orange, pale below a share of the scale and full above: what may be noise shall not catch the eye."""
+    points = ((0.0, 0.0), (step, 0.2), (step, 0.5), (1.0, 1.0))
+    return LinearSegmentedColormap.from_list(
+        "left over", [(at, to_rgba(style.ORANGE, opaque)) for at, opaque in points]
+    )
 
 
 @style.house
@@ -112,7 +128,7 @@ def cut_panel(surface: ForceSurface, over: str, after: str, bins: int = 15) -> F
     centres = 0.5 * (edges[:-1] + edges[1:])[filled]
     figure = style.new_figure(PANEL, 2.5)
     axes = figure.subplots()
-    lines = [(surface.before, style.ORANGE, "model before" if after else "model")]
+    lines = [(surface.before, *first_look(after))]
     if after:
         lines.append((surface.after, style.BLUE, after))
     for force, colour, label in lines:

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from ssmr_ident.diagnose.evidence import SpeedMap
 from ssmr_ident.report import style
-from ssmr_ident.report.figures_diagnosis import PANEL
+from ssmr_ident.report.figures_diagnosis import PANEL, first_look
 from ssmr_ident.report.figures_residual import from_paper
 
 POWER = from_paper("power", style.BLUE)
@@ -62,10 +62,10 @@ def level_panel(speeds: SpeedMap, after: str) -> Figure:
     """How far the levels of recorded and simulated spectra are apart at each speed, RMS over the frequencies."""
     figure = style.new_figure(PANEL, 3.2)
     axes = figure.subplots()
-    models = [(speeds.before, style.ORANGE, "o", "model before" if after else "model")]
+    models = [(speeds.before, "o", *first_look(after))]
     if after:
-        models.append((speeds.after, style.BLUE, "s", after))
-    for density, colour, marker, label in models:
+        models.append((speeds.after, "s", style.BLUE, after))
+    for density, marker, colour, label in models:
         apart = np.sqrt(np.nanmean((density - speeds.recorded) ** 2, axis=1))
         axes.plot(np.rad2deg(speeds.speed), apart, marker=marker, color=colour, label=label)
     axes.set_ylim(bottom=0)

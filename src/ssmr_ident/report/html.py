@@ -6,7 +6,7 @@ import hashlib
 import os
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from importlib import resources
 from itertools import count
 from pathlib import Path
@@ -114,7 +114,7 @@ class Verdict:
 class Page:
     """A whole report; ``verdict`` or ``lead`` is what a reader needs who reads nothing else.
 
-    ``files`` holds name and SHA-256 of what was read.
+    ``files`` holds name and SHA-256 of what was read, ``remarks`` label and text of what else belongs to the end.
     """
 
     title: str
@@ -125,7 +125,7 @@ class Page:
     version: str = __version__
     verdict: Verdict | None = None
     seed: int | None = None
-    remarks: tuple[str, ...] = field(default=())
+    remarks: tuple[tuple[str, str], ...] = ()
 
 
 def drawing(figure: Figure, alt: str, name: str = "") -> Drawing:

@@ -41,8 +41,7 @@ def inline(svg: str, mark: str, label: str) -> str:
     svg = re.sub(r'(\bid="|url\(#|href="#)', rf"\g<1>{mark}-", svg)
     svg = _STYLE_ATTRIBUTE.sub(lambda found: _COLOUR.sub(r"var(--f\1, #\1)", found[0]), svg)
     width = float(svg.split('width="')[1].split("pt")[0])
-    opening = f'<svg role="img" aria-label="{escape(label)}" style="max-width: {width * 1.9:.0f}pt"'
-    title = f"<title>{escape(label)}</title>"
+    opening = f'<svg role="img" aria-label="{escape(label)}" style="max-width: {width * 1.6:.0f}pt"'
     head, _, rest = svg.partition(">")
     head = re.sub(r'\s(?:width|height|version|xmlns(?::xlink)?)="[^"]*"', "", head)
-    return head.replace("<svg", opening, 1) + f">{title}" + rest
+    return head.replace("<svg", opening, 1) + ">" + rest
