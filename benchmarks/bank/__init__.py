@@ -8,16 +8,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from bank.decays import decays, decoupled
-from bank.pulls import bench, block, pulls
-from bank.rigs import forced, let_go
+from bank.decays import draw_decays, draw_decoupled
+from bank.pulls import draw_bench, draw_block, draw_pulls
+from bank.rigs import draw_forced, draw_let_go
 from bank.truth import BankSession, Truth
 
 __all__ = ["FAMILIES", "KINDS", "SHARES", "BankSession", "Truth", "draw", "mixed"]
 
 FAMILIES = {
-    "decays": decays, "decoupled": decoupled, "pulls": pulls, "bench": bench, "block": block, "forced": forced,
-    "rig_decay": let_go,
+    "decays": draw_decays, "decoupled": draw_decoupled, "pulls": draw_pulls, "bench": draw_bench,
+    "block": draw_block, "forced": draw_forced, "rig_decay": draw_let_go,
 }  # fmt: skip
 KINDS = {
     "decays": ("none", "one", "two", "other", "unlisted"),

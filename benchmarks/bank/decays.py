@@ -29,12 +29,12 @@ PEAK = {"roll": (1.5, 3.5), "pitch": (1.5, 3.0), "yaw": (1.5, 5.0)}
 AXES = ("ax", "ay", "az")
 
 
-def decays(kind: str, seed: int, effect: str | None, size: float | None, short: bool) -> BankSession:
+def draw_decays(kind: str, seed: int, effect: str | None, size: float | None, short: bool) -> BankSession:
     """Nine decays to fit and four held out; ``short`` ones are six of a second and a half."""
     return _decays(kind, seed, effect, size, short, "rigid6")
 
 
-def decoupled(kind: str, seed: int, effect: str | None, size: float | None, short: bool) -> BankSession:
+def draw_decoupled(kind: str, seed: int, effect: str | None, size: float | None, short: bool) -> BankSession:
     """The same robot against pure rotations (5.3), which leave the translation out."""
     return _decays("one", seed, "translation_coupling", size, short, "decoupled")
 

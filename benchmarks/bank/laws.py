@@ -22,9 +22,9 @@ KINDS = (
     "one_sided_damper", "one_sided_spring", "creeping_spring", "friction_by_place",  # in nobody's list
 )  # fmt: skip
 (
-    CUBIC, TWO_SLOPES, SINH, TANH_SPRING, TANH_FRICTION, JENKINS, STRIBECK_FRICTION, DAHL, PLAY, ROUNDED_PLAY, SMOOTH_PLAY,
-    BOUC_WEN, IWAN, QUADRATIC, POWER_DAMPING, MAXWELL, TWO_MAXWELLS, ONE_SIDED_DAMPER, ONE_SIDED_SPRING,
-    CREEPING_SPRING, FRICTION_BY_PLACE,
+    CUBIC, TWO_SLOPES, SINH, TANH_SPRING, TANH_FRICTION, JENKINS, STRIBECK_FRICTION, DAHL, PLAY, ROUNDED_PLAY,
+    SMOOTH_PLAY, BOUC_WEN, IWAN, QUADRATIC, POWER_DAMPING, MAXWELL, TWO_MAXWELLS, ONE_SIDED_DAMPER,
+    ONE_SIDED_SPRING, CREEPING_SPRING, FRICTION_BY_PLACE,
 ) = range(len(KINDS))  # fmt: skip
 WIDTH, STATES = 6, 4
 
@@ -64,7 +64,9 @@ def force(row, x, v, z, t):
         return a * math.tanh(v / b)
     if kind == JENKINS:  # a: N, b: N/m
         return b * z[0]
-    if kind == STRIBECK_FRICTION:  # a: N while sliding fast, b: m/s of the sign's width, c: share added at rest, row[4]: m/s
+    if (
+        kind == STRIBECK_FRICTION
+    ):  # a: N while sliding fast, b: m/s of the sign's width, c: share added at rest, row[4]: m/s
         return a * (1.0 + c * math.exp(-((v / row[4]) ** 2))) * math.tanh(v / b)
     if kind == DAHL:  # a: N, b: N/m
         return b * z[0]

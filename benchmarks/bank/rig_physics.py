@@ -167,7 +167,9 @@ def _other_loop(size: float, at: Scale, random: np.random.Generator) -> Physics:
 
 def _sliders(size: float, at: Scale, random: np.random.Generator) -> Physics:
     share, yields = between(size, 0.01, 0.3), random.uniform(0.3, 0.8) * at.displacement
-    return Physics("hysteresis", {}, (law("iwan", share * at.rig.stiffness, yields),), "three sliders in parallel (Iwan)")
+    return Physics(
+        "hysteresis", {}, (law("iwan", share * at.rig.stiffness, yields),), "three sliders in parallel (Iwan)"
+    )
 
 
 def _power(size: float, at: Scale, random: np.random.Generator) -> Physics:
@@ -193,7 +195,9 @@ def _one_sided_damper(size: float, at: Scale, random: np.random.Generator) -> Ph
 
 
 def _one_sided_spring(size: float, at: Scale, random: np.random.Generator) -> Physics:
-    row = law("one_sided_spring", between(size, 0.03, 0.5) * at.rig.stiffness, random.uniform(0.0, 0.6) * at.displacement)
+    row = law(
+        "one_sided_spring", between(size, 0.03, 0.5) * at.rig.stiffness, random.uniform(0.0, 0.6) * at.displacement
+    )
     return Physics("unlisted", {}, (row,), "a spring that touches on one side")
 
 

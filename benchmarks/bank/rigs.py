@@ -19,8 +19,10 @@ from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.physics.rig import Rig
 from ssmr_ident.session import Entry, Session
 
-FORCED = (("noise", 0.25, "target"), ("noise", 1.0, "target"), ("noise", 3.0, "target"), ("sweep", 1.0, "target"),
-          ("sweep", 2.5, "target"), ("noise", 0.6, "heldout"), ("noise", 2.2, "heldout"), ("sweep", 1.6, "heldout"))  # fmt: skip
+FORCED = (
+    ("noise", 0.25, "target"), ("noise", 1.0, "target"), ("noise", 3.0, "target"), ("sweep", 1.0, "target"),
+    ("sweep", 2.5, "target"), ("noise", 0.6, "heldout"), ("noise", 2.2, "heldout"), ("sweep", 1.6, "heldout"),
+)  # fmt: skip
 LET_GO = ((1.0, "target"), (0.6, "target"), (0.35, "target"), (0.8, "target"), (0.75, "heldout"), (0.45, "heldout"))
 QUANTITIES = {"acceleration": (2, "m/s^2"), "velocity": (1, "m/s"), "position": (0, "m")}
 NOISE_FORCE, SWEEP_FORCE = 4.5, 2.44  # N at level 1
@@ -59,7 +61,7 @@ def forces(
     return made
 
 
-def forced(kind: str, seed: int, effect: str | None, size: float | None, short: bool) -> BankSession:
+def draw_forced(kind: str, seed: int, effect: str | None, size: float | None, short: bool) -> BankSession:
     """Five recordings to fit and three held out; ``short`` ones last a second and a half."""
     random = np.random.default_rng([seed, 15])
     rig, known = draw_rig(random)
@@ -93,7 +95,7 @@ def forced(kind: str, seed: int, effect: str | None, size: float | None, short: 
     return session("forced", kind, seed, size, known, made, chosen, rig)
 
 
-def let_go(kind: str, seed: int, effect: str | None, size: float | None, short: bool) -> BankSession:
+def draw_let_go(kind: str, seed: int, effect: str | None, size: float | None, short: bool) -> BankSession:
     """A rig pulled aside and let go: four recordings to fit and two held out."""
     random = np.random.default_rng([seed, 16])
     rig, known = draw_rig(random)
@@ -165,7 +167,9 @@ def session(
     """Everything put together."""
     entries = tuple(one.entry for one in made)
     campaign = Campaign(
-        Session(f"bank-{seed}", Path("bank"), "rig.yaml", "sdof", entries), known, tuple(one.measurement for one in made)
+        Session(f"bank-{seed}", Path("bank"), "rig.yaml", "sdof", entries),
+        known,
+        tuple(one.measurement for one in made),
     )
     truth = Truth(
         "missing_physics" if chosen else "nothing_missing",

@@ -1,7 +1,8 @@
 """The robot on four sticking tires with any laws, by classical Runge-Kutta: not a line of simulate/robot_kernel.py.
 
 Written from the description in docs/theory/simulation.md: velocities along the heading axes, gravity and floor
-constant, no M·V̂·V term, no gyroscopic moment (the baseline has neither), tires as K·s + D·v + laws. Contacts must not slide; ``run_robot`` says so when one would.
+constant, no M·V̂·V term, no gyroscopic moment (the baseline has neither), tires as K·s + D·v + laws. Contacts must
+not slide; ``run_robot`` says so when one would.
 """
 
 from __future__ import annotations
