@@ -6,12 +6,12 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ssmr_ident.core.atomic import write_text
-from ssmr_ident.diagnose.diagnosis import MISSING, NOTHING, UNIT, Diagnosis
+from ssmr_ident.diagnose.diagnosis import MISSING, NOTHING, UNIT, Diagnosis, NamedEffect
 from ssmr_ident.report.diagnosis_pictures import after_name
 from ssmr_ident.report.diagnosis_sections import sections
 from ssmr_ident.report.figures_diagnosis import readable
 from ssmr_ident.report.html import Fact, Page, Verdict, file_hashes, render_page, write_page
-from ssmr_ident.report.numbers import alike, interval, number
+from ssmr_ident.report.numbers import alike, interval, measured, number
 
 FIGURES = "figures"
 
@@ -77,13 +77,13 @@ def verdict(diagnosis: Diagnosis) -> Verdict:
     if diagnosis.verdict == MISSING:
         names = " and ".join(_name(effect.id) for effect in diagnosis.effects)
         label, tone = f"Missing physics: {names}", "found"
-        equation = ";  ".join(effect.equation for effect in diagnosis.effects)
+        equation = "\n".join(_law(effect) for effect in diagnosis.effects)
         facts = _found(diagnosis)
     elif diagnosis.verdict == NOTHING:
         label, tone, equation = "Nothing is missing", "clear", ""
         facts = _clear(diagnosis)
     else:
-        label, tone, equation = "Undetermined: something is missing, these recordings cannot say what", "open", ""
+        label, tone, equation = "Undetermined: these recordings cannot tell what is missing", "open", ""
         facts = _open(diagnosis)
     advice = diagnosis.next_experiment if diagnosis.verdict != MISSING or _tied(diagnosis) else ""
     return Verdict(label, tone, diagnosis.summary, facts, equation, advice)
@@ -157,6 +157,13 @@ def _spread(diagnosis: Diagnosis) -> str:
 
 def _tied(diagnosis: Diagnosis) -> bool:
     return any(effect.indistinguishable_from for effect in diagnosis.effects)
+
+
+def _law(effect: NamedEffect) -> str:
+    """Formula and values; three of them at most, the table below holds all."""
+    scalars = [(name, e) for name, e in effect.parameters.items() if isinstance(e.value, int | float)][:3]
+    values = [f"{name} = {measured(float(e.value), e.std, e.unit)}" for name, e in scalars]
+    return ",   ".join((effect.equation, *values))
 
 
 def _name(id: str) -> str:

@@ -6,7 +6,14 @@ from collections.abc import Sequence
 
 from ssmr_ident.diagnose.diagnosis import MISSING, NOTHING, UNIT, Conflict, Diagnosis
 from ssmr_ident.diagnose.evidence import Overlay
-from ssmr_ident.report.figures_diagnosis import evidence_panel, metric_panel, moved_panel, overlay_panel, readable
+from ssmr_ident.report.figures_diagnosis import (
+    evidence_panel,
+    evidence_text,
+    metric_panel,
+    moved_panel,
+    overlay_panel,
+    readable,
+)
 from ssmr_ident.report.html import Picture, drawing
 from ssmr_ident.report.numbers import number
 
@@ -70,7 +77,7 @@ def explained(diagnosis: Diagnosis) -> tuple[Picture, ...]:
     answer = {e.id for e in diagnosis.effects} if after_name(diagnosis) else {"baseline"}
     chosen = next((t.id for t in shown if set(t.id.split("+")) == answer), "")
     tied = {id for e in diagnosis.effects for id in e.indistinguishable_from}
-    best = ", ".join(f"{readable(t.id)} {number(t.log_evidence, 4)}" for t in shown[:3])
+    best = ", ".join(f"{readable(t.id)} {evidence_text(t.log_evidence)}" for t in shown[:3])
     floor, unit = diagnosis.heldout.noise_floor, UNIT[diagnosis.metric]
     alt = f"Distance from held-out recordings for each explanation; noise alone gives {number(floor)} {unit}."
     drawings = (

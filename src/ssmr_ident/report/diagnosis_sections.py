@@ -8,7 +8,7 @@ from ssmr_ident.core.parameter import Estimate
 from ssmr_ident.diagnose.diagnosis import MISSING, NOTHING, UNIT, Conflict, Diagnosis, NamedEffect, Worth
 from ssmr_ident.report.diagnosis_pictures import after_name, explained, known_std, moved, proof
 from ssmr_ident.report.diagnosis_places import places
-from ssmr_ident.report.figures_diagnosis import readable
+from ssmr_ident.report.figures_diagnosis import evidence_text, readable
 from ssmr_ident.report.html import Cell, Number, Section, Table
 from ssmr_ident.report.numbers import NONE, alike, interval, measured, number
 from ssmr_ident.report.numbers import unit as printed
@@ -38,6 +38,8 @@ def _effects(diagnosis: Diagnosis) -> Section:
             rows.append((readable(effect.id), name, *_estimated(estimate)))
     header = ("effect", "parameter", "value ± standard deviation", "95 % interval", "unit")
     caption = "Fitted parameters of the physics added; the interval is ±1.96 standard deviations."
+    if any(estimate.std is None for effect in diagnosis.effects for estimate in effect.parameters.values()):
+        caption += " None stands where the fit leaves structure behind, so that one would promise too much."
     return Section(title, tuple(paragraphs), (Table(caption, header, tuple(rows)),) if rows else ())
 
 
@@ -70,23 +72,25 @@ def _proof(diagnosis: Diagnosis) -> Section:
         "%": "The distance is the size of what is left over, in per cent of the size of the recording itself.",
         "dB": "The distance is the root mean square difference between the levels of two spectra, 1 to 50 Hz.",
     }[unit]
-    rows = (_worth("fitted", diagnosis.training, unit), _worth("held out, never fitted", diagnosis.heldout, unit))
-    header = (
-        "recordings",
-        f"before [{unit}]",
-        f"after [{unit}]",
-        f"noise alone [{unit}]",
-        f"improvement, 95 % [{unit}]",
-    )
-    tables = [Table(f"{measure} Means over recordings.", header, rows)]  # fmt: skip
+    # Without physics added there is one model, and one column for it.
+    columns = (f"before [{unit}]", f"after [{unit}]") if after_name(diagnosis) else (f"model [{unit}]",)
+    columns = (*columns, f"noise alone [{unit}]")
+    header = ("recordings", *columns)
+    rows: list[tuple[Cell, ...]] = [
+        (name, *_metrics((w.before, w.after, w.noise_floor), diagnosis))
+        for name, w in (("fitted", diagnosis.training), ("held out, never fitted", diagnosis.heldout))
+    ]
+    if diagnosis.heldout.improvement is not None and after_name(diagnosis):
+        header = (*header, f"improvement, 95 % [{unit}]")
+        rows = [(*row, _gain(w)) for row, w in zip(rows, (diagnosis.training, diagnosis.heldout), strict=True)]
+    tables = [Table(f"{measure} Means over recordings.", header, tuple(rows))]
     single: dict[str, tuple[Cell, ...]] = {}
     for o in diagnosis.evidence.overlays:
         role = "held out" if o.heldout else "fitted"
-        single[o.recording] = (o.recording, role, *_metrics(o.metric))
+        single[o.recording] = (o.recording, role, *_metrics(o.metric, diagnosis))
     if len(single) > 1:
-        caption = "The same for each recording."
-        header = ("recording", "role", f"before [{unit}]", f"after [{unit}]", f"noise alone [{unit}]")
-        tables.append(Table(caption, header, tuple(single.values())))
+        header = ("recording", "role", *columns)
+        tables.append(Table("The same for each recording.", header, tuple(single.values())))
     title = {
         MISSING: "Does it hold on recordings that were never fitted?",
         NOTHING: "Does the model hold on recordings that were never fitted?",
@@ -96,15 +100,17 @@ def _proof(diagnosis: Diagnosis) -> Section:
     return Section(title, text, tuple(tables), proof(diagnosis))
 
 
-def _worth(name: str, worth: Worth, unit: str) -> tuple[Cell, ...]:
-    gain: Cell = Number(NONE, math.nan)
-    if worth.improvement is not None:
-        gain = Number(interval(*worth.improvement), worth.improvement[0])
-    return (name, *_metrics((worth.before, worth.after, worth.noise_floor)), gain)
+def _gain(worth: Worth) -> Cell:
+    if worth.improvement is None:
+        return Number(NONE, math.nan)
+    return Number(interval(*worth.improvement), worth.improvement[0])
 
 
-def _metrics(values: tuple[float, ...]) -> list[Number]:
-    return [Number(text, value) for text, value in zip(alike(values), values, strict=True)]
+def _metrics(values: tuple[float, float, float], diagnosis: Diagnosis) -> list[Number]:
+    """Before, after, noise floor; without ``after`` where nothing was added."""
+    pairs = list(zip(alike(values), values, strict=True))
+    kept = pairs if after_name(diagnosis) else [pairs[0], pairs[2]]
+    return [Number(text, value) for text, value in kept]
 
 
 def _where(diagnosis: Diagnosis) -> Section:
@@ -134,7 +140,7 @@ def _which(diagnosis: Diagnosis) -> Section:
     unit = UNIT[diagnosis.metric]
     distances = alike([t.heldout_metric for t in diagnosis.tried])
     rows = tuple(
-        (readable(t.id), Number(number(t.log_evidence, 4), t.log_evidence), Number(text, t.heldout_metric))
+        (readable(t.id), Number(evidence_text(t.log_evidence), t.log_evidence), Number(text, t.heldout_metric))
         for t, text in zip(diagnosis.tried, distances, strict=True)
     )
     header = ("explanation", "log evidence above the baseline [–]", f"distance from held-out recordings [{unit}]")
@@ -144,29 +150,29 @@ def _which(diagnosis: Diagnosis) -> Section:
 
 
 def _moved(diagnosis: Diagnosis) -> Section:
+    after = after_name(diagnosis)
     rows: list[tuple[Cell, ...]] = []
-    for conflict in diagnosis.conflicts:
-        row = (conflict.parameter, *_fitted(conflict, diagnosis), printed(conflict.unit) or NONE)
-        rows.append((*row, Number(f"{conflict.sigmas:+.1f}".replace("-", "−"), conflict.sigmas)))
-    header = ("parameter", "known", "model before", "with the physics added", "unit", "moved before [std]")
+    for c in diagnosis.conflicts:
+        before = diagnosis.before.get(c.parameter)
+        row: list[Cell] = [c.parameter, Number(measured(c.prior, known_std(c)), c.prior)]
+        row.append(Number(measured(c.fitted, before.std if before else None), c.fitted))
+        if after:
+            row.append(_after(c, diagnosis))
+        rows.append((*row, printed(c.unit) or NONE, Number(f"{c.sigmas:+.1f}".replace("-", "−"), c.sigmas)))
+    fitted = ("model before", after) if after else ("model",)
+    header = ("parameter", "known", *fitted, "unit", f"moved{' before' if after else ''} [std]")
     caption = "Value ± standard deviation; moved: distance from what was known, in its standard deviations."
     title = (
         "What it had been hidden in" if diagnosis.verdict == MISSING else "Parameters against what was known of them"
     )
-    tables = (Table(caption, header, tuple(rows)),) if rows else ()
-    return Section(title, (), tables, moved(diagnosis))
+    return Section(title, (), (Table(caption, header, tuple(rows)),) if rows else (), moved(diagnosis))
 
 
-def _fitted(conflict: Conflict, diagnosis: Diagnosis) -> tuple[Cell, Cell, Cell]:
-    cells: list[Cell] = [Number(measured(conflict.prior, known_std(conflict)), conflict.prior)]
-    before = diagnosis.before.get(conflict.parameter)
-    cells.append(Number(measured(conflict.fitted, before.std if before else None), conflict.fitted))
+def _after(conflict: Conflict, diagnosis: Diagnosis) -> Number:
     after = diagnosis.after.get(conflict.parameter)
-    if after is None or not isinstance(after.value, int | float) or not after_name(diagnosis):
-        cells.append(Number(NONE, math.nan))
-    else:
-        cells.append(Number(measured(float(after.value), after.std), float(after.value)))
-    return cells[0], cells[1], cells[2]
+    if after is None or not isinstance(after.value, int | float):
+        return Number(NONE, math.nan)
+    return Number(measured(float(after.value), after.std), float(after.value))
 
 
 def _next(diagnosis: Diagnosis) -> Section:

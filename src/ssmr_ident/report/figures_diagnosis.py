@@ -23,10 +23,19 @@ CYCLES = 24
 def readable(id: str) -> str:
     """An id as words.
 
-    >>> readable("dry_friction+free_play")
-    'dry friction + free play'
+    >>> readable("dry_friction+free_play"), readable("baseline")
+    ('dry friction + free play', 'baseline, nothing added')
     """
-    return id.replace("_", " ").replace("+", " + ")
+    return "baseline, nothing added" if id == "baseline" else id.replace("_", " ").replace("+", " + ")
+
+
+def evidence_text(value: float) -> str:
+    """A log evidence as printed: tenths matter near zero, never for thousands.
+
+    >>> evidence_text(8.013), evidence_text(-5228.4)
+    ('8.0', '−5228')
+    """
+    return f"{value:.{1 if abs(value) < 100 else 0}f}".replace("-", "−")
 
 
 def first_look(after: str) -> tuple[str, str]:
@@ -83,7 +92,7 @@ def evidence_panel(tried: Sequence[Tried], chosen: str, tied: Collection[str]) -
     figure = style.new_figure(PANEL, 0.75 + 0.24 * len(tried))
     axes = figure.subplots()
     values = [t.log_evidence for t in tried]
-    _bars(axes, tried, values, [number(v, 4) for v in values], chosen, tied)
+    _bars(axes, tried, values, [evidence_text(v) for v in values], chosen, tied)
     axes.axvline(0, color=style.INK, lw=0.6)
     axes.set_xlabel("log evidence above the baseline's [–]")
     return figure

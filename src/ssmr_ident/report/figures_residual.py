@@ -62,6 +62,10 @@ def residual_map_panel(residual: ResidualMap, power: np.ndarray, title: str) -> 
     return figure
 
 
+FEWEST = 3
+"""Cells with fewer points count as never reached."""
+
+
 def _pale_to(step: float) -> LinearSegmentedColormap:
     """Orange, pale below a share of the scale and full above: what may be noise shall not catch the eye."""
     points = ((0.0, 0.0), (step, 0.2), (step, 0.5), (1.0, 1.0))
@@ -86,11 +90,13 @@ def surface_panel(surface: ForceSurface, force: np.ndarray, title: str, cells: i
     (across, across_unit), (along, along_unit) = _scaled(surface)
     edges = [np.linspace(*_reach(values), cells + 1) for values in (across, along)]
     counted = np.histogram2d(across, along, edges)[0]
+    counted[counted < FEWEST] = 0
     both = []
     for values in (surface.before, force):
         with np.errstate(invalid="ignore"):
             both.append(np.histogram2d(across, along, edges, weights=values)[0] / np.where(counted, counted, np.nan))
-    top = float(np.nanmax(np.abs(both[0]))) or 1.0
+    # Pure noise shall look pale, so the scale reaches at least three times its spread.
+    top = max(float(np.nanmax(np.abs(both[0]))), 3 * float(np.std(surface.after))) or 1.0
     figure = style.new_figure(PANEL, 2.8)
     axes = figure.subplots()
     axes.set_facecolor(style.SHADE)

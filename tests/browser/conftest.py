@@ -1,0 +1,67 @@
+"""A real browser, where there is one: Debian's Chromium by Playwright."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from made_diagnoses import EVERY
+
+from ssmr_ident.report.diagnosis_page import write_report
+
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+
+
+@pytest.fixture(scope="session")
+def chromium() -> Iterator[Any]:
+    """A headless browser; skips where none is installed."""
+    sync_api = pytest.importorskip("playwright.sync_api", reason="playwright is not installed (extra: browser)")
+    if CHROMIUM is None:
+        pytest.skip("no Chromium on this machine")
+    with sync_api.sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
+        yield browser
+        browser.close()
+
+
+@pytest.fixture(scope="session")
+def pages(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
+    """Every page of this project that can be made without minutes of fitting, by name."""
+    folder = tmp_path_factory.mktemp("pages")
+    made = {}
+    for make in EVERY:
+        path = folder / make.__name__ / "report.html"
+        path.parent.mkdir()
+        log = path.parent / "roll-1.csv"
+        log.write_text("time [s],ay [m/s^2]\n0,0\n", encoding="utf-8")
+        made[make.__name__] = write_report(make(), path, "ident diagnose my-session -o out", 0, [log])
+    return made
+
+
+@pytest.fixture
+def opened(chromium: Any) -> Iterator[Callable[..., Any]]:
+    """Open a page; every message of the console, every failed or outside request is gathered in ``page.troubles``."""
+    contexts = []
+
+    def open_page(path: Path, width: int = 1280, height: int = 800, **options: Any) -> Any:
+        context = chromium.new_context(viewport={"width": width, "height": height}, **options)
+        contexts.append(context)
+        page = context.new_page()
+        page.troubles = []
+        own = path.resolve().as_uri()
+        page.on("console", lambda message: page.troubles.append(f"{message.type}: {message.text}"))
+        page.on("pageerror", lambda error: page.troubles.append(f"error: {error}"))
+        page.on("requestfailed", lambda request: page.troubles.append(f"failed: {request.url}"))
+        page.on(
+            "request",
+            lambda request: request.url == own or request.url[:5] == "data:" or page.troubles.append(request.url),
+        )
+        page.goto(own)
+        return page
+
+    yield open_page
+    for context in contexts:
+        context.close()
