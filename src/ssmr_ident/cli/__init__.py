@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import importlib
 import os
 import signal
@@ -59,7 +60,7 @@ def main() -> None:
     """Run ``ident``: exit 0 done, 2 the input or the call is wrong, 1 the tool failed, 130 stopped by the user."""
     before = signal.signal(signal.SIGTERM, _stop)
     try:
-        sys.exit(app(standalone_mode=False) or 0)
+        sys.exit(app(prog_name="ident", standalone_mode=False) or 0)
     except UsageError as error:
         _complain(*_usage(error))
     except InputError as error:
@@ -88,7 +89,8 @@ def _usage(error: Any) -> tuple[str, str]:
     text = error.format_message().rstrip(".")
     near = getattr(error, "possibilities", None)
     if near:
-        text = f"{text.partition(' (Possible')[0].rstrip('.?')}. Did you mean {' or '.join(sorted(near))}"
+        nearest = difflib.get_close_matches(str(error.option_name), near, n=1, cutoff=0.0)[0]
+        text = f"{text.partition(' (Possible')[0].rstrip('.?')}. Did you mean {nearest}"
     mark = "?" if "Did you mean" in text and not text.endswith("?") else "" if text.endswith("?") else "."
     return text + mark, f"See {context.command_path if context else 'ident'} --help."
 

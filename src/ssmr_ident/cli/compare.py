@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from ssmr_ident.cli import completion
+
 EXAMPLES = (
     "ident compare data/raw/free_response --params out/parameters.yaml -o out/compare",
     "ident compare my-session --json",
@@ -16,7 +18,13 @@ EXAMPLES = (
 def command(
     session: Annotated[Path, typer.Argument(help="Session folder, or its session.yaml.")],
     params: Annotated[
-        str, typer.Option("--params", "-p", help="Parameter file; left out: the session's own robot.")
+        str,
+        typer.Option(
+            "--params",
+            "-p",
+            help="Parameter file; left out: the session's own robot.",
+            autocompletion=completion.robots,
+        ),
     ] = "",
     output: Annotated[
         Path | None, typer.Option("-o", "--output", help="Folder for overlay plots and compare.csv.")

@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from ssmr_ident.cli import completion
+
 EXAMPLES = (
     "ident effects",
     "ident effects dry_friction -o dry_friction.png",
@@ -16,7 +18,13 @@ EXAMPLES = (
 
 def command(
     effect_id: Annotated[
-        str | None, typer.Argument(metavar="[ID]", help="One effect; left out, the whole list.", show_default=False)
+        str | None,
+        typer.Argument(
+            metavar="[ID]",
+            help="One effect; left out, the whole list.",
+            show_default=False,
+            autocompletion=completion.effect_ids,
+        ),
     ] = None,
     output: Annotated[
         Path | None, typer.Option("-o", "--output", help="Figure to draw: .png, .svg or .pdf.", show_default=False)

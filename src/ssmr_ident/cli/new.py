@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from ssmr_ident.cli import completion
+
 EXAMPLES = (
     "ident new my-logs",
     "ident new my-logs --robot p3at-extended",
@@ -18,13 +20,22 @@ EXAMPLES = (
 def command(
     session: Annotated[Path, typer.Argument(help="Folder with the logs; the two files are written into it.")],
     robot: Annotated[
-        str, typer.Option(help="Start from a bundled robot (p3at-extended, p3at-platform) instead of questions.")
+        str,
+        typer.Option(
+            help="Start from a bundled robot (p3at-extended, p3at-platform) instead of questions.",
+            autocompletion=completion.bundled,
+        ),
     ] = "",
     mass_kg: Annotated[
         float | None,
         typer.Option("--mass-kg", help="Moving mass of a rig, or mass of a block; kg m^2 for a rotary rig."),
     ] = None,
-    baseline: Annotated[str, typer.Option(help="rigid6, decoupled, sdof or drag; left out, the logs decide.")] = "",
+    baseline: Annotated[
+        str,
+        typer.Option(
+            help="rigid6, decoupled, sdof or drag; left out, the logs decide.", autocompletion=completion.baselines
+        ),
+    ] = "",
     answers: Annotated[
         list[str] | None,
         typer.Option("--set", metavar="KEY=VALUE", help="Answer a question of every recording: height_m=0.05."),

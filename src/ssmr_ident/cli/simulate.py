@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from ssmr_ident.cli import completion
+
 CHOICES = "free_response, pull, swivel, straight, wheel_drag, vertical_compression, forced"
 
 
@@ -21,8 +23,15 @@ EXAMPLES = (
 
 
 def command(
-    params: Annotated[str, typer.Argument(help="Parameter file, or a bundled robot: p3at-extended, p3at-platform.")],
-    experiment: Annotated[str, typer.Option("--experiment", "-e", help=f"One of {CHOICES}.")],
+    params: Annotated[
+        str,
+        typer.Argument(
+            help="Parameter file, or a bundled robot: p3at-extended, p3at-platform.", autocompletion=completion.robots
+        ),
+    ],
+    experiment: Annotated[
+        str, typer.Option("--experiment", "-e", help=f"One of {CHOICES}.", autocompletion=completion.experiments)
+    ],
     output: Annotated[Path, typer.Option("-o", "--output", help="Log to write: .csv, .lvm or .xlsx.")] = Path(
         "rec.csv"
     ),

@@ -22,6 +22,7 @@ from ssmr_ident.simulate.rig import simulate_rig
 from ssmr_ident.simulate.simulation import simulate
 
 EXPERIMENTS = ("free_response", "pull", "swivel", "straight", "wheel_drag", "vertical_compression", "forced")
+_CHOICES = {"motion": ("roll", "pitch", "yaw"), "direction": ("lateral", "longitudinal"), "cable": ("steel", "rope")}
 _DURATION = {"free_response": 4.096, "swivel": 20.0, "straight": 10.0, "pull": 16.0, "wheel_drag": 16.0}
 
 
@@ -70,6 +71,10 @@ def simulate_to_file(params: str, request: Request, output: Path) -> Recording:
     """
     if request.experiment not in EXPERIMENTS:
         raise InputError("--experiment", f"is {request.experiment!r}", did_you_mean(request.experiment, EXPERIMENTS))
+    for option, known in _CHOICES.items():
+        value = getattr(request, option)
+        if value not in known:
+            raise InputError(f"--{option}", f"is {value!r}", did_you_mean(value, known))
     if request.duration <= 0 or request.rate <= 0 or request.duration * request.rate > 5e7:
         raise InputError("--duration-s, --rate-hz", f"ask for {request.duration * request.rate:g} samples")
     parameters = read_parameters(params)
