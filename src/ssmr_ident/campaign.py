@@ -11,6 +11,7 @@ import numpy as np
 from ssmr_ident.core.errors import InputError, did_you_mean
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.core.recording import Channel, Note, Recording
+from ssmr_ident.core.shown import Shown
 from ssmr_ident.physics.robot import accelerometer_from_parameters
 from ssmr_ident.physics.sensor import Accelerometer
 from ssmr_ident.readers import ReadOptions, read_one
@@ -49,7 +50,7 @@ class Measurement:
 
 
 @dataclass(frozen=True, eq=False)
-class Campaign:
+class Campaign(Shown):
     """A session with its parameters and recordings read."""
 
     session: Session

@@ -11,13 +11,14 @@ import numpy as np
 from ssmr_ident.campaign import Campaign
 from ssmr_ident.compare.prediction import Prediction, predict
 from ssmr_ident.core.parameter import ParameterSet
+from ssmr_ident.core.shown import Shown, html_table
 from ssmr_ident.signals.clean import MAINS_HZ, mains_line
 from ssmr_ident.signals.filters import ORDER, low_pass
 from ssmr_ident.signals.metrics import log_psd_db, nrmse_percent
 
 
 @dataclass(frozen=True, eq=False)
-class RecordingComparison:
+class RecordingComparison(Shown):
     """One recording: metric over all channels together, and channel by channel."""
 
     file: str
@@ -27,9 +28,13 @@ class RecordingComparison:
     channels: Mapping[str, float]
     prediction: Prediction
 
+    def __str__(self) -> str:
+        channels = "  ".join(f"{name} {value:.3g}" for name, value in self.channels.items())
+        return f"{self.file:<36} {self.experiment:<20} {self.value:8.3g} {_UNIT[self.metric]}  {channels}"
+
 
 @dataclass(frozen=True, eq=False)
-class Comparison:
+class Comparison(Shown):
     """A campaign against its simulation.
 
     ``overall`` holds the mean of each metric over its recordings.
@@ -38,6 +43,19 @@ class Comparison:
     session: str
     params: str
     recordings: tuple[RecordingComparison, ...]
+
+    def __getitem__(self, file: str) -> RecordingComparison:
+        return next(recording for recording in self.recordings if recording.file == file)
+
+    def _repr_html_(self) -> str:
+        rows = [
+            (r.file, r.experiment, f"{r.value:.3g} {_UNIT[r.metric]}", f"{name} {value:.3g}")
+            for r in self.recordings
+            for name, value in [max(r.channels.items(), key=lambda item: item[1])]
+        ]
+        means = [f"mean {metric}: {value:.3g} {_UNIT[metric]}" for metric, value in self.overall.items()]
+        header = ("recording", "experiment", "apart by", "worst channel")
+        return html_table(header, rows, f"{self.session} against {self.params}", means)
 
     @property
     def overall(self) -> dict[str, float]:
@@ -55,9 +73,7 @@ class Comparison:
 
     def __str__(self) -> str:
         lines = [f"{self.session} against {self.params}"]
-        for r in self.recordings:
-            channels = "  ".join(f"{name} {value:.3g}" for name, value in r.channels.items())
-            lines.append(f"  {r.file:<36} {r.experiment:<20} {r.value:8.3g} {_UNIT[r.metric]}  {channels}")
+        lines += [f"  {recording}" for recording in self.recordings]
         lines += [f"  mean {metric}: {value:.3g} {_UNIT[metric]}" for metric, value in self.overall.items()]
         return "\n".join(lines)
 

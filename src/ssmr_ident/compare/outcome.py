@@ -7,9 +7,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ssmr_ident.core.shown import Shown
+
 
 @dataclass(frozen=True, eq=False)
-class Prediction:
+class Prediction(Shown):
     """Measured and simulated channels on one even time grid.
 
     Parameters
@@ -39,3 +41,8 @@ class Prediction:
     @property
     def sample_rate(self) -> float:
         return (len(self.time) - 1) / float(self.time[-1] - self.time[0])
+
+    def __str__(self) -> str:
+        lines = [f"{', '.join(self.names)}: {len(self.time)} samples at {self.sample_rate:.6g} Hz, by {self.metric}"]
+        lines += [f"  refitted for this recording: {name} = {value:.4g}" for name, value in self.nuisances.items()]
+        return "\n".join(lines)

@@ -9,6 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from ssmr_ident.core.shown import Shown, html_table
+
 Value = float | np.ndarray
 
 
@@ -29,7 +31,7 @@ class Parameter:
 
 
 @dataclass(frozen=True)
-class Estimate:
+class Estimate(Shown):
     """What is known of a parameter.
 
     Parameters
@@ -61,7 +63,7 @@ class Estimate:
 
 
 @dataclass(frozen=True)
-class ParameterSet(Mapping[str, Estimate]):
+class ParameterSet(Shown, Mapping[str, Estimate]):
     """Estimates by dotted path (``tire.stiffness_y_N_m``), as robot.yaml and exported parameters hold them.
 
     ``effects`` maps an effect's id to its parameters; ``provenance`` is free text and numbers about the origin.
@@ -93,6 +95,11 @@ class ParameterSet(Mapping[str, Estimate]):
     def updated(self, changes: Mapping[str, Estimate], **fields: Any) -> ParameterSet:
         """A copy with some estimates replaced or added."""
         return replace(self, estimates={**self.estimates, **changes}, **fields)
+
+    def _repr_html_(self) -> str:
+        rows = [(path, str(e), e.source + (", fixed" if e.fixed else "")) for path, e in self.estimates.items()]
+        rows += [(f"{id}: {key}", str(e), e.source) for id, block in self.effects.items() for key, e in block.items()]
+        return html_table(("parameter", "value", "source"), rows, f"parameters of {self.name}")
 
     def __str__(self) -> str:
         width = max((len(path) for path in self.estimates), default=0)

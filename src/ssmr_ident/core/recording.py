@@ -7,9 +7,11 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from ssmr_ident.core.shown import Shown, html_table
+
 
 @dataclass(frozen=True)
-class Note:
+class Note(Shown):
     """Something the reader noticed: a conversion, a skipped part, a doubt.
 
     ``level`` is ``info`` for what was done as expected and ``warning`` for what the user should look at.
@@ -59,7 +61,7 @@ class Channel:
 
 
 @dataclass(frozen=True)
-class Recording:
+class Recording(Shown):
     """Channels on one time axis.
 
     Parameters
@@ -124,6 +126,16 @@ class Recording:
     def with_channels(self, channels: Sequence[Channel], *notes: Note) -> Recording:
         """The same recording with other channels and further notes."""
         return replace(self, channels=tuple(channels), notes=self.notes + notes)
+
+    def _repr_html_(self) -> str:
+        rows = [
+            (c.name, c.label, c.unit, f"{np.nanmin(c.samples):.5g}", f"{np.nanmax(c.samples):.5g}")
+            for c in self.channels
+            if len(c.samples)
+        ]
+        rate = f", {self.sample_rate:.6g} Hz" if len(self.time) > 1 else ""
+        title = f"{self.provenance.file} ({self.provenance.reader}): {len(self.time)} samples{rate}"
+        return html_table(("channel", "header", "unit", "min", "max"), rows, title, map(str, self.notes))
 
     def __str__(self) -> str:
         rate = f"{self.sample_rate:.6g} Hz" if len(self.time) > 1 else "no rate"

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from ssmr_ident.core.parameter import Estimate, ParameterSet
+from ssmr_ident.core.shown import Shown
 from ssmr_ident.diagnose.evidence import Evidence
 
 SCHEMA = "ssmr-ident/diagnosis/1"
@@ -106,7 +107,7 @@ class Worth:
 
 
 @dataclass(frozen=True, eq=False)
-class Diagnosis:
+class Diagnosis(Shown):
     """The answer of ``ident diagnose``.
 
     Parameters

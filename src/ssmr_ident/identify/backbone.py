@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import norm
 
+from ssmr_ident.core.shown import Shown
 from ssmr_ident.identify.decay_result import DecayFit
 from ssmr_ident.identify.decay_start import nuisance_columns
 from ssmr_ident.identify.poles import Block, fit_poles, modelled
@@ -20,7 +21,7 @@ Array = np.ndarray
 
 
 @dataclass(frozen=True)
-class Backbone:
+class Backbone(Shown):
     """Local modes along a decay.
 
     Parameters

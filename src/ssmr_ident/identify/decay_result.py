@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 import lmfit
 import numpy as np
 
+from ssmr_ident.core.shown import Shown
 from ssmr_ident.identify.lmfit_report import Variable, matrix_correlations, variables_report
 from ssmr_ident.identify.poles import Block, PoleFit, fit_poles, modelled
 
@@ -54,7 +55,7 @@ class Mode:
 
 
 @dataclass(frozen=True)
-class DecayFit:
+class DecayFit(Shown):
     """Modes of one decay, or of several fitted together.
 
     Parameters

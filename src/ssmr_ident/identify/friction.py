@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ssmr_ident.core.shown import Shown
 from ssmr_ident.identify.sawtooth import Pull, Tooth
 from ssmr_ident.physics.robot import Robot
 from ssmr_ident.physics.statics import rest_loads
@@ -15,7 +16,7 @@ Array = np.ndarray
 
 
 @dataclass(frozen=True)
-class Friction:
+class Friction(Shown):
     """Coefficients of one pull.
 
     Parameters

@@ -7,11 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ssmr_ident.core.shown import Shown
+
 Array = np.ndarray
 
 
 @dataclass(frozen=True)
-class Measured:
+class Measured(Shown):
     """A length with its standard deviation [m]."""
 
     value: float

@@ -10,6 +10,7 @@ import numpy as np
 
 from ssmr_ident.core.errors import InputError, did_you_mean
 from ssmr_ident.core.parameter import Estimate, ParameterSet
+from ssmr_ident.core.shown import Shown
 from ssmr_ident.identify.geometry import Component, Measured, assemble, box, from_two_weighings, height_from_tilting
 from ssmr_ident.identify.lmfit_report import Variable, variables_report
 
@@ -25,7 +26,7 @@ DRAWS = 4000
 
 
 @dataclass(frozen=True, eq=False)
-class RobotGeometry:
+class RobotGeometry(Shown):
     """What a sheet of measurements gives.
 
     Parameters

@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.stats import chi2
 
+from ssmr_ident.core.shown import Shown
 from ssmr_ident.identify.flatness import flat_directions
 from ssmr_ident.identify.objective import Objective, Observation, Samples, Unknown
 from ssmr_ident.identify.output_error import System
@@ -24,7 +25,7 @@ __all__ = ["Observation", "Posterior", "Samples", "Unknown", "most_probable"]
 
 
 @dataclass(frozen=True)
-class Posterior:
+class Posterior(Shown):
     """Most probable parameters and what is known of them afterwards.
 
     Parameters

@@ -15,6 +15,7 @@ import numpy as np
 from scipy.stats import chi2
 from scipy.stats import t as student
 
+from ssmr_ident.core.shown import Shown
 from ssmr_ident.identify.lmfit_report import Variable, matrix_correlations, variables_report
 from ssmr_ident.identify.noise import long_run_variance, whiteness
 
@@ -42,7 +43,7 @@ class ForcedRecord:
 
 
 @dataclass(frozen=True)
-class RigFit:
+class RigFit(Shown):
     """Mass, damper and spring of a rig (inertia, N m s/rad, N m/rad for a rotary one).
 
     Parameters

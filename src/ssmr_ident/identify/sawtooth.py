@@ -12,6 +12,7 @@ from itertools import pairwise
 import numpy as np
 from scipy.ndimage import median_filter
 
+from ssmr_ident.core.shown import Shown
 from ssmr_ident.identify.ramps import Ramp, find_ramps, noise_of
 
 Array = np.ndarray
@@ -41,7 +42,7 @@ class Tooth:
 
 
 @dataclass(frozen=True)
-class Pull:
+class Pull(Shown):
     """A pull taken apart.
 
     Parameters

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import lmfit
 import numpy as np
 
+from ssmr_ident.core.shown import Shown
 from ssmr_ident.identify.lmfit_report import Variable, variables_report
 
 Array = np.ndarray
@@ -79,7 +80,7 @@ class StiffnessLaw:
 
 
 @dataclass(frozen=True)
-class StiffnessChoice:
+class StiffnessChoice(Shown):
     """Laws compared; the first has the best evidence.
 
     Parameters

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ssmr_ident.core.shown import Shown
 from ssmr_ident.identify.coupled import plane_modes
 from ssmr_ident.identify.posterior import Observation, Posterior, Unknown, most_probable
 from ssmr_ident.identify.tire_parameters import MOTIONS, Geometry, natural_frequency, rotation_inertia
@@ -40,7 +41,7 @@ CAD_SPREAD = 0.10
 
 
 @dataclass(frozen=True)
-class TableResolution:
+class TableResolution(Shown):
     """Both explanations of Table 5.2.
 
     Parameters

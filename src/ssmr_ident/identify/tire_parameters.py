@@ -10,6 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ssmr_ident.core.shown import Shown
+
 MOTIONS = ("roll", "pitch", "yaw")
 
 
@@ -33,7 +35,7 @@ class Geometry:
 
 
 @dataclass(frozen=True)
-class TireParameters:
+class TireParameters(Shown):
     """Result of (5.10), or of the exact 3×3 system.
 
     Parameters

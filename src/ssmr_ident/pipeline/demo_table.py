@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from ssmr_ident.core.errors import InputError
+from ssmr_ident.core.shown import Shown
 from ssmr_ident.pipeline.fit import SessionFit
 
 
@@ -27,7 +28,7 @@ class DemoRow:
 
 
 @dataclass(frozen=True)
-class DemoTable:
+class DemoTable(Shown):
     """The table that the main job ends in."""
 
     rows: tuple[DemoRow, ...]

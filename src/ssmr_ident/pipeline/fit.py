@@ -11,6 +11,7 @@ from ssmr_ident import __version__
 from ssmr_ident.campaign import Campaign, Measurement, load
 from ssmr_ident.core.errors import InputError, did_you_mean
 from ssmr_ident.core.parameter import ParameterSet
+from ssmr_ident.core.shown import Shown
 from ssmr_ident.identify.lmfit_report import Variable
 from ssmr_ident.report.figures_fit import NamedBackbone, NamedPull, backbone_figure, sawtooth_figure
 from ssmr_ident.report.style import save
@@ -20,7 +21,7 @@ METHODS = ("output-error", "modal")
 
 
 @dataclass(frozen=True, eq=False)
-class SessionFit:
+class SessionFit(Shown):
     """What ``ident fit`` found.
 
     Parameters

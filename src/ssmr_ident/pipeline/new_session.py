@@ -13,6 +13,7 @@ import yaml
 
 from ssmr_ident.core.atomic import write_text
 from ssmr_ident.core.errors import InputError, did_you_mean
+from ssmr_ident.core.shown import Shown
 from ssmr_ident.pipeline.new_log import TODO, LogGuess, guess_log
 from ssmr_ident.pipeline.new_robot import block_text, rig_text, robot_text
 from ssmr_ident.readers import read
@@ -38,7 +39,7 @@ class Question:
 
 
 @dataclass(frozen=True, eq=False)
-class Draft:
+class Draft(Shown):
     """A session to be.
 
     Parameters

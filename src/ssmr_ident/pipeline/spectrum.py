@@ -12,6 +12,7 @@ import numpy as np
 from ssmr_ident.campaign import load
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.recording import Channel, Note, Recording
+from ssmr_ident.core.shown import Shown
 from ssmr_ident.pipeline.spectrum_table import (
     RATE_LABEL,
     RecordingLabel,
@@ -70,7 +71,7 @@ class SpectrumChoices:
 
 
 @dataclass(frozen=True, eq=False)
-class SpectrumReport:
+class SpectrumReport(Shown):
     """Rows, their averages over repeated swivels, what was noticed, and the files written."""
 
     source: str

@@ -8,12 +8,13 @@ from types import ModuleType
 import numpy as np
 
 from ssmr_ident.core.errors import InputError
+from ssmr_ident.core.shown import Shown
 from ssmr_ident.physics.robot import Robot
 from ssmr_ident.proof.mujoco_robot import AXES, WHEELS, Build, Cable, Mast, mjcf, start
 
 
 @dataclass(frozen=True, eq=False)
-class MujocoRun:
+class MujocoRun(Shown):
     """What the engine gave, under the simulator's names and in SI.
 
     Parameters

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ssmr_ident.core.recording import Channel, Note, Recording
+from ssmr_ident.core.shown import Shown
 
 # The thesis' accelerometer: 2.6 V at rest and 5/(3.4*9.8) V per m/s^2, so that +-1.7 g is 0.1 to 5.1 V; its supply
 # ends at 5 V. A session's robot.yaml may say otherwise; these rails only raise a warning.
@@ -45,7 +46,7 @@ class ChannelHealth:
 
 
 @dataclass(frozen=True)
-class LogHealth:
+class LogHealth(Shown):
     """The time axis and the channels of a recording.
 
     Parameters

@@ -8,6 +8,8 @@ import re
 from dataclasses import dataclass
 from datetime import UTC, datetime
 
+from ssmr_ident.core.shown import Shown
+
 _POINT = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][+-]?\d{1,4})?\Z", re.ASCII)
 _COMMA = re.compile(r"[+-]?(?:\d+,?\d*|,\d+)(?:[eEdD][+-]?\d{1,4})?\Z", re.ASCII)
 # a group of thousands never starts with 0: 0,001 is a decimal comma, not one thousandth of thousands
@@ -48,7 +50,7 @@ _DATED = re.compile(r"(\S+?)[T\s]+(\d{1,2}:\d{2}:\d{2}(?:[.,]\d+)?(?:\s*[AaPp][M
 
 
 @dataclass(frozen=True)
-class Dialect:
+class Dialect(Shown):
     """How a text log separates its cells and its decimals.
 
     Parameters

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ssmr_ident.core.errors import InputError, did_you_mean
+from ssmr_ident.core.shown import Shown
 from ssmr_ident.session.parameters_file import bundled_robots
 from ssmr_ident.session.yaml_file import load_mapping
 
@@ -61,7 +62,7 @@ class Entry:
 
 
 @dataclass(frozen=True)
-class Session:
+class Session(Shown):
     """A session folder: its name, robot, baseline and recordings.
 
     ``robot`` is the path of the parameter file, or the name of a bundled robot.

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import signal
 
+from ssmr_ident.core.shown import Shown
 from ssmr_ident.signals import clean, filters
 from ssmr_ident.signals.checks import checked_samples
 from ssmr_ident.signals.peaks import BAND_HZ, Peaks, find_peaks
@@ -39,7 +40,7 @@ class AnalysisOptions:
 
 
 @dataclass(frozen=True, eq=False)
-class ChannelAnalysis:
+class ChannelAnalysis(Shown):
     """What section 3.2 says of one channel of one log.
 
     Parameters

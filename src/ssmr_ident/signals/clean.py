@@ -8,13 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from ssmr_ident.core.errors import InputError
+from ssmr_ident.core.shown import Shown
 from ssmr_ident.signals.checks import checked_samples
 
 MAINS_HZ = 60.0
 
 
 @dataclass(frozen=True)
-class Line:
+class Line(Shown):
     """A sine ``amplitude·cos(2π·frequency·t + phase)`` in a record, t from its first sample.
 
     Parameters

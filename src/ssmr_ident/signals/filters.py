@@ -16,6 +16,7 @@ import numpy as np
 from scipy import signal
 
 from ssmr_ident.core.errors import InputError
+from ssmr_ident.core.shown import Shown
 from ssmr_ident.signals.checks import checked_samples
 
 ORDER = 10
@@ -32,7 +33,7 @@ SETTLED = 1e-3
 
 
 @dataclass(frozen=True)
-class Butterworth:
+class Butterworth(Shown):
     """A filter ready for use on records of one sample rate.
 
     Parameters

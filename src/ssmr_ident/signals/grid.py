@@ -8,10 +8,11 @@ import numpy as np
 
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.recording import Note
+from ssmr_ident.core.shown import Shown
 
 
 @dataclass(frozen=True)
-class EvenSamples:
+class EvenSamples(Shown):
     """Samples on an even grid.
 
     Parameters

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ssmr_ident.core.errors import InputError
+from ssmr_ident.core.shown import Shown
 from ssmr_ident.signals.checks import checked_samples
 from ssmr_ident.signals.filters import SWIVEL_LOW_PASS_HZ, low_pass
 from ssmr_ident.signals.spectra import Spectrum
@@ -17,7 +18,7 @@ SPACING_HZ = 1.0
 
 
 @dataclass(frozen=True)
-class Peaks:
+class Peaks(Shown):
     """Local maxima of an amplitude spectrum, highest first.
 
     Parameters

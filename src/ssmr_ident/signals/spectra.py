@@ -9,6 +9,7 @@ import numpy as np
 from scipy import signal
 
 from ssmr_ident.core.errors import InputError, did_you_mean
+from ssmr_ident.core.shown import Shown
 from ssmr_ident.signals.checks import checked_samples
 
 SWIVEL_LENGTH = 2**14
@@ -19,7 +20,7 @@ RANGES = ("middle", "beginning", "end", "all")
 
 
 @dataclass(frozen=True)
-class SampleRange:
+class SampleRange(Shown):
     """Part of a record: ``count`` samples from index ``first``.
 
     ``name`` is how it was asked for: one of ``RANGES`` or ``T0:T1`` in seconds.
@@ -104,7 +105,7 @@ def _time_range(n: int, sample_rate: float, wanted: str, start: float) -> Sample
 
 
 @dataclass(frozen=True)
-class Spectrum:
+class Spectrum(Shown):
     """One-sided amplitude spectrum of a part of a record.
 
     Parameters
@@ -166,7 +167,7 @@ def amplitude_spectrum(samples: np.ndarray, sample_rate: float) -> Spectrum:
 
 
 @dataclass(frozen=True)
-class PowerDensity:
+class PowerDensity(Shown):
     """Power spectral density.
 
     Parameters

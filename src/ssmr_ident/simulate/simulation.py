@@ -9,6 +9,7 @@ import numpy as np
 
 from ssmr_ident.core.errors import SimulationError
 from ssmr_ident.core.recording import Channel, Provenance, Recording
+from ssmr_ident.core.shown import Shown
 from ssmr_ident.physics.effect import Site
 from ssmr_ident.physics.effects import CATALOGUE, ground_roughness
 from ssmr_ident.physics.robot import GRAVITY, Robot
@@ -40,7 +41,7 @@ UNITS = dict(zip(k.OUTPUTS, _UNITS, strict=True))
 
 
 @dataclass(frozen=True, eq=False)
-class Simulation:
+class Simulation(Shown):
     """What the simulator gave: true quantities, before noise, clipping and volts.
 
     Parameters

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ssmr_ident.core.shown import Shown
 from ssmr_ident.physics.linear import linear_robot
 from ssmr_ident.physics.robot import Robot
 from ssmr_ident.physics.slots import MAST_HZ
@@ -20,7 +21,7 @@ LONGEST, SHORTEST = 2e-4, 5e-6  # s
 
 
 @dataclass(frozen=True)
-class StepChoice:
+class StepChoice(Shown):
     """A step and what limits it.
 
     Parameters
