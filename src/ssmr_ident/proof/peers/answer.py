@@ -8,10 +8,11 @@ from typing import Any
 
 from ssmr_ident.campaign import Campaign
 from ssmr_ident.core.errors import InputError
+from ssmr_ident.core.shown import Shown
 
 
 @dataclass(frozen=True)
-class PeerAnswer:
+class PeerAnswer(Shown):
     """One peer on one session.
 
     Parameters
