@@ -18,7 +18,6 @@ __version__ = "0.1.0"
 # name: room and the name it has there; verbs are told apart from the rooms of the same name
 _DOOR = {
     "read": ("readers", "read"),
-    "read_session": ("session", "read_session"),
     "read_parameters": ("session", "read_parameters"),
     "write_parameters": ("session", "write_parameters"),
     "load": ("campaign", "load"),
@@ -30,6 +29,7 @@ _DOOR = {
     "fit_decay": ("identify.decay", "fit_decay"),
     "fit_session": ("pipeline.fit", "fit_session"),
     "compare_session": ("pipeline.compare", "compare_session"),
+    "plot": ("pipeline.plot", "plot"),
 }
 
 __all__ = [*_DOOR, "__version__"]
