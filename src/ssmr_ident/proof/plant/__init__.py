@@ -1,0 +1,1 @@
+"""The plant: a robot and a rig in MuJoCo whose physics shares no law with the bundled simulator."""
