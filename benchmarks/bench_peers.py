@@ -99,12 +99,9 @@ def report(rows: list[dict[str, Any]]) -> None:
         nulls, missing = [r for r in part if not r["truth"]], [r for r in part if r["truth"]]
         named = sum(set(r["truth"]) == set(r["effects"]) for r in missing)
         print(f"{peer}: {np.median([r['seconds'] for r in part]):.1f} s a session (median)")
-        print(
-            f"  says that something is missing where nothing is   {share(sum(r['missing'] for r in nulls), len(nulls))}"
-        )
-        print(
-            f"  … and where something is                          {share(sum(r['missing'] for r in missing), len(missing))}"
-        )
+        alarms, seen = (share(sum(r["missing"] for r in group), len(group)) for group in (nulls, missing))
+        print(f"  says that something is missing where nothing is   {alarms}")
+        print(f"  … and where something is                          {seen}")
         print(f"  names it and nothing else                         {share(named, len(missing))}")
         inside, total, off = 0, 0, []
         for r in missing:
