@@ -5,16 +5,19 @@ from __future__ import annotations
 from pathlib import Path
 
 from ssmr_ident.compare import Comparison, RecordingComparison
-from ssmr_ident.pipeline.demo import Demo
+from ssmr_ident.pipeline.demo import COMPARED, SWIVELS, Demo
 from ssmr_ident.report.figures_speed import amplitude_figure, peaks_figure
-from ssmr_ident.report.html import Page, Picture, Section, Table, picture, write_page
+from ssmr_ident.report.html import Fact, Page, Picture, Section, Table, Verdict, file_hashes, picture, write_page
+from ssmr_ident.report.numbers import number
 from ssmr_ident.report.overlay import overlay_figure
+from ssmr_ident.session import read_session
 
 _SHOWN = {
     "free_response": ("roll-1.xlsx", "pitch-1.xlsx", "yaw-1.xlsx"),
     "pulls": ("concrete-lateral-steel-1.txt", "concrete-longitudinal-steel-1.txt", "concrete-wheel-compression-1.txt"),
     "swivel": ("v0-w30-t20-frame-concrete.xlsx", "v0-w60-t20-frame-concrete.xlsx"),
 }
+_HOW = {"nrmse_percent": "course over time", "log_psd_db": "power spectrum"}
 _UNITS = {"nrmse_percent": "%", "log_psd_db": "dB"}
 
 
@@ -29,13 +32,19 @@ def write_demo_report(demo: Demo, command: str) -> Path:
     """
     decays, pulls, swivels = demo.comparisons
     lead = (
-        "Recordings of a synthetic campaign in the formats of the 2012 thesis, read, filtered, fitted, and simulated "
-        "with what the fit found. Nothing here was measured: the logs come from this package's own simulator with "
-        "noise, hum and converter steps, so what comes out can be checked against what went in.",
-        f"Simulated with the identified parameters, the free responses differ from the recordings by "
-        f"{decays.overall['nrmse_percent']:.1f} % on average (all channels, below 50 Hz), the pulls by "
-        f"{pulls.overall['nrmse_percent']:.1f} %, and the spectra of the swivels on concrete by "
-        f"{swivels.overall['log_psd_db']:.1f} dB.",
+        "Nothing here was measured: the logs come from this package's own simulator with noise, hum and converter "
+        "steps, so what comes out can be checked against what went in.",
+    )
+    verdict = Verdict(
+        "From logs to parameters, to a simulation, and back to the logs",
+        "",
+        "Recordings of a synthetic campaign in the formats of the 2012 thesis were read, filtered, fitted; simulated "
+        "with what the fits found, they differ from the recordings by so much:",
+        (
+            _distance("Free responses", decays, "of the recording's size, below 50 Hz"),
+            _distance("Pulls and bench tests", pulls, "of the recording's size"),
+            _distance("Swivels on concrete", swivels, "between levels of spectra, 1 to 50 Hz"),
+        ),
     )
     sections = (
         Section(
@@ -69,7 +78,8 @@ def write_demo_report(demo: Demo, command: str) -> Path:
             listings=(str(demo.pulls), str(demo.decays)),
         ),
     )
-    page = Page("Skid-steering robot: from logs to parameters to simulation", lead, sections, command, _files(demo))
+    title = "Skid-steering robot: the main job on the reference campaign"
+    page = Page(title, lead, sections, command, file_hashes(_files(demo)), verdict=verdict)
     return write_page(demo.output / "report.html", page)
 
 
@@ -78,14 +88,15 @@ def _spectra(demo: Demo) -> Section:
     for report in demo.spectra:
         for configuration in dict.fromkeys(average.configuration for average in report.averages):
             own = [average for average in report.averages if average.configuration == configuration]
-            caption = f"{configuration}: the three highest peaks of each axis over the yaw rate."
-            figures.append(
-                picture(peaks_figure(configuration, own, report.speed_label), caption, f"peaks {configuration}")
+            alt = f"{configuration}: frequency and height of the three highest peaks of each axis over the yaw rate."
+            caption = (
+                f"{configuration}: at which frequencies the robot shakes most along each axis (above), how strongly "
+                "(middle), and how far the whole signal swings (below), over the speed at which it turns."
             )
-        caption = f"Amplitude (half of maximum minus minimum, below 50 Hz) over the yaw rate, {report.source}."
-        figures.append(
-            picture(amplitude_figure(report.averages, report.speed_label), caption, f"amplitudes {report.source}")
-        )
+            figures.append(picture(peaks_figure(configuration, own, report.speed_label), caption, alt))
+        alt = f"Amplitude of each axis over the yaw rate, {Path(report.source).parent.name}, one line per floor."
+        caption = "How far the signal swings (half of maximum minus minimum, below 50 Hz) over the turning speed."
+        figures.append(picture(amplitude_figure(report.averages, report.speed_label), caption, alt))
     return Section(
         "Spectra of the swivels", ("Peaks and amplitudes as in Appendix B of the thesis.",), figures=tuple(figures)
     )
@@ -99,8 +110,8 @@ def _comparison(title: str, comparison: Comparison, shown: tuple[str, ...], text
     figures = tuple(
         picture(
             overlay_figure(r.prediction, r.file),
-            f"{r.file}: recorded and simulated, {_value(r, r.value)} apart.",
-            f"overlay {r.file}",
+            f"{r.file}: recorded (grey) and simulated (orange), {_value(r, r.value)} apart.",
+            f"{r.file}: {_HOW[r.metric]} of each channel, recorded and simulated, {_value(r, r.value)} apart.",
         )
         for r in comparison.recordings
         if r.file in shown
@@ -121,9 +132,20 @@ def _channels(recording: RecordingComparison) -> str:
     return ", ".join(f"{name} {_value(recording, value)}" for name, value in recording.channels.items())
 
 
-def _files(demo: Demo) -> tuple[tuple[str, str], ...]:
-    """Name and SHA-256 of every log that the fits used."""
-    found: dict[str, str] = {}
-    for fit in (demo.pulls, demo.carpet, demo.decays):
-        found |= {row["file"]: row["sha256"] for row in fit.parameters.provenance["files"]}
-    return tuple(found.items())
+def _distance(name: str, comparison: Comparison, what: str) -> Fact:
+    """Mean over recordings, with the range that they span."""
+    metric, mean = next(iter(comparison.overall.items()))
+    values = [r.value for r in comparison.recordings]
+    note = f"{what}; {number(min(values))} … {number(max(values))} {_UNITS[metric]} over {len(values)} recordings"
+    return Fact(name, f"{number(mean)} {_UNITS[metric]}", note)
+
+
+def _files(demo: Demo) -> list[Path]:
+    """Every file that was read: sessions, what they say of the robot, and their logs."""
+    raw = Path(demo.spectra[0].source).parent.parent
+    found: list[Path] = []
+    for name in dict.fromkeys((*COMPARED, *SWIVELS, "pulls/carpet.yaml")):
+        session = read_session(raw / name)
+        robot = session.folder / session.robot
+        found += [raw / name, *([robot] if robot.is_file() else []), *(session.path(e) for e in session.entries)]
+    return found

@@ -29,11 +29,11 @@ def _maps(diagnosis: Diagnosis) -> tuple[Picture, ...]:
             alt = f"{name}, {title}: {above} % of the map lies above what noise makes once in 100 maps."
             drawings.append(drawing(residual_map_panel(m, power, title), alt, f"residual-map-{index}-{tag}"))
         caption = (
-            f"{name}: when (from left to right) and at which frequency (from low to high) the model differs from the "
+            "When (from left to right) and at which frequency (from low to high) the model differs from the "
             "recording. Pale speckle is what noise alone makes. Full colour with a line round it is more than noise "
             f"alone would show in one of 100 such maps: above {number(m.threshold_db)} dB, marked on the scale."
         )
-        pictures.append(Picture(tuple(drawings), caption, "What is left over, by time and frequency"))
+        pictures.append(Picture(tuple(drawings), caption, f"What is left over, by time and frequency: {name}"))
     return tuple(pictures)
 
 
@@ -51,13 +51,13 @@ def _surfaces(diagnosis: Diagnosis) -> tuple[Picture, ...]:
             for over in ("displacement", "velocity")
         ]
         caption = (
-            f"{s.recording}, {s.where}: the force that the model does not explain, wherever the motion came. Orange "
+            "The force that the model does not explain, wherever the motion came. Orange "
             "pushes one way, blue the other, uncoloured is explained, grey was never reached. Then the same force over "
             "displacement and over velocity alone, with the middle 80 % of its values shaded: a bend over displacement "
             "is a spring that is not straight, a step over velocity is friction, a flat line at zero leaves nothing "
             "to explain."
         )
-        pictures.append(Picture(tuple(drawings), caption, "The force that is not explained"))
+        pictures.append(Picture(tuple(drawings), caption, f"The force that is not explained: {s.recording}, {s.where}"))
     return tuple(pictures)
 
 
@@ -93,9 +93,9 @@ def _waterfalls(diagnosis: Diagnosis) -> tuple[Picture, ...]:
         alt = f"{s.channel}: difference in level between recorded and simulated spectra at each turning speed."
         drawings.append(drawing(level_panel(s, after), alt, f"levels-{index}"))
         caption = (
-            f"{s.channel}: how strongly the robot shakes at each turning speed and frequency; fuller colour is "
+            "How strongly the robot shakes at each turning speed and frequency; fuller colour is "
             "stronger. A line that keeps its frequency comes from the structure, one that rises with speed from wheels "
             "or floor; dashed and dotted lines show where each candidate would lie. Last, how far the levels are apart."
         )
-        pictures.append(Picture(tuple(drawings), caption, "Vibration over turning speed"))
+        pictures.append(Picture(tuple(drawings), caption, f"Vibration over turning speed: {s.channel}"))
     return tuple(pictures)

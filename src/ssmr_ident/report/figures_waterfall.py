@@ -31,9 +31,10 @@ def waterfall_panel(speeds: SpeedMap, density: np.ndarray, title: str) -> Figure
     figure = style.new_figure(PANEL, 3.2)
     axes = figure.subplots()
     top = float(np.nanmax(speeds.recorded))
+    bottom = max(top - WATERFALL_DB, float(np.nanquantile(speeds.recorded, 0.02)))
     turning = np.rad2deg(speeds.speed)
     image = axes.pcolormesh(
-        _edges(turning), _edges(speeds.frequency), density.T, cmap=POWER, vmin=top - WATERFALL_DB, vmax=top,
+        _edges(turning), _edges(speeds.frequency), density.T, cmap=POWER, vmin=bottom, vmax=top,
         rasterized=True,
     )  # fmt: skip
     _candidates(axes, speeds, turning)

@@ -19,7 +19,7 @@ from ssmr_ident import __version__
 from ssmr_ident.core.atomic import write_text
 from ssmr_ident.report.svg import drawn, inline
 
-_BEGINS_WITH_NUMBER = re.compile(r"^\(?[−+-]?(\d|∞|$)|^–$")
+_BEGINS_WITH_NUMBER = re.compile(r"^\(?[−+-]?(\d|∞)|^–$")
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ Cell = str | Number
 
 @dataclass(frozen=True)
 class Table:
-    """A table; columns whose cells all begin with a number are set as numbers. Readers may sort by any column."""
+    """A table; columns whose cells mostly begin with a number are set as numbers. Readers may sort by any column."""
 
     caption: str
     header: tuple[str, ...]
@@ -43,8 +43,9 @@ class Table:
 
     def numeric(self, column: int) -> bool:
         """Whether a column is set as numbers."""
-        cells = [row[column] for row in self.rows]
-        return column > 0 and all(isinstance(c, Number) or bool(_BEGINS_WITH_NUMBER.match(c)) for c in cells)
+        cells = [cell for row in self.rows if (cell := row[column])]
+        numbers = [isinstance(cell, Number) or bool(_BEGINS_WITH_NUMBER.match(cell)) for cell in cells]
+        return column > 0 and sum(numbers) > len(numbers) / 2
 
 
 @dataclass(frozen=True)

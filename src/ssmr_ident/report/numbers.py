@@ -88,7 +88,7 @@ def _aligned(values: tuple[float, float], width: float) -> tuple[tuple[str, str]
 
 def _power(value: float) -> int:
     """Power of ten to take out: none for what reads well without."""
-    return 0 if value == 0 or 1e-3 <= abs(value) < 1e5 else math.floor(math.log10(abs(value)))
+    return 0 if value == 0 or 1e-2 <= abs(value) < 1e5 else math.floor(math.log10(abs(value)))
 
 
 def _join(text: str, power: int) -> str:
