@@ -92,3 +92,25 @@ def test_a_simulated_log_reads_back_like_a_real_one(tmp_path: Path) -> None:
     seen = _ident("inspect", "roll.lvm", "--json", cwd=tmp_path)
     assert seen.returncode == 0, seen.stderr
     assert '"lvm"' in seen.stdout
+
+
+def test_an_effect_is_simulated_by_name(tmp_path: Path) -> None:
+    logs = {}
+    for name, extra in {
+        "without": (),
+        "nominal": ("--effect", "dry_friction"),
+        "given": ("--effect", "dry_friction:F_c_N=2,element_stiffness_N_m=50000"),
+    }.items():
+        call = ("simulate", "p3at-extended", "-e", "free_response", "--duration-s", "0.2", *extra, "-o", f"{name}.csv")
+        done = _ident(*call, cwd=tmp_path)
+        assert done.returncode == 0, done.stderr
+        logs[name] = (tmp_path / f"{name}.csv").read_text()
+    assert len(set(logs.values())) == 3
+    for wrong, told in (
+        ("dry_frictio", "Did you mean 'dry_friction'"),
+        ("dry_friction:Fc=2", "F_c_N"),
+        ("dry_friction:2", "KEY=VALUE"),
+    ):
+        done = _ident("simulate", "p3at-extended", "-e", "free_response", "--effect", wrong, cwd=tmp_path)
+        assert done.returncode == 2
+        assert told in done.stderr

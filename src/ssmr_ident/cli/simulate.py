@@ -18,6 +18,7 @@ EXAMPLES = (
     "ident simulate p3at-extended -e free_response --motion pitch --noise --seed 7 -o pitch-1.xlsx",
     "ident simulate params.yaml -e swivel --yaw-rate-deg-s 45 -o swivel.csv",
     "ident simulate p3at-extended -e pull --direction lateral --cable rope -o pull-1.txt",
+    "ident simulate p3at-extended -e free_response --effect dry_friction:F_c_N=2 -o roll-1.csv",
     "ident simulate rig.yaml -e forced --force shaker.csv -o answer.csv",
 )
 
@@ -51,6 +52,14 @@ def command(
     yaw_rate_deg_s: Annotated[float, typer.Option(help="Swivel: wanted yaw rate.")] = 45.0,
     speed_m_s: Annotated[float, typer.Option(help="Straight: wanted speed.")] = 0.3,
     force: Annotated[str, typer.Option(help="Forced rig: a log with columns time and force.")] = "",
+    effect: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="ID[:KEY=VALUE,...]",
+            help="Physics beside the file's, nominal where no value is given; ident effects lists it.",
+            autocompletion=completion.effect_ids,
+        ),
+    ] = None,
     duration_s: Annotated[float | None, typer.Option(help="Length of the recording.")] = None,
     rate_hz: Annotated[float | None, typer.Option(help="Samples per second.")] = None,
     noise: Annotated[bool, typer.Option(help="Add the noise of the parameter file's noise block.")] = False,
@@ -67,6 +76,7 @@ def command(
         speed_mm_s=speed_mm_s, height_m=height_m, wheels_gripping=wheels_gripping, cable=cable,
         wheel_rate_rad_s=wheel_rate_rad_s, free_normal=free_normal, yaw_rate_deg_s=yaw_rate_deg_s,
         speed_m_s=speed_m_s, force=force, duration_s=duration_s, rate_hz=rate_hz, noise=noise, seed=seed,
+        effects=tuple(effect or ()),
     )  # fmt: skip
     with doing(FIRST_RUN, hidden=quiet or as_json):
         recording = simulate_to_file(params, request, output)

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from ssmr_ident.core.errors import InputError, did_you_mean
-from ssmr_ident.core.parameter import ParameterSet
+from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.core.recording import Channel, Provenance, Recording
 from ssmr_ident.physics.motor import wheel_rates
 from ssmr_ident.physics.rig import rig_from_parameters
@@ -48,6 +48,7 @@ class Request:
     rate_hz: float | None = None
     noise: bool = False
     seed: int = 0
+    effects: tuple[str, ...] = ()
 
     @property
     def duration(self) -> float:
@@ -77,12 +78,28 @@ def simulate_to_file(params: str, request: Request, output: Path) -> Recording:
             raise InputError(f"--{option}", f"is {value!r}", did_you_mean(value, known))
     if request.duration <= 0 or request.rate <= 0 or request.duration * request.rate > 5e7:
         raise InputError("--duration-s, --rate-hz", f"ask for {request.duration * request.rate:g} samples")
-    parameters = read_parameters(params)
+    parameters = _with_effects(read_parameters(params), request.effects)
     recording = _run(parameters, request)
     if request.noise:
         recording = _noisy(recording, parameters, request.seed)
     _write(output, recording, parameters)
     return recording
+
+
+def _with_effects(parameters: ParameterSet, wanted: tuple[str, ...]) -> ParameterSet:
+    """Effects as the command line names them, ``ID`` or ``ID:KEY=VALUE,…``, beside those of the file."""
+    effects = dict(parameters.effects)
+    for text in wanted:
+        effect_id, _, pairs = text.partition(":")
+        given: dict[str, Estimate] = {}
+        for pair in pairs.split(",") if pairs else ():
+            key, _, value = (part.strip() for part in pair.partition("="))
+            try:
+                given[key] = Estimate(float(value))
+            except ValueError:
+                raise InputError("--effect", f"{pair!r} is no KEY=VALUE", "Such as dry_friction:F_c_N=2") from None
+        effects[effect_id] = given
+    return replace(parameters, effects=effects)
 
 
 def _write(output: Path, recording: Recording, parameters: ParameterSet) -> None:
