@@ -17,7 +17,8 @@ from matplotlib.figure import Figure
 
 from ssmr_ident import __version__
 from ssmr_ident.core.atomic import write_text
-from ssmr_ident.report.svg import drawn, inline
+from ssmr_ident.report.dark import declarations
+from ssmr_ident.report.svg import colours, drawn, inline
 
 _BEGINS_WITH_NUMBER = re.compile(r"^\(?[−+-]?(\d|∞)|^–$")
 
@@ -160,7 +161,9 @@ def render_page(page: Page) -> str:
     environment.filters["inline"] = lambda d: Markup(inline(d.svg, f"d{next(numbered)}", d.alt))
     inside = {name: Markup((folder / f"report.{name}").read_text(encoding="utf-8")) for name in ("css", "js")}
     template = environment.from_string((folder / "report.html").read_text(encoding="utf-8"))
-    return template.render(page=page, **inside)
+    drawings = [item for section in page.sections for figure in section.figures for item in figure.drawings]
+    own = {"#0072b2", "#d55e00"}.union(*(colours(item.svg) for item in drawings))  # the bars of the verdict, too
+    return template.render(page=page, dark=Markup(declarations(own)), **inside)
 
 
 def write_page(path: Path, page: Page) -> Path:

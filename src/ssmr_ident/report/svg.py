@@ -24,6 +24,11 @@ def drawn(figure: Figure) -> str:
     return re.sub(r"\s*<metadata>.*?</metadata>", "", text[text.index("<svg") :], flags=re.DOTALL)
 
 
+def colours(svg: str) -> set[str]:
+    """All colours of a drawing, as ``#rrggbb``."""
+    return {f"#{name}" for attribute in _STYLE_ATTRIBUTE.findall(svg) for name in _COLOUR.findall(attribute)}
+
+
 def inline(svg: str, mark: str, label: str) -> str:
     """The same SVG ready to stand in a page.
 
