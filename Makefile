@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 # small matrices: threads of the linear algebra only get into each other's way
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: demo test check bench data clean
+.PHONY: demo test check docs bench data clean
 
 demo: $(VENV)/.runtime
 	$(BIN)/ident demo -o out
@@ -19,6 +19,10 @@ test: $(VENV)/.test
 
 check: $(VENV)/.test
 	$(BIN)/ruff check --fix . && $(BIN)/ruff format . && $(BIN)/mypy && $(BIN)/lint-imports
+
+docs: $(VENV)/.docs
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict
+	@echo "open site/index.html"
 
 bench: $(VENV)/.test
 	for f in benchmarks/bench_*.py; do $(BIN)/python $$f; done
@@ -40,5 +44,9 @@ $(VENV)/.test: pyproject.toml | $(VENV)/bin/python
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[test]'
 	@touch $@ $(VENV)/.runtime
 
+$(VENV)/.docs: pyproject.toml | $(VENV)/bin/python
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[docs]'
+	@touch $@ $(VENV)/.runtime
+
 clean:
-	rm -rf $(VENV) out build
+	rm -rf $(VENV) out build site

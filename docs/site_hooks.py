@@ -1,0 +1,90 @@
+"""What the pages take from the code while they are built: commands, which effect shows where, schemas; TeX to MathML.
+
+MathML is drawn by the browser itself, so the built pages need no network and no script.
+"""
+
+from __future__ import annotations
+
+import html
+import importlib
+import json
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import typer
+from latex2mathml.converter import convert
+
+from ssmr_ident import cli
+from ssmr_ident.physics.effects import CATALOGUE
+from ssmr_ident.session.session_file import EXPERIMENTS
+
+SCHEMAS = Path(__file__).parent / "schemas"
+_TEX = re.compile(r'<(span|div) class="arithmatex">\\([(\[])(.*?)\\[)\]]</\1>', re.DOTALL)
+
+
+def commands() -> str:
+    """Every verb with its arguments, options and examples."""
+    group = typer.main.get_command(cli.app)
+    lines = []
+    for verb in cli.VERBS:
+        command = group.commands[verb]  # type: ignore[attr-defined]
+        lines += [f"## ident {verb}", "", (command.help or "").strip(), "", "```sh"]
+        lines += [*importlib.import_module(f"ssmr_ident.cli.{verb}").EXAMPLES, "```", ""]
+        lines += ["| argument or option | meaning |", "| --- | --- |"]
+        for parameter in command.params:
+            argument = parameter.param_type_name == "argument"
+            options = ", ".join([*parameter.opts, *parameter.secondary_opts])
+            name = (parameter.metavar or parameter.name.upper()) if argument else options
+            default = parameter.default
+            usual = "" if default in (None, "", False, ()) or callable(default) else f" Usually `{default}`."
+            help_text = html.escape((getattr(parameter, "help", "") or "").replace("|", "\\|"), quote=False)
+            lines.append(f"| `{name}` | {help_text}{usual} |")
+        lines.append("")
+    return "\n".join(lines)
+
+
+def where_effects_show() -> str:
+    """Effects against experiments, from the declarations."""
+    lines = [f"| effect | {' | '.join(name.replace('_', ' ') for name in EXPERIMENTS)} | on a rig |"]
+    lines += ["| --- |" + " :-: |" * (len(EXPERIMENTS) + 1)]
+    for effect in CATALOGUE.values():
+        marks = ["●" if name in effect.experiments else "" for name in EXPERIMENTS]
+        link = f"[`{effect.id}`](../reference/effects.md#{effect.id})"
+        lines.append(f"| {link} | {' | '.join(marks)} | {'●' if effect.rig else ''} |")
+    return "\n".join(lines)
+
+
+def schemas() -> str:
+    """The published schemas with their titles."""
+    lines = ["| schema | |", "| --- | --- |"]
+    for path in sorted(SCHEMAS.glob("*.json")):
+        title = json.loads(path.read_text(encoding="utf-8"))["title"]
+        lines.append(f"| [{path.name.removesuffix('.schema.json')}](../schemas/{path.name}) | {title} |")
+    return "\n".join(lines)
+
+
+MARKS: dict[str, Callable[[], str]] = {
+    "<!-- commands -->": commands,
+    "<!-- where effects show -->": where_effects_show,
+    "<!-- schemas -->": schemas,
+}
+
+
+def on_page_markdown(markdown: str, **_: Any) -> str:
+    """Fill in what a mark asks for."""
+    for mark, text in MARKS.items():
+        if mark in markdown:
+            markdown = markdown.replace(mark, text())
+    return markdown
+
+
+def on_page_content(content: str, **_: Any) -> str:
+    """TeX to MathML."""
+
+    def drawn(match: re.Match[str]) -> str:
+        tex = html.unescape(match[3]).strip()
+        return convert(tex, display="block" if match[2] == "[" else "inline")
+
+    return _TEX.sub(drawn, content)
