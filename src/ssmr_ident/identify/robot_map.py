@@ -135,7 +135,11 @@ class RobotBuilder:
             mu_static=values.get("tire.mu_static", robot.mu_static),
             mu_kinetic=values.get("tire.mu_kinetic", robot.mu_kinetic),
             cable_stiffness=values.get("cable.stiffness_N_m", robot.cable_stiffness),
-            accelerometer=replace(robot.accelerometer, position=place),
+            accelerometer=replace(
+                robot.accelerometer,
+                position=place,
+                bandwidth_hz=values.get("accelerometer.bandwidth_hz", robot.accelerometer.bandwidth_hz),
+            ),
         )
 
 

@@ -35,6 +35,36 @@ class Site(Enum):
     OUTPUT = "output"
 
 
+@dataclass(frozen=True)
+class Sized:
+    """A value in units of what a recording shows: its deflections, forces, times.
+
+    Parameters
+    ----------
+    share : float
+    of : str
+        ``deflection`` [m], ``stiffness`` [N/m], ``force`` [N], ``time`` [s] (one radian of the motion), ``speed``
+        [m/s], ``duration`` [s], ``acceleration`` [m/s^2], ``load`` [N] (largest reading of a load cell), or a
+        combination as in ``force/deflection^3``.
+    """
+
+    share: float
+    of: str
+
+    def value(self, sizes: Mapping[str, float]) -> float:
+        """In SI, for given sizes."""
+        over, _, under = self.of.partition("/")
+        return self.share * _product(over, sizes) / _product(under, sizes)
+
+
+def _product(text: str, sizes: Mapping[str, float]) -> float:
+    result = 1.0
+    for factor in text.split("*") if text else ():
+        name, _, power = factor.partition("^")
+        result *= sizes[name] ** int(power or 1)
+    return result
+
+
 @dataclass(frozen=True, eq=False)
 class Effect:
     """One effect of the catalogue.
@@ -58,6 +88,11 @@ class Effect:
     acts : mapping of Site to function
     rig : bool
         Whether it also acts on a rig with one mass.
+    probes : tuple of mapping of parameter to float or Sized
+        Where a search for this effect looks first: parameters that are named are then fitted, the others stay at
+        their nominal values; plain numbers are SI.
+    holds : mapping of parameter to tuple of float
+        Parameters that are not fitted but tried at each of these values.
     """
 
     id: str
@@ -69,6 +104,8 @@ class Effect:
     experiments: tuple[str, ...]
     acts: Mapping[Site, Callable[..., Any] | None] = field(default_factory=dict)
     rig: bool = False
+    probes: tuple[Mapping[str, float | Sized], ...] = ()
+    holds: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
 
     @property
     def amplitudes(self) -> tuple[Parameter, ...]:

@@ -23,8 +23,20 @@ from ssmr_ident.simulate.bench import compress_wheel, drag_wheel, pull_block
 from ssmr_ident.simulate.scenarios import Scenario, cable_properties, fixture_needed
 from ssmr_ident.simulate.simulation import simulate
 
-STEADY = 0.005
-"""Share of the travel by which a head at constant speed may be off a straight line."""
+STARTING = 3
+"""Samples at the start that do not count: how the head takes up speed is not in the log."""
+
+LONGEST_BLOCK, FEWEST_BLOCKS = 0.25, 150.0
+"""Seconds that are averaged into one number at the most, and numbers that a recording keeps at the least: a pull is
+slow, and the chatter of sliding contacts repeats in no second run."""
+
+COARSE = 10.0
+"""On the steps of differences: a percent of a stiffness, and a thousandth of the travel."""
+
+BLIND = {
+    "pull": ("inertia_", "accelerometer."),
+    "wheel": ("inertia_", "accelerometer.", "contact_shift", "height"),
+}
 
 Force = Callable[[Values, Effects, Array, float], Array]
 """``force(values, effects, head, step)``: what the load cell reads, (n,) [N]."""
@@ -48,35 +60,47 @@ def pull_trial(measurement: Measurement, parameters: ParameterSet) -> Trial:
     measured, travel, step, start = travelled(measurement)
     elapsed = step * np.arange(len(travel))
     speed = float(np.polyfit(elapsed, travel, 1)[0])
-    steady = bool(np.abs(travel - speed * elapsed).max() < STEADY * travel.max())
     size = float(travel.max())
+    # the head goes on after the last sample: a simulation that stops it there would show the jolt
+    head = np.append(travel, travel[-1] + step * speed * (travel[-1] > travel[-2]))
+    block = max(1, int(min(LONGEST_BLOCK, elapsed[-1] / FEWEST_BLOCKS) / step))
+    count = len(measured) // block
+    counts = np.ones((count, 1), dtype=bool)
+    counts[: -(-STARTING // block)] = False
+
+    def averaged(signal: Array) -> Array:
+        return signal[: count * block].reshape(count, block).mean(axis=1)[:, None]
 
     def simulated(values: Values, effects: Effects, slack: float) -> Array:
         try:
-            return force(values, effects, np.maximum(travel - slack, 0.0), step)
+            return force(values, effects, np.maximum(head - slack, 0.0), step)[:-1]
         except SimulationError:
             return np.full(len(travel), np.nan)
 
     def run(values: Values, effects: Effects, nuisance: Array) -> Array:
-        return simulated(values, effects, float(np.clip(nuisance[0], 0.0, 0.5)) * size)[:, None]
+        return averaged(simulated(values, effects, float(np.clip(nuisance[0], 0.0, 0.5)) * size))
 
     def begin(values: Values, effects: Effects) -> Array:
-        slack = find_slack(measured, travel, step, lambda slack: simulated(values, effects, slack), steady)
-        return np.array([slack / size])
+        return np.array([find_slack(measured, travel, simulated(values, effects, 0.0)) / size])
 
+    target = averaged(measured)
     return Trial(
         measurement.name,
         measurement.entry.experiment,
         ("force",),
-        start + elapsed,
-        measured[:, None],
-        (AutoregressiveNoise(np.ones(1), spread(measured)),),
-        np.ones((len(measured), 1)),
+        start + step * (block * np.arange(count) + 0.5 * (block - 1)),
+        target,
+        (AutoregressiveNoise(np.ones(1), spread(target[:, 0])),),
+        np.ones((count, 1)),
         run,
         begin,
         ("slack",),
         np.ones(1),
-        facts={"travel_m": size},
+        counts,
+        {"travel_m": size},
+        BLIND["wheel" if measurement.entry.experiment != "pull" else "pull"],
+        COARSE,
+        searched=True,
     )
 
 
@@ -138,29 +162,29 @@ def _block(nominal: Block, values: Values) -> Block:
     )
 
 
-def find_slack(force: Array, travel: Array, step: float, run_behind: Callable[[float], Array], steady: bool) -> float:
+def find_slack(force: Array, travel: Array, tight: Array) -> float:
     """Travel of the head before the cable tightens [m], by least squares with the load cell's zero eliminated.
 
-    Up to a third of the travel; a log that starts under load is told apart by the zero. A head that moves at constant
-    speed makes slack a delay, so one simulation serves for all; otherwise each slack is simulated.
+    Up to a third of the travel; a log that starts under load is told apart by the zero. What a slack does is taken
+    from one simulation without: the same force over the travel that is left, which is exact at constant speed.
+
+    Parameters
+    ----------
+    force : (n,) float [N]
+    travel : (n,) float [m]
+    tight : (n,) float [N]
+        Simulated without slack.
     """
-    elapsed = step * np.arange(len(travel))
-    speed = float(np.polyfit(elapsed, travel, 1)[0])
-    behind = delayed(run_behind(0.0), elapsed, speed) if steady else run_behind
+    rising = np.maximum.accumulate(travel) + 1e-9 * travel.max() * np.linspace(0.0, 1.0, len(travel))
 
     def misfit(slack: float) -> float:
-        rest = force - behind(slack)
+        rest = force - np.interp(rising - slack, rising, tight, left=0.0)
         cost = float(np.sum((rest - rest.mean()) ** 2))
         return cost if np.isfinite(cost) else np.inf
 
-    grid = np.linspace(0.0, travel.max() / 3.0, 400 if steady else 9)
+    grid = np.linspace(0.0, travel.max() / 3.0, 400)
     costs = [misfit(slack) for slack in grid]
     best = int(np.argmin(costs))
     low, high = grid[max(best - 1, 0)], grid[min(best + 1, len(grid) - 1)]
     refined = minimize_scalar(misfit, bounds=(low, high), method="bounded", options={"maxiter": 12})
     return float(refined.x) if refined.fun < costs[best] else float(grid[best])
-
-
-def delayed(tight: Array, elapsed: Array, speed: float) -> Callable[[float], Array]:
-    """Force behind a slack, from the force without: nothing until the head has travelled it."""
-    return lambda slack: np.interp(elapsed - slack / speed, elapsed, tight, left=0.0)

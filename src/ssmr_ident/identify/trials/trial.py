@@ -8,12 +8,26 @@ from functools import cached_property
 
 import numpy as np
 
+from ssmr_ident.identify.decay_start import mains_frequency, nuisance_columns
 from ssmr_ident.identify.noise import AutoregressiveNoise
 from ssmr_ident.physics.slots import Effects
 
 Array = np.ndarray
 Values = Mapping[str, float]
 Runner = Callable[[Values, Effects, Array], Array]
+
+MAINS_HZ = (50.0, 60.0)
+
+
+def mains_lines(samples: Array, step: float) -> tuple[float, ...]:
+    """Mains lines that stand out of samples, (n, c), as they appear at this rate [Hz]."""
+    rate = 1.0 / step
+    found = []
+    for nominal in MAINS_HZ:
+        seen = abs(nominal - round(nominal * step) * rate)
+        if 5.0 < seen < 0.45 * rate - 2.0:
+            found.append(mains_frequency(samples, step, seen))
+    return tuple(line for line in found if line is not None)
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,6 +56,16 @@ class Trial:
         Their prior standard deviations about 0 (or about ``begin`` where ``centred``).
     counts : (n, c) bool
         False for samples that say nothing (a converter at its end).
+    facts : mapping of str to float
+        Numbers about the recording that reports use.
+    blind : tuple of str
+        How names of parameters begin that this recording does not depend on.
+    coarse : float
+        Factor on the steps of differences: where contacts slide and stick anew, small ones see only that.
+    searched : bool
+        ``begin`` finds the nuisances by a search that does not get caught where a descent does.
+    shorten : callable or None
+        ``shorten(seconds)`` is the same recording up to there, for fits that are led from its beginning to its end.
     """
 
     name: str
@@ -57,6 +81,10 @@ class Trial:
     scales: Array
     counts: Array | None = None
     facts: Mapping[str, float] = field(default_factory=dict)
+    blind: tuple[str, ...] = ()
+    coarse: float = 1.0
+    searched: bool = False
+    shorten: Callable[[float], Trial] | None = None
 
     @property
     def step(self) -> float:
@@ -102,8 +130,26 @@ class Trial:
         """(N,) back to (n − lost, c)."""
         return residual.reshape(len(self.channels), -1).T
 
+    def sees(self, name: str) -> bool:
+        """False for a parameter that this recording does not depend on, whatever its value."""
+        return not name.startswith(self.blind) if self.blind else True
+
     def with_noises(self, noises: tuple[AutoregressiveNoise, ...]) -> Trial:
         return replace(self, noises=noises)
+
+    def until(self, seconds: float) -> Trial:
+        """Its first part, with the noise that it has; itself where it cannot be shortened."""
+        if self.shorten is None or seconds >= float(self.times[-1] - self.times[0]):
+            return self
+        return self.shorten(seconds).with_noises(self.noises)
+
+    def with_lines(self, residual: Array) -> Trial:
+        """The same with the mains lines that stand out of a residual, (n, c), added to the basis."""
+        lines = mains_lines(residual, self.step)
+        if not lines or self.basis.shape[1] > 1:
+            return self
+        since = self.times - self.times[0]
+        return replace(self, basis=np.hstack([self.basis, nuisance_columns(since, lines)[:, 1:]]))
 
     def colour(self, simulated: Array) -> Array:
         """Unwhitened residual, (n, c), its share of the basis taken out by least squares."""

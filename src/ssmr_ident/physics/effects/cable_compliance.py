@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from ssmr_ident.core.parameter import Parameter
-from ssmr_ident.physics.effect import Effect, Site
+from ssmr_ident.physics.effect import Effect, Site, Sized
 
 
 def change(stiffness: float, K_cable_N_m: float) -> float:
@@ -24,4 +24,8 @@ EFFECT = Effect(
     parameters=(Parameter("K_cable_N_m", "N/m", 5e4, 100.0, math.inf, "in series with the cable", off=math.inf),),
     experiments=("pull", "wheel_drag"),
     acts={Site.PULL: change},
+    probes=(
+        {"K_cable_N_m": Sized(2.0, "stiffness")},
+        {"K_cable_N_m": Sized(10.0, "stiffness")},
+    ),
 )

@@ -33,4 +33,5 @@ EFFECT = Effect(
     ),
     experiments=("free_response", "swivel", "pull"),
     acts={Site.ROBOT: change},
+    probes=({"offset_x_m": 0.01, "offset_y_m": 0.01},),
 )

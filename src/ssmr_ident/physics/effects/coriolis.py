@@ -14,4 +14,5 @@ EFFECT = Effect(
     parameters=(Parameter("share", "1", 1.0, 0.0, 1.0, "of the term", off=0.0),),
     experiments=("swivel",),
     acts={Site.BODY: None},
+    probes=({"share": 1.0},),
 )

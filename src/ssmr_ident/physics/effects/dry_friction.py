@@ -6,7 +6,7 @@ import math
 
 from ssmr_ident.core.kernel import kernel
 from ssmr_ident.core.parameter import Parameter
-from ssmr_ident.physics.effect import Effect, Site
+from ssmr_ident.physics.effect import Effect, Site, Sized
 
 
 @kernel
@@ -42,4 +42,10 @@ EFFECT = Effect(
     experiments=("free_response", "forced"),
     acts={Site.ELEMENT: force, Site.STATE: advance},
     rig=True,
+    probes=(
+        {"F_c_N": Sized(0.03, "force"), "element_stiffness_N_m": Sized(3.0, "stiffness")},
+        {"F_c_N": Sized(0.03, "force"), "element_stiffness_N_m": Sized(30.0, "stiffness")},
+        {"F_c_N": Sized(0.15, "force"), "element_stiffness_N_m": Sized(3.0, "stiffness")},
+        {"F_c_N": Sized(0.15, "force"), "element_stiffness_N_m": Sized(30.0, "stiffness")},
+    ),
 )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ssmr_ident.core.kernel import kernel
 from ssmr_ident.core.parameter import Parameter
-from ssmr_ident.physics.effect import Effect, Site
+from ssmr_ident.physics.effect import Effect, Site, Sized
 
 
 @kernel
@@ -40,4 +40,9 @@ EFFECT = Effect(
     experiments=("free_response", "forced", "pull"),
     acts={Site.ELEMENT: force},
     rig=True,
+    probes=(
+        {"gap_m": Sized(0.05, "deflection")},
+        {"gap_m": Sized(0.3, "deflection")},
+    ),
+    holds={"share_x": (1.0, 0.0)},
 )

@@ -6,7 +6,7 @@ import math
 
 from ssmr_ident.core.kernel import kernel
 from ssmr_ident.core.parameter import Parameter
-from ssmr_ident.physics.effect import Effect, Site
+from ssmr_ident.physics.effect import Effect, Site, Sized
 
 
 @kernel
@@ -46,4 +46,8 @@ EFFECT = Effect(
     experiments=("free_response", "forced", "pull"),
     acts={Site.ELEMENT: force, Site.STATE: advance},
     rig=True,
+    probes=(
+        {"alpha": 0.85, "yield_m": Sized(0.1, "deflection")},
+        {"alpha": 0.85, "yield_m": Sized(0.5, "deflection")},
+    ),
 )

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from ssmr_ident.core.parameter import Parameter
-from ssmr_ident.physics.effect import Effect, Site
+from ssmr_ident.physics.effect import Effect, Site, Sized
 
 
 def change(
@@ -30,4 +30,5 @@ EFFECT = Effect(
     ),
     experiments=("pull", "wheel_drag", "vertical_compression"),
     acts={Site.OUTPUT: change},
+    probes=({"zero_drift_N_s": Sized(0.2, "load/duration"), "gain_drift_1_s": Sized(0.05, "/duration")},),
 )

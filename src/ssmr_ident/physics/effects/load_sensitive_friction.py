@@ -24,4 +24,5 @@ EFFECT = Effect(
     parameters=(Parameter("exponent", "1", 0.15, -0.5, 0.9, "0 is Coulomb's law, 1/3 Hertz contact", off=0.0),),
     experiments=("pull", "swivel"),
     acts={Site.FRICTION: coefficient},
+    probes=({"exponent": 0.15},),
 )

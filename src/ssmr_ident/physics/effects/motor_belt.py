@@ -6,7 +6,7 @@ import math
 
 from ssmr_ident.core.kernel import kernel
 from ssmr_ident.core.parameter import Parameter
-from ssmr_ident.physics.effect import Effect, Site
+from ssmr_ident.physics.effect import Effect, Site, Sized
 
 
 @kernel
@@ -28,4 +28,8 @@ EFFECT = Effect(
     ),
     experiments=("free_response", "pull", "swivel"),
     acts={Site.BODY: force},
+    probes=(
+        {"K_b_N_m": Sized(0.5, "stiffness"), "D_b_N_s_m": 50.0, "rim_mass_kg": 1.0},
+        {"K_b_N_m": Sized(2.0, "stiffness"), "D_b_N_s_m": 50.0, "rim_mass_kg": 1.0},
+    ),
 )

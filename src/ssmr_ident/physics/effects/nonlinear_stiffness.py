@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ssmr_ident.core.kernel import kernel
 from ssmr_ident.core.parameter import Parameter
-from ssmr_ident.physics.effect import Effect, Site
+from ssmr_ident.physics.effect import Effect, Site, Sized
 
 
 @kernel
@@ -23,4 +23,8 @@ EFFECT = Effect(
     experiments=("free_response", "pull", "wheel_drag", "vertical_compression", "forced"),
     acts={Site.ELEMENT: force},
     rig=True,
+    probes=(
+        {"k3_N_m3": Sized(0.1, "stiffness/deflection^2")},
+        {"k3_N_m3": Sized(-0.1, "stiffness/deflection^2")},
+    ),
 )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ssmr_ident.core.kernel import kernel
 from ssmr_ident.core.parameter import Parameter
-from ssmr_ident.physics.effect import Effect, Site
+from ssmr_ident.physics.effect import Effect, Site, Sized
 
 
 @kernel
@@ -23,4 +23,5 @@ EFFECT = Effect(
     experiments=("free_response", "forced"),
     acts={Site.ELEMENT: force},
     rig=True,
+    probes=({"d2_N_s2_m2": Sized(0.03, "force/speed^2")},),
 )

@@ -26,4 +26,5 @@ EFFECT = Effect(
     parameters=(Parameter("c_rr", "1", 0.03, 0.0, 0.5, "rolling resistance coefficient", off=0.0),),
     experiments=("pull", "swivel", "straight"),
     acts={Site.BODY: force},
+    probes=({"c_rr": 0.03},),
 )

@@ -29,4 +29,8 @@ EFFECT = Effect(
     experiments=("free_response", "swivel", "forced"),
     acts={Site.ROBOT: change},
     rig=True,
+    probes=(
+        {"bandwidth_hz": 50.0},
+        {"bandwidth_hz": 25.0},
+    ),
 )

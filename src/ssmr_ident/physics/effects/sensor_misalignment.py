@@ -39,4 +39,5 @@ EFFECT = Effect(
     ),
     experiments=("free_response", "swivel"),
     acts={Site.OUTPUT: change},
+    probes=({"angle_x_rad": 0.05, "angle_y_rad": 0.05, "angle_z_rad": 0.05},),
 )

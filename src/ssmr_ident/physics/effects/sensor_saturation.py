@@ -8,7 +8,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from ssmr_ident.core.parameter import Parameter
-from ssmr_ident.physics.effect import Effect, Site
+from ssmr_ident.physics.effect import Effect, Site, Sized
 
 ACCELERATIONS = ("ax", "ay", "az", "acceleration", "acceleration_2")
 
@@ -39,4 +39,9 @@ EFFECT = Effect(
     experiments=("free_response", "pull", "wheel_drag", "vertical_compression", "swivel", "straight", "forced"),
     acts={Site.OUTPUT: change},
     rig=True,
+    probes=(
+        {"range_m_s2": Sized(0.9, "acceleration")},
+        {"range_m_s2": Sized(0.6, "acceleration")},
+        {"range_N": Sized(0.95, "load")},
+    ),
 )

@@ -28,4 +28,5 @@ EFFECT = Effect(
     ),
     experiments=("pull", "swivel"),
     acts={Site.ROBOT: change},
+    probes=({"weight": 1.0, "lambda_max": 0.1},),
 )

@@ -28,4 +28,8 @@ EFFECT = Effect(
     ),
     experiments=("pull", "wheel_drag", "swivel"),
     acts={Site.FRICTION: coefficient},
+    probes=(
+        {"kinetic_share": 0.8, "stribeck_velocity_m_s": 0.001},
+        {"kinetic_share": 0.8, "stribeck_velocity_m_s": 0.01},
+    ),
 )

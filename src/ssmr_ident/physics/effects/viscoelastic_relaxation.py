@@ -6,7 +6,7 @@ import math
 
 from ssmr_ident.core.kernel import kernel
 from ssmr_ident.core.parameter import Parameter
-from ssmr_ident.physics.effect import Effect, Site
+from ssmr_ident.physics.effect import Effect, Site, Sized
 
 
 @kernel
@@ -35,4 +35,9 @@ EFFECT = Effect(
     experiments=("free_response", "pull", "wheel_drag", "vertical_compression", "forced"),
     acts={Site.ELEMENT: force, Site.STATE: advance},
     rig=True,
+    probes=(
+        {"K_m_N_m": Sized(0.2, "stiffness"), "tau_s": Sized(0.3, "time")},
+        {"K_m_N_m": Sized(0.2, "stiffness"), "tau_s": Sized(2.0, "time")},
+        {"K_m_N_m": Sized(0.2, "stiffness"), "tau_s": Sized(0.2, "duration")},
+    ),
 )

@@ -1,0 +1,183 @@
+"""Score test over the catalogue: which effect, added a little, would point the simulation towards the recordings.
+
+The change that an effect makes is simulated at the baseline's best, whitened, and cleared of what the baseline's own
+parameters and nuisances could do as well; what is left is matched against the residual. That ranks all effects for
+the price of a simulation each. Source: Cox and Hinkley, Theoretical Statistics (1974), section 9.3 (score test).
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ssmr_ident.diagnose.sizes import sizes_of
+from ssmr_ident.identify.joint import JointFit, over
+from ssmr_ident.physics.effect import Effect, Sized
+from ssmr_ident.physics.effects import CATALOGUE
+
+Array = np.ndarray
+
+SEEN = 1e-6
+"""Share of the noise's variance below which a change cannot be told from rounding."""
+
+SMALLEST = 0.1
+"""Of a probe that a fit begins with; the match of a straight line says little beyond a factor of ten."""
+
+
+@dataclass(frozen=True, eq=False)
+class Suspect:
+    """An effect at the probe that points best towards the recordings.
+
+    Parameters
+    ----------
+    effect : str
+    at : mapping of parameter to value
+        Where a fit begins.
+    held : mapping of parameter to value
+        Tried at this value and not fitted.
+    sizes : mapping of parameter to float
+        Natural sizes of those that may change sign.
+    gain : float
+        Fall of n ln(RSS) that the straight line promises.
+    direction : (N,) float
+        Whitened change, cleared of the baseline's own directions.
+    """
+
+    effect: str
+    at: Mapping[str, float]
+    held: Mapping[str, float]
+    sizes: Mapping[str, float]
+    gain: float
+    direction: Array
+
+
+def candidates(fit: JointFit, baseline: str) -> tuple[Effect, ...]:
+    """Effects that can be seen in the session's experiments, and that its model does not have yet."""
+    experiments = {trial.experiment for trial in fit.trials}
+    return tuple(
+        effect
+        for effect in CATALOGUE.values()
+        if experiments & set(effect.experiments)
+        and effect.id not in fit.model.held
+        and (effect.rig or baseline != "sdof")
+        and (effect.id != "translation_coupling" or baseline == "decoupled")
+        and effect.probes
+    )
+
+
+def scan(fit: JointFit, effects: Sequence[Effect], independent: float) -> list[list[Suspect]]:
+    """Per effect its suspects, the most promising probe first; effects that change nothing are left out.
+
+    Parameters
+    ----------
+    fit : JointFit
+        With slopes.
+    effects : sequence of Effect
+    independent : float
+        Samples that count as independent.
+    """
+    clear = Cleared(fit, independent)
+    sizes = sizes_of(fit)
+    found = []
+    for effect in effects:
+        suspects = []
+        for probe, held in itertools.product(effect.probes, _combinations(effect.holds)):
+            at = {name: p.value(sizes) if isinstance(p, Sized) else float(p) for name, p in probe.items()}
+            at = {p.name: float(np.clip(at[p.name], p.lower, p.upper)) for p in effect.parameters if p.name in at}
+            if all(np.isfinite(list(at.values()))):
+                suspect = _suspect(fit, clear, effect, at, held, independent)
+                if suspect is not None:
+                    suspects.append(suspect)
+        if suspects:
+            found.append(sorted(suspects, key=lambda s: -s.gain))
+    return sorted(found, key=lambda group: -group[0].gain)
+
+
+def _combinations(holds: Mapping[str, Sequence[float]]) -> list[dict[str, float]]:
+    return [dict(zip(holds, values, strict=True)) for values in itertools.product(*holds.values())]
+
+
+def _suspect(
+    fit: JointFit, clear: Cleared, effect: Effect, at: dict[str, float], held: dict[str, float], independent: float
+) -> Suspect | None:
+    signed = [p for p in effect.amplitudes if p.name in at and p.lower < 0.0]
+    points = [at]
+    if signed:  # each on its own: their shares follow from the match
+        points = [{**at, **{p.name: p.off for p in signed if p is not chosen}} for chosen in signed]  # type: ignore[dict-item]
+    columns = []
+    for point in points:
+        change = _change(fit, effect.id, {**point, **held})
+        if change is None or float(change @ change) < SEEN * len(change):
+            return None
+        columns.append(change)
+    raw = np.column_stack(columns)
+    cleared = clear(raw)
+    # a direction that the baseline makes as well is rounding once it is cleared
+    if np.any(np.sum(cleared**2, axis=0) < 1e-8 * np.sum(raw**2, axis=0)):
+        return None
+    gram = cleared.T @ cleared
+    gram[np.diag_indices_from(gram)] *= 1.0 + 1e-9
+    shares = np.linalg.solve(gram, cleared.T @ clear.residual)
+    if not signed:
+        shares = np.maximum(shares, 0.0)
+    explained = float(2.0 * shares @ (cleared.T @ clear.residual) - shares @ gram @ shares)
+    gain = -independent * np.log(max(1.0 - explained / fit.rss, 1e-12))
+    sizes = {p.name: abs(at[p.name]) for p in signed}
+    start = dict(at)
+    grown = [p for p in effect.amplitudes if p.name in at and p.lower >= 0.0 and p.off == 0.0]
+    if grown and not signed:
+        share = float(np.clip(shares[0], SMALLEST, 1.0 / SMALLEST))
+        start |= {p.name: float(np.clip(share * at[p.name], p.lower, p.upper)) for p in grown}
+    if signed:
+        start |= {
+            p.name: float(np.clip(share * at[p.name], p.lower, p.upper))
+            for p, share in zip(signed, shares, strict=True)
+        }
+    return Suspect(effect.id, start, held, sizes, gain, cleared @ shares)
+
+
+def _change(fit: JointFit, effect_id: str, parameters: dict[str, float]) -> Array | None:
+    """Whitened difference that an effect makes at the fit's own point and nuisances, all trials in a row."""
+    values, effects = fit.model.split(fit.point)
+    active = {**effects, effect_id: parameters}
+
+    def one(index: int) -> Array:
+        trial = fit.trials[index]
+        return trial.whitened(trial.run(values, active, fit.nuisances[index]) - fit.simulated[index])
+
+    change = np.concatenate(over(fit.trials, one))
+    return change if np.all(np.isfinite(change)) else None
+
+
+class Cleared:
+    """Takes out of a change what the baseline's parameters (within their priors) and nuisances can make as well."""
+
+    def __init__(self, fit: JointFit, independent: float) -> None:
+        weight = independent / fit.rss
+        self._own = []
+        shared, ends = [], np.cumsum([len(r) for r in fit.residuals])
+        self._cuts = ends[:-1]
+        rest = []
+        for slopes, residual in zip(fit.slopes, fit.residuals, strict=True):
+            b = slopes.own
+            gram = weight * (b.T @ b) + np.eye(b.shape[1])
+            self._own.append((b, np.linalg.solve(gram, weight * b.T)))
+            shared.append(self._without_own(len(shared), slopes.shared))
+            rest.append(self._without_own(len(rest), residual))
+        a = np.concatenate(shared)
+        self._shared = a
+        self._solver = np.linalg.solve(weight * (a.T @ a) + np.eye(a.shape[1]), weight * a.T)
+        # at the optimum the gradient is balanced by the priors: what is matched is the residual itself
+        self.residual = np.concatenate(fit.residuals)
+
+    def _without_own(self, index: int, columns: Array) -> Array:
+        b, solver = self._own[index]
+        return columns - b @ (solver @ columns)
+
+    def __call__(self, columns: Array) -> Array:
+        parts = [self._without_own(index, part) for index, part in enumerate(np.split(columns, self._cuts))]
+        stacked = np.concatenate(parts)
+        return stacked - self._shared @ (self._solver @ stacked)

@@ -1,0 +1,199 @@
+"""From a campaign to trials and a model: which recordings are fitted, which are kept back, what may move."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ssmr_ident.campaign import Campaign, Measurement
+from ssmr_ident.core.errors import InputError
+from ssmr_ident.core.parameter import ParameterSet
+from ssmr_ident.identify.coordinates import Model
+from ssmr_ident.identify.objective import Unknown
+from ssmr_ident.identify.robot_map import RobotBuilder, robot_unknowns, set_aside
+from ssmr_ident.identify.trials import Trial
+from ssmr_ident.identify.trials.decay import decay_trial
+from ssmr_ident.identify.trials.forced import forced_trial
+from ssmr_ident.identify.trials.pull import pull_trial
+from ssmr_ident.physics.rig import RIG_KEYS
+from ssmr_ident.physics.slots import effect_values
+
+EXPERIMENTS = {
+    "rigid6": ("free_response", "pull", "wheel_drag", "vertical_compression"),
+    "decoupled": ("free_response", "pull", "wheel_drag", "vertical_compression"),
+    "sdof": ("forced", "free_response"),
+    "drag": ("wheel_drag", "pull"),
+}
+
+KEPT_BACK = 1 / 3
+"""Share of the targets that is kept back where a session has no held-out recordings."""
+
+BANDWIDTH = "accelerometer.bandwidth_hz"
+
+
+@dataclass(frozen=True, eq=False)
+class Setup:
+    """What a diagnosis works on.
+
+    Parameters
+    ----------
+    campaign : Campaign
+    fitted, kept : tuple of Trial
+        Recordings that are fitted, and those that never are until the end.
+    model : Model
+        The baseline with its priors.
+    known : tuple of Unknown
+        Priors to hold fitted values against (the model may have set some aside).
+    kept_by_us : bool
+        True where the session held nothing back and the tool did.
+    notes : tuple of str
+    """
+
+    campaign: Campaign
+    fitted: tuple[Trial, ...]
+    kept: tuple[Trial, ...]
+    model: Model
+    known: tuple[Unknown, ...]
+    kept_by_us: bool
+    notes: tuple[str, ...] = ()
+
+    @property
+    def decoupled(self) -> bool:
+        return self.campaign.session.baseline == "decoupled"
+
+
+def set_up(campaign: Campaign, parameters: ParameterSet) -> Setup:
+    """Prepare a session.
+
+    Parameters
+    ----------
+    campaign : Campaign
+    parameters : ParameterSet
+        What is known beforehand.
+
+    Raises
+    ------
+    InputError
+        A baseline and an experiment that do not go together, or nothing to fit.
+    """
+    baseline = campaign.session.baseline
+    for m in campaign.measurements:
+        if m.entry.experiment not in EXPERIMENTS[baseline]:
+            raise InputError(
+                f"{campaign.session.folder / 'session.yaml'}: {m.name}",
+                f"a {m.entry.experiment} beside other experiments cannot be diagnosed with baseline {baseline}",
+                f"Make a session of its own of it; here: {', '.join(EXPERIMENTS[baseline])}",
+            )
+    calibration = [m for m in campaign.measurements if m.entry.role == "calibration"]
+    targets = [m for m in campaign.measurements if m.entry.role == "target"]
+    heldout = [m for m in campaign.measurements if m.entry.role == "heldout"]
+    if not targets:
+        targets, calibration = calibration, []
+    if not targets:
+        raise InputError(
+            f"{campaign.session.folder}/session.yaml: recordings",
+            "all are heldout, so nothing may be fitted",
+            "Give at least one recording role: target",
+        )
+    notes: list[str] = []
+    by_us = not heldout
+    if by_us:
+        targets, heldout = keep_back(targets)
+    make = trial_maker(campaign, parameters)
+    halves: list[Trial] = []
+    if not heldout:
+        whole = make(targets[0])
+        first, second = split_in_time(whole)
+        halves, fitted = [second], [first]
+        notes.append(
+            f"{whole.name} is the only recording: it was fitted up to {second.times[0]:.4g} s and held out after"
+        )
+    else:
+        fitted = [make(m) for m in (*targets, *calibration)]
+        halves = [make(m) for m in heldout]
+        if by_us:
+            names = ", ".join(m.name for m in heldout)
+            notes.append(f"the session holds nothing back, so {names} were kept back from the fits that decided")
+    known = unknowns_of(campaign, parameters)
+    motions = {m.entry.motion for m in (*targets, *calibration) if m.entry.motion}
+    physics = set_aside(known, motions) if baseline == "decoupled" else known
+    held = {name: dict(values) for name, values in effect_values(parameters).items()}
+    model = Model(tuple(physics), (), held)
+    return Setup(campaign, tuple(fitted), tuple(halves), model, known, by_us, tuple(notes))
+
+
+def keep_back(targets: list[Measurement]) -> tuple[list[Measurement], list[Measurement]]:
+    """Split targets: of every kind of experiment the last third, as long as one is left to fit.
+
+    The kind is the experiment, its motion or direction and its grip, so that what is kept back is like what is fitted.
+    """
+    kinds: dict[tuple[object, ...], list[Measurement]] = {}
+    for m in targets:
+        kinds.setdefault((m.entry.experiment, m.entry.motion, m.entry.direction), []).append(m)
+    kept = [m for group in kinds.values() for m in _last(group)]
+    if not kept and len(targets) > 1:
+        kept = targets[-max(1, round(KEPT_BACK * len(targets))) :]
+    return [m for m in targets if m not in kept], [m for m in targets if m in kept]
+
+
+def _last(group: list[Measurement]) -> list[Measurement]:
+    """The loudest of a kind is never kept back: what is fitted should span what is predicted."""
+    count = int(KEPT_BACK * len(group) + 1e-9)
+    if not count:
+        return []
+    loudness = {id(m): max(float(np.std(c.samples)) for c in m.recording.channels) for m in group}
+    ordered = sorted(group, key=lambda m: loudness[id(m)])
+    middle = ordered[1:-1] or ordered[:-1]
+    spread = np.linspace(0, len(middle) - 1, min(count, len(middle))).round().astype(int)
+    return [middle[i] for i in dict.fromkeys(spread.tolist())]
+
+
+def trial_maker(campaign: Campaign, parameters: ParameterSet):  # type: ignore[no-untyped-def]
+    """What makes a trial of a measurement under the session's baseline."""
+    baseline = campaign.session.baseline
+    if baseline == "sdof":
+        return lambda m: forced_trial(m, parameters)
+    if baseline == "drag":
+        return lambda m: pull_trial(m, parameters)
+    builder = RobotBuilder.of(parameters)
+
+    def make(m: Measurement) -> Trial:
+        if m.entry.experiment == "free_response":
+            return decay_trial(m, builder, baseline == "decoupled")
+        return pull_trial(m, parameters)
+
+    return make
+
+
+def split_in_time(trial: Trial) -> tuple[Trial, Trial]:
+    """The first two thirds of a lone recording, and the rest; both are simulated from its start."""
+    count = len(trial.times)
+    cut = round((1.0 - KEPT_BACK) * count)
+    inside = np.ones((count, len(trial.channels)), dtype=bool) if trial.counts is None else trial.counts
+    early, late = inside.copy(), inside.copy()
+    early[cut:], late[:cut] = False, False
+    return replace(trial, counts=early), replace(trial, counts=late)
+
+
+def unknowns_of(campaign: Campaign, parameters: ParameterSet) -> tuple[Unknown, ...]:
+    """What the baseline may move, with what is known of it."""
+    baseline = campaign.session.baseline
+    if baseline in ("rigid6", "decoupled"):
+        keys: tuple[str, ...] = ()
+        found = list(robot_unknowns(parameters))
+    else:
+        found = []
+        keys = (
+            RIG_KEYS["inertia_kg_m2" in parameters]
+            if baseline == "sdof"
+            else ("mass_kg", "mu_static", "mu_kinetic", "cable.stiffness_N_m")
+        )
+    for key in (*keys, BANDWIDTH):
+        if key not in parameters or parameters[key].fixed or (key == BANDWIDTH and parameters[key].std is None):
+            continue
+        value = float(parameters[key].value)
+        if np.isfinite(value):
+            std = parameters[key].std
+            found.append(Unknown(key, parameters[key].unit, value, None if std is None else max(std, 1e-9)))
+    return tuple(found)

@@ -1,0 +1,66 @@
+"""How large the motions, forces and times of a session are: the units in which effects are looked for."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+
+from ssmr_ident.identify.joint import JointFit
+
+_SHOWS = {"position": 0, "angle": 0, "velocity": 1, "angular_rate": 1}
+
+
+def sizes_of(fit: JointFit) -> dict[str, float]:
+    """Natural sizes by name, SI, as ``physics.effect.Sized`` asks for them.
+
+    A motion of angular frequency ω (the root mean square of its slope over its own) and acceleration a goes as far
+    as a/ω². A pull deflects the tires until its largest force.
+    """
+    values, _ = fit.model.split(fit.point)
+    moving = [trial for trial in fit.trials if trial.channels != ("force",)]
+    duration = max(float(trial.times[-1] - trial.times[0]) for trial in fit.trials)
+    load = max((float(np.ptp(t.target)) for t in fit.trials if t.channels == ("force",)), default=math.nan)
+    stiffness = _stiffness(values)
+    if moving:
+        largest, omega = 0.0, 0.0
+        for trial in moving:
+            order = _SHOWS.get(trial.channels[0], 2)
+            signal = trial.target - trial.target.mean(axis=0)
+            column = signal[:, int(np.argmax(signal.std(axis=0)))]
+            rate = float(np.std(np.diff(column)) / np.std(column) / trial.step)
+            acceleration = float(np.max(np.abs(column))) * rate ** (2 - order)
+            if acceleration > largest:
+                largest, omega = acceleration, rate
+        deflection = largest / omega**2
+        stiffness = stiffness or _mass(values) * omega**2
+        speed, time = deflection * omega, 1.0 / omega
+    else:
+        largest = math.nan
+        wheels = 4.0 if any(t.experiment == "pull" for t in fit.trials) else 1.0
+        stiffness = stiffness or load / max(max(t.facts["travel_m"] for t in fit.trials), 1e-12)
+        deflection = load / (wheels * stiffness)
+        speed = max(t.facts["travel_m"] / float(t.times[-1] - t.times[0]) for t in fit.trials)
+        time = deflection / speed
+    return {
+        "deflection": deflection,
+        "stiffness": stiffness,
+        "force": stiffness * deflection,
+        "time": time,
+        "speed": speed,
+        "duration": duration,
+        "acceleration": largest,
+        "load": load,
+    }
+
+
+def _stiffness(values: Mapping[str, float]) -> float:
+    for key in ("tire.stiffness_y_N_m", "stiffness_N_m", "stiffness_N_m_rad", "cable.stiffness_N_m"):
+        if values.get(key, 0.0) > 0.0:
+            return values[key]
+    return 0.0
+
+
+def _mass(values: Mapping[str, float]) -> float:
+    return values.get("mass_kg") or values.get("inertia_kg_m2") or 1.0

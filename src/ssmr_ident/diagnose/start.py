@@ -1,0 +1,94 @@
+"""Where a baseline's fit begins: near enough that no oscillation is taken for its neighbour."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ssmr_ident.campaign import Campaign, Measurement
+from ssmr_ident.core.errors import InputError
+from ssmr_ident.core.parameter import ParameterSet
+from ssmr_ident.diagnose.setup import Setup
+from ssmr_ident.identify.coordinates import scaled_at
+from ssmr_ident.identify.decay import fit_decay
+from ssmr_ident.identify.decay_result import Mode
+from ssmr_ident.identify.joint import JointFit, evaluate
+from ssmr_ident.identify.posterior import most_probable
+from ssmr_ident.identify.rig import DERIVATIVES, ForcedRecord, fit_rig
+from ssmr_ident.identify.robot_map import (
+    RobotBuilder,
+    match_further,
+    modal_observations,
+    pick_mode,
+    predicted_modes,
+)
+from ssmr_ident.physics.rig import RIG_KEYS, rig_from_parameters
+
+SEEN_BY = {"roll": "ay", "pitch": "ax", "yaw": "ay"}
+"""Channels that show a motion best (5.8)."""
+
+MOST_MODES = 3
+
+
+def begin(setup: Setup, parameters: ParameterSet) -> JointFit:
+    """The better of two places: what is known beforehand, and what modes or a linear fit of the recordings say."""
+    points = [np.zeros(len(setup.model.physics))]
+    guess = _guess(setup, parameters)
+    if guess:
+        points.append(scaled_at(setup.model.physics, guess))
+    fits = []
+    for point in points:
+        values, effects = setup.model.split(point)
+        nuisances = [trial.begin(values, effects) for trial in setup.fitted]
+        fits.append(evaluate(setup.fitted, setup.model, point, nuisances))
+    return min(fits, key=lambda fit: fit.rss if np.isfinite(fit.rss) else np.inf)
+
+
+def _guess(setup: Setup, parameters: ParameterSet) -> dict[str, float]:
+    names = {trial.name for trial in setup.fitted}
+    used = [m for m in setup.campaign.measurements if m.name in names]
+    baseline = setup.campaign.session.baseline
+    if baseline in ("rigid6", "decoupled"):
+        return _by_modes(setup, used, parameters)
+    if baseline == "sdof":
+        return _by_linear_fit(setup.campaign, used, parameters)
+    return {}
+
+
+def _by_modes(setup: Setup, used: list[Measurement], parameters: ParameterSet) -> dict[str, float]:
+    builder = RobotBuilder.of(parameters)
+    expected = predicted_modes(builder({}), decoupled=False)
+    modes: dict[str, list[Mode]] = {}
+    for m in used:
+        motion = m.entry.motion
+        channel = SEEN_BY.get(motion or "")
+        if motion is None or channel not in m.recording:
+            continue
+        try:
+            fit = fit_decay(m.recording.time, m.recording[channel], max_modes=MOST_MODES, unit="m/s^2")
+        except InputError:
+            continue  # no decaying mode in it: the fit of samples begins at the prior
+        mode = pick_mode(fit, expected.get(motion))
+        modes.setdefault(motion, []).append(mode)
+        for name, other in match_further(fit.modes, mode, expected).items():
+            modes.setdefault(name, []).append(other)
+    if not modes:
+        return {}
+    posterior = most_probable(setup.model.physics, modal_observations(modes, builder, setup.decoupled))
+    return {u.name: float(v) for u, v in zip(posterior.unknowns, posterior.values, strict=True)}
+
+
+def _by_linear_fit(campaign: Campaign, used: list[Measurement], parameters: ParameterSet) -> dict[str, float]:
+    rig = rig_from_parameters(parameters)
+    records = []
+    for m in used:
+        drive = next((name for name in ("force", "torque") if name in m.recording), None)
+        if drive is None:
+            continue
+        motions = {name: m.recording[name] for name in DERIVATIVES if name in m.recording}
+        records.append(ForcedRecord(1.0 / m.recording.sample_rate, m.recording[drive], motions))
+    if not records or rig.stiffness <= 0.0:
+        return {}
+    bandwidth = parameters.number("accelerometer.bandwidth_hz", np.inf)
+    rate = 1.0 / records[0].step
+    fit = fit_rig(records, (rig.mass, rig.damping, rig.stiffness), None if bandwidth >= 0.5 * rate else bandwidth)
+    return dict(zip(RIG_KEYS[rig.rotary], (fit.mass, fit.damping, fit.stiffness), strict=True))
