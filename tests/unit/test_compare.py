@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 from dataclasses import replace
 from pathlib import Path
@@ -78,9 +79,13 @@ def test_json_is_what_the_contract_says(rig_session: Path) -> None:
 
 
 def test_plots_and_table_are_written_where_asked(rig_session: Path, tmp_path: Path) -> None:
-    compare_session(rig_session, output=tmp_path / "out")
+    compare_session(rig_session, output=tmp_path / "out", command="ident compare rig -o out")
     assert (tmp_path / "out" / "log.png").stat().st_size > 10_000
     assert (tmp_path / "out" / "compare.csv").read_text().splitlines()[0] == "file,experiment,metric,channel,value"
+    page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert "ident compare rig -o out" in page
+    for file in ("session.yaml", "rig.yaml", "log.csv"):
+        assert f"{hashlib.sha256((rig_session / file).read_bytes()).hexdigest()}  {file}" in page
 
 
 @pytest.mark.parametrize("file", ["roll-2.xlsx", "pitch-3.xlsx", "yaw-1.xlsx"])

@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from ssmr_ident.cli import completion
+from ssmr_ident.cli.called import called
 
 EXAMPLES = (
     "ident compare data/raw/free_response --params out/parameters.yaml -o out/compare",
@@ -27,7 +28,7 @@ def command(
         ),
     ] = "",
     output: Annotated[
-        Path | None, typer.Option("-o", "--output", help="Folder for overlay plots and compare.csv.")
+        Path | None, typer.Option("-o", "--output", help="Folder for report.html, overlay plots and compare.csv.")
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
     quiet: Annotated[bool, typer.Option("-q", "--quiet", help="Print nothing but errors.")] = False,
@@ -37,7 +38,7 @@ def command(
     from ssmr_ident.pipeline.compare import compare_session
 
     with progress("simulating", hidden=quiet or as_json) as step:
-        result = compare_session(session, params, output, step)
+        result = compare_session(session, params, output, step, called())
     if as_json:
         import json
 
@@ -45,4 +46,4 @@ def command(
     elif not quiet:
         print(result)
         if output:
-            print(f"figures and compare.csv in {output}")
+            print(f"report.html, figures and compare.csv in {output}")

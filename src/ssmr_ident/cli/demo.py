@@ -29,6 +29,7 @@ def command(
     """Raw logs to spectra, to parameters, to a simulation, and back to the logs."""
     import json
 
+    from ssmr_ident.cli.called import called
     from ssmr_ident.cli.progress import doing, stages
 
     if thesis:
@@ -47,7 +48,7 @@ def command(
     with stages(hidden=quiet or as_json) as step:
         demo = run_demo(find_data(data), output, step)
         step("report", 0, 1)
-        report = write_demo_report(demo, f"ident demo -o {output}")
+        report = write_demo_report(demo, called())
         step("report", 1, 1)
     if as_json:
         print(json.dumps({"table": demo.table.as_list(), "report": str(report)}, ensure_ascii=False))

@@ -10,13 +10,20 @@ from pathlib import Path
 from ssmr_ident.campaign import load
 from ssmr_ident.compare import Comparison, compare
 from ssmr_ident.core.atomic import write_text
+from ssmr_ident.pipeline.files_read import files_read
+from ssmr_ident.report.comparison_page import comparison_page
+from ssmr_ident.report.html import file_hashes, write_page
 from ssmr_ident.report.overlay import overlay_figure
 from ssmr_ident.report.style import save
 from ssmr_ident.session import read_parameters
 
 
 def compare_session(
-    session: Path, params: str = "", output: Path | None = None, progress: Callable[[int, int], None] | None = None
+    session: Path,
+    params: str = "",
+    output: Path | None = None,
+    progress: Callable[[int, int], None] | None = None,
+    command: str = "ssmr_ident.compare, called from Python",
 ) -> Comparison:
     """Compare a session with parameters; write plots and a table where asked for.
 
@@ -26,14 +33,18 @@ def compare_session(
     params : str
         Parameter file or bundled robot; empty takes the session's own.
     output : Path or None
-        Folder for ``compare.csv`` and one overlay per recording.
+        Folder for ``compare.csv``, one overlay per recording, and ``report.html``.
     progress : callable, optional
+    command : str
+        The call that made it, printed at the end of the page.
     """
     campaign = load(session)
     parameters = read_parameters(params) if params else campaign.parameters
     result = compare(campaign, parameters, progress)
     if output is not None:
         write_comparison(result, output)
+        files = file_hashes(files_read(session, params))
+        write_page(output / "report.html", comparison_page(result, command, files))
     return result
 
 

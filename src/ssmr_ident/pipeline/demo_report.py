@@ -4,21 +4,17 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ssmr_ident.compare import Comparison, RecordingComparison
 from ssmr_ident.pipeline.demo import COMPARED, SWIVELS, Demo
+from ssmr_ident.pipeline.files_read import files_read
+from ssmr_ident.report.comparison_page import comparison_section, distance
 from ssmr_ident.report.figures_speed import amplitude_figure, peaks_figure
-from ssmr_ident.report.html import Fact, Page, Picture, Section, Table, Verdict, file_hashes, picture, write_page
-from ssmr_ident.report.numbers import number
-from ssmr_ident.report.overlay import overlay_figure
-from ssmr_ident.session import read_session
+from ssmr_ident.report.html import Page, Picture, Section, Table, Verdict, file_hashes, picture, write_page
 
 _SHOWN = {
     "free_response": ("roll-1.xlsx", "pitch-1.xlsx", "yaw-1.xlsx"),
     "pulls": ("concrete-lateral-steel-1.txt", "concrete-longitudinal-steel-1.txt", "concrete-wheel-compression-1.txt"),
     "swivel": ("v0-w30-t20-frame-concrete.xlsx", "v0-w60-t20-frame-concrete.xlsx"),
 }
-_HOW = {"nrmse_percent": "course over time", "log_psd_db": "power spectrum"}
-_UNITS = {"nrmse_percent": "%", "log_psd_db": "dB"}
 
 
 def write_demo_report(demo: Demo, command: str) -> Path:
@@ -41,9 +37,9 @@ def write_demo_report(demo: Demo, command: str) -> Path:
         "Recordings of a synthetic campaign in the formats of the 2012 thesis were read, filtered, fitted; simulated "
         "with what the fits found, they differ from the recordings by so much:",
         (
-            _distance("Free responses", decays, "of the recording's size, below 50 Hz"),
-            _distance("Pulls and bench tests", pulls, "of the recording's size"),
-            _distance("Swivels on concrete", swivels, "between levels of spectra, 1 to 50 Hz"),
+            distance("Free responses", decays, "nrmse_percent"),
+            distance("Pulls and bench tests", pulls, "nrmse_percent"),
+            distance("Swivels on concrete", swivels, "log_psd_db"),
         ),
     )
     sections = (
@@ -56,15 +52,15 @@ def write_demo_report(demo: Demo, command: str) -> Path:
             (Table("", ("quantity", "thesis", "identified", "simulated"), demo.table.cells()),),
         ),
         _spectra(demo),
-        _comparison("Free responses: simulation over recordings", decays, _SHOWN["free_response"]),
-        _comparison(
+        comparison_section("Free responses: simulation over recordings", decays, _SHOWN["free_response"]),
+        comparison_section(
             "Pulls and bench tests",
             pulls,
             _SHOWN["pulls"],
             "Slopes and levels compare. Once contacts slide, the moment at which a single wheel lets go is chaotic: it "
             "does not repeat, so single teeth do not lie on each other even for the right parameters.",
         ),
-        _comparison(
+        comparison_section(
             "Swivels",
             swivels,
             _SHOWN["swivel"],
@@ -102,50 +98,8 @@ def _spectra(demo: Demo) -> Section:
     )
 
 
-def _comparison(title: str, comparison: Comparison, shown: tuple[str, ...], text: str = "") -> Section:
-    rows = tuple(
-        (r.file, r.experiment.replace("_", " "), _value(r, r.value), _channels(r)) for r in comparison.recordings
-    )
-    header = ("recording", "experiment", "all channels", "channel by channel")
-    figures = tuple(
-        picture(
-            overlay_figure(r.prediction, r.file),
-            f"{r.file}: recorded (grey) and simulated (orange), {_value(r, r.value)} apart.",
-            f"{r.file}: {_HOW[r.metric]} of each channel, recorded and simulated, {_value(r, r.value)} apart.",
-        )
-        for r in comparison.recordings
-        if r.file in shown
-    )
-    caption = (
-        "Distance between simulation and recording; starting state, slack and sensor zeros were fitted, physics not."
-    )
-    return Section(title, (text,) if text else (), (Table(caption, header, rows),), figures)
-
-
-def _value(recording: RecordingComparison, value: float) -> str:
-    return f"{value:.3g} {_UNITS[recording.metric]}"
-
-
-def _channels(recording: RecordingComparison) -> str:
-    if len(recording.channels) < 2:
-        return ""
-    return ", ".join(f"{name} {_value(recording, value)}" for name, value in recording.channels.items())
-
-
-def _distance(name: str, comparison: Comparison, what: str) -> Fact:
-    """Mean over recordings, with the range that they span."""
-    metric, mean = next(iter(comparison.overall.items()))
-    values = [r.value for r in comparison.recordings]
-    note = f"{what}; {number(min(values))} … {number(max(values))} {_UNITS[metric]} over {len(values)} recordings"
-    return Fact(name, f"{number(mean)} {_UNITS[metric]}", note)
-
-
 def _files(demo: Demo) -> list[Path]:
-    """Every file that was read: sessions, what they say of the robot, and their logs."""
+    """Every file that was read."""
     raw = Path(demo.spectra[0].source).parent.parent
-    found: list[Path] = []
-    for name in dict.fromkeys((*COMPARED, *SWIVELS, "pulls/carpet.yaml")):
-        session = read_session(raw / name)
-        robot = session.folder / session.robot
-        found += [raw / name, *([robot] if robot.is_file() else []), *(session.path(e) for e in session.entries)]
-    return found
+    names = dict.fromkeys((*COMPARED, *SWIVELS, "pulls/carpet.yaml"))
+    return [file for name in names for file in files_read(raw / name)]

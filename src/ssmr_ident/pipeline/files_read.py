@@ -1,0 +1,26 @@
+"""Which files an answer rests on: the session, what it says of the robot, its logs, and the parameters given."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from ssmr_ident.session import read_session
+
+
+def files_read(session: str | Path, params: str = "") -> list[Path]:
+    """Every file that was read.
+
+    Parameters
+    ----------
+    session : path
+        Folder, or session.yaml by path.
+    params : str
+        Parameter file, or a bundled robot, which is no file of the user's.
+    """
+    given = Path(session)
+    file = given / "session.yaml" if given.is_dir() else given
+    read = read_session(given)
+    robots = [read.folder / read.robot, *([Path(params)] if params else [])]
+    logs = [read.path(entry) for entry in read.entries]
+    logs += [read.folder / entry.wheel_log for entry in read.entries if entry.wheel_log]
+    return [file, *(robot for robot in robots if robot.is_file()), *logs]
