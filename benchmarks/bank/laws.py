@@ -1,7 +1,8 @@
 """Force laws for the benchmark's own plants, many of them in other formulas than the catalogue's.
 
-A law is a row of numbers: its kind and up to five parameters. Its hidden states (two at most) obey ``rates`` and are
-kept in bounds by ``kept_in``. Nothing here imports the catalogue: the bank must not share a mistake with it.
+A law is a row of numbers: its kind and up to five parameters. Its hidden states obey ``rates`` or, where they depend
+on the path alone and may change within a micrometre, follow it by ``moved``. Nothing here imports the catalogue: the
+bank must not share a mistake with it.
 """
 
 from __future__ import annotations
@@ -106,11 +107,7 @@ def rates(row, x, v, z, dz):
     kind, b = int(row[0]), row[2]
     for j in range(STATES):
         dz[j] = 0.0
-    if kind in (JENKINS, IWAN):
-        dz[0] = dz[1] = dz[2] = v
-    elif kind == DAHL:
-        dz[0] = v - abs(v) * b * z[0] / row[1]
-    elif kind == BOUC_WEN:  # row[3]: exponent, row[4]: beta, gamma = 1 - beta
+    if kind == BOUC_WEN:  # row[3]: exponent, row[4]: beta, gamma = 1 - beta
         ratio = abs(z[0] / b) ** row[3]
         dz[0] = v - ratio * (row[4] * abs(v) * (1.0 if z[0] >= 0.0 else -1.0) + (1.0 - row[4]) * v)
     elif kind == MAXWELL:
@@ -120,13 +117,16 @@ def rates(row, x, v, z, dz):
 
 
 @kernel
-def kept_in(row, z):
-    """Sliders slip: their springs never stretch beyond what the friction holds. After every step, in place."""
+def moved(row, z, travel, out):
+    """Friction elements after a travel [m] in one direction, exactly, into ``out``; other states are left alone."""
     kind = int(row[0])
     if kind == JENKINS:
         limit = row[1] / row[2]
-        z[0] = min(max(z[0], -limit), limit)
+        out[0] = min(max(z[0] + travel, -limit), limit)
     elif kind == IWAN:
         for j in range(3):
             limit = row[2] * (0.5, 1.0, 2.0)[j]
-            z[j] = min(max(z[j], -limit), limit)
+            out[j] = min(max(z[j] + travel, -limit), limit)
+    elif kind == DAHL:
+        end = row[1] / row[2] * (1.0 if travel >= 0.0 else -1.0)
+        out[0] = end + (z[0] - end) * math.exp(-abs(travel) * row[2] / row[1])

@@ -7,7 +7,7 @@ import math
 import numpy as np
 from scipy.signal import butter, resample, sosfilt
 
-from bank.laws import STATES, force, kept_in, rates
+from bank.laws import STATES, force, moved, rates
 from ssmr_ident.core.kernel import kernel
 from ssmr_ident.physics.rig import Rig
 
@@ -77,21 +77,25 @@ def _run(mass, damping, stiffness, laws, fine, x, v, step, out):
         for j in range(count):
             for i in range(STATES):
                 trial[j, i] = z[j, i] + half * k1[j, i]
+            moved(laws[j], z[j], half * v, trial[j])
         v2 = v + half * a1
         a2 = _slope(mass, damping, stiffness, laws, fine[2 * n + 1], x + half * v, v2, trial, t + half, k2)
         for j in range(count):
             for i in range(STATES):
                 trial[j, i] = z[j, i] + half * k2[j, i]
+            moved(laws[j], z[j], half * v2, trial[j])
         v3 = v + half * a2
         a3 = _slope(mass, damping, stiffness, laws, fine[2 * n + 1], x + half * v2, v3, trial, t + half, k3)
         for j in range(count):
             for i in range(STATES):
                 trial[j, i] = z[j, i] + step * k3[j, i]
+            moved(laws[j], z[j], step * v3, trial[j])
         v4 = v + step * a3
         a4 = _slope(mass, damping, stiffness, laws, fine[2 * n + 2], x + step * v3, v4, trial, t + step, k4)
-        x += step / 6.0 * (v + 2.0 * v2 + 2.0 * v3 + v4)
+        travel = step / 6.0 * (v + 2.0 * v2 + 2.0 * v3 + v4)
+        x += travel
         v += step / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4)
         for j in range(count):
             for i in range(STATES):
                 z[j, i] += step / 6.0 * (k1[j, i] + 2.0 * k2[j, i] + 2.0 * k3[j, i] + k4[j, i])
-            kept_in(laws[j], z[j])
+            moved(laws[j], z[j], travel, z[j])

@@ -72,13 +72,15 @@ def draw_forced(kind: str, seed: int, effect: str | None, size: float | None, sh
     strongest = run_rig(rig, drives[2], rate, laws())
     at = Scale(rig, float(strongest[:, 0].std()), float(strongest[:, 1].std()), seconds)
     column, unit = QUANTITIES[quantity]
-    asked, runs = size, []
-    while not runs or not all(np.isfinite(run).all() for run in runs):  # a spring that softens may let the mass go
+    asked = size
+    for _ in range(20):  # a spring that softens may let the mass go: drawn again
         chosen, size = choose(kind, effect, asked, at, random, quantity)
         rows = laws(*(row for physics in chosen for row in physics.rows))
         slow = next((p.parameters["bandwidth_hz"] for p in chosen if p.id == "sensor_bandwidth"), math.inf)
         bandwidth = slow if math.isfinite(slow) else (500.0 if rate > 1000.0 else math.inf)
         runs = [run_rig(rig, drive, rate, rows, bandwidth_hz=bandwidth)[:, column] for drive in drives]
+        if all(np.isfinite(run).all() for run in runs):
+            break
     chosen, limit = clipped(chosen, runs)
     sensor = motion_sensor(quantity, strongest[:, column].std(), random)
     load_cell = Disturbance(white=random.uniform(0.015, 0.03), quantum=1e-3)

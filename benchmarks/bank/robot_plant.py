@@ -11,7 +11,7 @@ import numpy as np
 from scipy.optimize import fsolve
 from scipy.signal import butter, sosfilt
 
-from bank.laws import STATES, force, kept_in, rates
+from bank.laws import STATES, force, moved, rates
 from ssmr_ident.core.kernel import kernel
 from ssmr_ident.physics.robot import GRAVITY, Robot
 from ssmr_ident.physics.statics import rest_pose, tilt
@@ -180,15 +180,20 @@ def _run(mass, inverse, points, k, d, mu, place, laws_x, laws_y, laws_z, at_rest
             for j in range(20):
                 trial[j] = s[j] + share * slopes[stage - 1, j]
             z_trial[:] = z + share * z_slopes[stage - 1]
+            for m in range(count):
+                for i in range(4):
+                    moved(laws_x[m], z[2 * i, m], trial[12 + 2 * i] - s[12 + 2 * i], z_trial[2 * i, m])
+                    moved(laws_y[m], z[2 * i + 1, m], trial[13 + 2 * i] - s[13 + 2 * i], z_trial[2 * i + 1, m])
             _slope(
                 mass, inverse, points, k, d, mu, laws_x, laws_y, laws_z, n * step + share, trial, z_trial,
                 slopes[stage], z_slopes[stage], turn, arm, scratch,
             )  # fmt: skip
         for j in range(20):
-            s[j] += step / 6.0 * (slopes[0, j] + 2.0 * slopes[1, j] + 2.0 * slopes[2, j] + slopes[3, j])
+            trial[j] = step / 6.0 * (slopes[0, j] + 2.0 * slopes[1, j] + 2.0 * slopes[2, j] + slopes[3, j])
+            s[j] += trial[j]
         z += step / 6.0 * (z_slopes[0] + 2.0 * z_slopes[1] + 2.0 * z_slopes[2] + z_slopes[3])
         for m in range(count):
             for i in range(4):
-                kept_in(laws_x[m], z[2 * i, m])
-                kept_in(laws_y[m], z[2 * i + 1, m])
+                moved(laws_x[m], z[2 * i, m], trial[12 + 2 * i], z[2 * i, m])
+                moved(laws_y[m], z[2 * i + 1, m], trial[13 + 2 * i], z[2 * i + 1, m])
     return largest
