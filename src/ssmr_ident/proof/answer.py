@@ -47,6 +47,8 @@ class Answer:
     summary : str
     folder : Path
         With before.yaml and after.yaml.
+    session : str
+        Which it diagnosed.
     """
 
     verdict: str
@@ -55,6 +57,7 @@ class Answer:
     located: str = ""
     summary: str = ""
     folder: Path = Path()
+    session: str = ""
 
     @property
     def says_missing(self) -> bool:
@@ -82,8 +85,14 @@ def read_answer(folder: Path) -> Answer:
         k: float(v) for k, v in (content.get("fit", {}).get("heldout") or {}).items() if isinstance(v, int | float)
     }
     return Answer(
-        str(content["verdict"]), claims, heldout, _place(content), str(content.get("summary", "")), folder
-    )  # fmt: skip
+        str(content["verdict"]),
+        claims,
+        heldout,
+        _place(content),
+        str(content.get("summary", "")),
+        folder,
+        str(content.get("session", "")),
+    )
 
 
 def _place(content: Mapping[str, Any]) -> str:

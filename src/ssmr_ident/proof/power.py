@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -38,7 +39,7 @@ class Power:
     def rows(self) -> list[tuple[str, int, int, int]]:
         """Range of excess, cases, seen, named."""
         found = []
-        for low, high in zip(BINS[:-1], BINS[1:], strict=True):
+        for low, high in itertools.pairwise(BINS):
             inside = (self.excess >= low) & (self.excess < high)
             label = f"{low:g} … {high:g}" if high < math.inf else f"above {low:g}"
             found.append((label, int(inside.sum()), int(self.seen[inside].sum()), int(self.named[inside].sum())))

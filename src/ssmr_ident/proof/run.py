@@ -108,11 +108,11 @@ def seal_case(seed: int, number: int, sessions: Path, extent: Extent | None = No
     return Envelope(recorded.case.name, recorded.truth_text().encode(), files)
 
 
-def open_case(envelope: Envelope, seal: str, run: BlindRun, folder: Path, answers: Path) -> Row:
-    """Open one envelope, mark the answer, and try both models on the held-out recordings."""
+def open_case(envelope: Envelope, seal: str, run: BlindRun, folder: Path, answer_folder: Path) -> Row:
+    """Open one envelope into ``folder``, mark the answer, and try both models on the held-out recordings."""
     truth = envelope.opened(seal)
     envelope.unpack(folder)
-    answer = read_answer(answers / envelope.case)
+    answer = read_answer(answer_folder)
     heldout = judged(folder / "heldout", answer.folder, truth)
     return Row(truth, answer, marked(truth, answer), heldout, run.seconds, run.failure)
 
@@ -146,10 +146,9 @@ def _opened(
     seals = read_seals(out / "seals.csv")  # as they lie on disk, not as this process remembers them
     with _processes(jobs) as submit:
         waiting = [
-            submit(
-                open_case, envelope, seals.get(envelope.case, ""), run, out / "opened" / envelope.case, out / "answers"
-            )
+            submit(open_case, envelope, seals.get(case, ""), run, out / "opened" / case, out / "answers" / case)
             for envelope, run in zip(envelopes, runs, strict=True)
+            for case in (envelope.case,)
         ]
         for done, _ in enumerate(as_completed(waiting), start=1):
             report(STAGES[2], done, len(waiting))
@@ -158,21 +157,13 @@ def _opened(
 
 @contextmanager
 def _processes(jobs: int) -> Iterator[Callable[..., Future]]:
-    """A pool's submit; with one job the work is done here, as it is asked for."""
+    """A pool's submit; one job needs no process of its own."""
     if jobs > 1:
         with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
             yield pool.submit
-        return
-
-    def at_once(function: Callable, *arguments: object) -> Future:
-        future: Future = Future()
-        try:
-            future.set_result(function(*arguments))
-        except Exception as error:
-            future.set_exception(error)
-        return future
-
-    yield at_once
+    else:
+        with ThreadPoolExecutor(1) as thread:
+            yield thread.submit
 
 
 def _emptied(out: Path) -> None:
