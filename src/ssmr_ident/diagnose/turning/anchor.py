@@ -1,0 +1,275 @@
+"""The baseline at its best, and how recordings are predicted from it with calibration recordings as an anchor."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ssmr_ident.compare.turning import FLOOR_HEIGHT, SLIDING_SPEED
+from ssmr_ident.core.parameter import ParameterSet
+from ssmr_ident.diagnose.turning.bench import Bench, Run
+from ssmr_ident.diagnose.turning.conditions import Condition
+from ssmr_ident.diagnose.turning.likelihood import Block, Score, log_variance, score
+from ssmr_ident.physics.slots import Effects
+
+SEEDS = (1, 2)
+ZERO_STD = 0.13  # m/s^2 between two logs of one sensor: 0.02 V at 0.15 V s^2/m
+EXTREME_STD = 0.02
+MODEL_EXTREME_STD = 0.15  # of extremes that no calibration recording anchors
+YAW_STD = 0.03
+WIDE = 0.6  # standard deviation of the logarithm of what the file does not know
+FITTED = (
+    "tire.sliding_speed_m_s", "floor.height_m", "tire.mu_static", "tire.mu_kinetic",
+    "tire.stiffness_x_N_m", "tire.stiffness_y_N_m", "tire.stiffness_z_N_m",
+    "tire.damping_x_N_s_m", "tire.damping_y_N_s_m", "tire.damping_z_N_s_m",
+    "inertia_kg_m2.xx", "inertia_kg_m2.yy", "inertia_kg_m2.zz",
+)  # fmt: skip
+_DIFFERENCE = 0.7  # standard deviations of the prior; spectra of chaotic runs are no smooth functions of less
+_ROUNDS = 3
+
+
+@dataclass(frozen=True)
+class Prior:
+    """Log-normal: the file's value, and the standard deviation of its logarithm."""
+
+    path: str
+    value: float
+    std: float
+
+
+def priors_of(parameters: ParameterSet) -> tuple[Prior, ...]:
+    """What the file knows of the parameters that a swivel depends on, wide where it does not say."""
+    found = []
+    defaults = {"tire.sliding_speed_m_s": SLIDING_SPEED, "floor.height_m": FLOOR_HEIGHT}
+    for path in FITTED:
+        known = parameters.get(path)
+        if known is None and path in defaults:
+            found.append(Prior(path, defaults[path], WIDE))
+        elif known is not None and not known.fixed and float(known.value) > 0.0:
+            value = float(known.value)
+            std = WIDE if known.std is None else min(float(known.std) / value, WIDE)
+            if std > 0.0:
+                found.append(Prior(path, value, std))
+    return tuple(found)
+
+
+def values_at(priors: tuple[Prior, ...], z: np.ndarray) -> dict[str, float]:
+    """Parameters at ``z`` standard deviations from the priors; friction never rises with speed."""
+    values = {p.path: p.value * float(np.exp(p.std * shift)) for p, shift in zip(priors, z, strict=True)}
+    if "tire.mu_kinetic" in values and "tire.mu_static" in values:
+        values["tire.mu_kinetic"] = min(values["tire.mu_kinetic"], values["tire.mu_static"])
+    return values
+
+
+@dataclass(frozen=True, eq=False)
+class Anchor:
+    """A fitted baseline, and by how much it misses each calibration condition.
+
+    Parameters
+    ----------
+    bench : Bench
+    scale : (c,) float [m/s^2]
+    priors, z : tuple of Prior, (p,) float
+    calibration : tuple of Condition
+        Empty where the baseline was fitted on the targets.
+    fit : Score
+        On what it was fitted on.
+    """
+
+    bench: Bench
+    scale: np.ndarray
+    priors: tuple[Prior, ...]
+    z: np.ndarray
+    calibration: tuple[Condition, ...]
+    fit: Score
+    seeds: tuple[int, ...] = SEEDS
+    shares: tuple[float, ...] = field(default=(1.0, 0.5, 0.0))
+
+    @property
+    def values(self) -> dict[str, float]:
+        return values_at(self.priors, self.z)
+
+    def log_density(self, run: Run, condition: Condition) -> np.ndarray:
+        return run.look.log_density(self.scale, condition.noise)
+
+    def missed(self, condition: Condition) -> tuple[np.ndarray, np.ndarray, float, np.ndarray] | None:
+        """By how much calibration lies above the baseline at this condition's speed, between the nearest speeds.
+
+        Returns
+        -------
+        (k, m) float, (s,) float, float, (s,) float
+            Of log densities, of levels, and the variances of both that come from the calibration recordings; None
+            without any.
+        """
+        known = [c for c in self.calibration if c.names == condition.names and c.experiment == condition.experiment]
+        if not known:
+            return None
+        weights = between(np.array([abs(c.turning) for c in known]), abs(condition.turning))
+        densities, levels, variance, spread = 0.0, 0.0, 0.0, 0.0
+        for c, weight in zip(known, weights, strict=True):
+            if weight == 0.0:
+                continue
+            run = self.bench.run(c, self.values, {}, self.seeds)
+            assert run is not None
+            densities = densities + weight * (c.mean.log_density(self.scale) - self.log_density(run, c))
+            levels = levels + weight * (c.mean.levels - run.look.levels)
+            variance += weight**2 * log_variance(c.mean.dof)
+            spread = spread + weight**2 * c.mean.level_variance
+        return np.asarray(densities), np.asarray(levels), variance, np.asarray(spread)
+
+    def at_calibrated_speed(self, condition: Condition) -> bool:
+        return any(np.isclose(abs(c.turning), abs(condition.turning), rtol=1e-3) for c in self.calibration)
+
+    def blocks(
+        self,
+        conditions: tuple[Condition, ...],
+        effects: Effects,
+        share: float,
+        values: Mapping[str, float] | None = None,
+    ) -> list[Block] | None:
+        """Measured less predicted, with ``share`` of what the baseline misses carried over; None where nothing runs."""
+        result = []
+        for condition in conditions:
+            run = self.bench.run(condition, self.values if values is None else values, effects, self.seeds)
+            if run is None:
+                return None
+            result.append(self._block(condition, run, share, bool(effects)))
+        return result
+
+    def _block(self, condition: Condition, run: Run, share: float, changed: bool) -> Block:
+        measured, predicted = condition.mean.log_density(self.scale), self.log_density(run, condition)
+        missed = self.missed(condition)
+        variance = log_variance(condition.mean.dof)
+        level = condition.mean.levels - run.look.levels
+        channels = len(condition.names)
+        floor = np.concatenate([np.full(channels, ZERO_STD**2), np.full(2 * channels, EXTREME_STD**2)])
+        level_variance = condition.mean.level_variance + floor
+        if missed is None:
+            level_variance = level_variance + np.concatenate(
+                [np.zeros(channels), np.full(2 * channels, MODEL_EXTREME_STD**2)]
+            )
+            share = 0.0
+        else:
+            level = level - missed[1]
+            level_variance = level_variance + missed[3] + floor
+            predicted = predicted + share * missed[0]
+            variance += share**2 * missed[2]
+        if changed or missed is None or not self.at_calibrated_speed(condition):
+            variance += log_variance(run.look.dof) * (1.0 if missed is None else 1.0 + share**2)
+            level_variance = level_variance + run.look.level_variance
+        if condition.yaw_rate is not None and condition.yaw_rate * run.yaw_rate > 0.0:
+            level = np.append(level, np.log(condition.yaw_rate / run.yaw_rate))
+            level_variance = np.append(level_variance, YAW_STD**2)
+        return Block((measured - predicted).ravel(), variance, level, level_variance)
+
+    def score(
+        self, conditions: tuple[Condition, ...], effects: Effects, values: Mapping[str, float] | None = None
+    ) -> tuple[Score, float] | None:
+        """The best share to carry over, and the score with it."""
+        best: tuple[Score, float] | None = None
+        shares = self.shares if self.calibration else (0.0,)
+        if not effects and values is None and self.calibration:
+            shares = (1.0,)
+        for share in shares:
+            blocks = self.blocks(conditions, effects, share, values)
+            if blocks is None:
+                return None
+            found = score(blocks)
+            if best is None or found.log_likelihood > best[0].log_likelihood:
+                best = (found, share)
+        return best
+
+
+def between(positions: np.ndarray, wanted: float) -> np.ndarray:
+    """Weights of linear interpolation at ``wanted`` between known positions, the nearest one beyond their ends."""
+    order = np.argsort(positions)
+    weights = np.zeros(len(positions))
+    low, high = positions[order[0]], positions[order[-1]]
+    clipped = float(np.clip(wanted, low, high))
+    for j in range(len(order)):
+        unit = np.zeros(len(order))
+        unit[j] = 1.0
+        weights[order[j]] = np.interp(clipped, positions[order], unit)
+    same = np.isclose(positions, wanted, rtol=1e-3)
+    return same / same.sum() if same.any() else weights
+
+
+def scale_of(conditions: tuple[Condition, ...]) -> np.ndarray:
+    """Rms of each channel within the band over all conditions, (c,) float [m/s^2]."""
+    power = [np.einsum("kii->i", c.mean.cross) for c in conditions]
+    return np.sqrt(np.mean(power, axis=0))
+
+
+def anchored(
+    bench: Bench,
+    fitted_on: tuple[Condition, ...],
+    calibrated: bool,
+    scale: np.ndarray,
+    advance: Callable[[], None],
+    rounds: int = _ROUNDS,
+    seeds: tuple[int, ...] = SEEDS,
+) -> Anchor:
+    """Fit the baseline: sliding speed and floor over a grid, then everything within its prior by Gauss-Newton."""
+    priors = priors_of(bench.parameters)
+    free = Anchor(bench, scale, priors, np.zeros(len(priors)), (), Score(-np.inf, 0.0, 0.0), seeds)
+
+    def value(z: np.ndarray) -> Score | None:
+        found = free.score(fitted_on, {}, values_at(priors, z))
+        if found is None:
+            return None
+        one = found[0]
+        return Score(one.log_likelihood - 0.5 * float(z @ z), one.tau_db, one.rms_db)
+
+    best_z = np.zeros(len(priors))
+    index = {p.path: i for i, p in enumerate(priors)}
+    best: Score | None = None
+    grid = []
+    for speed in (-1.8, -0.9, 0.0, 0.9, 1.8):
+        for floor in (-1.5, 0.0, 1.5):
+            z = np.zeros(len(priors))
+            for path, shift in (("tire.sliding_speed_m_s", speed), ("floor.height_m", floor)):
+                if path in index:
+                    z[index[path]] = shift
+            grid.append(z)
+    bench.prefetch((c, values_at(priors, z), {}, seed) for z in grid for c in fitted_on for seed in seeds)
+    for z in grid:
+        found = value(z)
+        if found is not None and (best is None or found.log_likelihood > best.log_likelihood):
+            best, best_z = found, z
+    advance()
+    for _ in range(rounds):
+        best, best_z, moved = _gauss_newton(free, fitted_on, priors, best_z, best, value, advance)
+        if not moved:
+            break
+    if best is None:
+        raise FloatingPointError("no values within the priors make a robot that can be simulated")
+    return Anchor(bench, scale, priors, best_z, fitted_on if calibrated else (), best, seeds)
+
+
+def _gauss_newton(free, conditions, priors, z, now, value, advance):
+    def residual(at: np.ndarray) -> np.ndarray | None:
+        blocks = free.blocks(conditions, {}, 0.0, values_at(priors, at))
+        return None if blocks is None else np.concatenate([b.residual for b in blocks])
+
+    ahead = [z + _DIFFERENCE * (np.arange(len(z)) == i) for i in range(len(z))]
+    free.bench.prefetch(
+        (c, values_at(priors, at), {}, seed) for at in [z, *ahead] for c in conditions for seed in free.seeds
+    )
+    base = residual(z)
+    advance()
+    if base is None or now is None:
+        return now, z, False
+    columns = []
+    for at in ahead:
+        found = residual(at)
+        columns.append(np.zeros_like(base) if found is None else (found - base) / _DIFFERENCE)
+    jacobian = np.column_stack(columns)
+    weight = 1.0 / (6.0 * (0.05 + (now.tau_db / 4.343) ** 2))
+    change = np.linalg.solve(weight * jacobian.T @ jacobian + np.eye(len(priors)), -weight * jacobian.T @ base - z)
+    for length in (1.0, 0.5, 0.25):
+        found = value(z + length * change)
+        if found is not None and found.log_likelihood > now.log_likelihood:
+            return found, z + length * change, True
+    return now, z, False

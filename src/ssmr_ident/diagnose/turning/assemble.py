@@ -1,0 +1,219 @@
+"""From explanations to the contract's diagnosis: parameters, what they are worth, what to do next."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from ssmr_ident.compare.turning import FLOOR_LENGTH
+from ssmr_ident.core.parameter import Estimate, ParameterSet
+from ssmr_ident.diagnose.diagnosis import MISSING, NOTHING, Conflict, Diagnosis, NamedEffect, Tried, Worth
+from ssmr_ident.diagnose.evidence import Evidence
+from ssmr_ident.diagnose.turning.anchor import Anchor
+from ssmr_ident.diagnose.turning.candidates import UNLISTED
+from ssmr_ident.diagnose.turning.conditions import Condition
+from ssmr_ident.diagnose.turning.engine import Outcome
+from ssmr_ident.diagnose.turning.located import located
+from ssmr_ident.diagnose.turning.maps import follows, speed_maps
+from ssmr_ident.diagnose.turning.next_run import next_run
+from ssmr_ident.diagnose.turning.search import Explained
+from ssmr_ident.diagnose.turning.verdict import Decision, decide, findings_of
+from ssmr_ident.diagnose.turning.worth import against_simulation, repeatability_db
+from ssmr_ident.physics.effects import CATALOGUE
+
+METRIC = "log_psd_db"
+CONFLICT = 3.0  # standard deviations of the prior
+
+
+def diagnosis_of(outcome: Outcome, session: str) -> Diagnosis:
+    """Put into words and numbers what an examination found."""
+    decision = decide(findings_of(outcome))
+    best = _chosen(outcome, decision)
+    before = parameter_set(outcome, outcome.anchor, None)
+    after = before if best is None else parameter_set(outcome, best.anchor, best)
+    values = outcome.anchor.values
+    added, effects = (values, {}) if best is None else (best.anchor.values, best.effects)
+    floor = repeatability_db((*outcome.targets, *outcome.heldout))
+    training = _worth(outcome, outcome.targets, added, effects, floor)
+    heldout = _worth(outcome, outcome.heldout, added, effects, floor) if outcome.heldout else training
+    maps = speed_maps(outcome, values, added, effects)
+    return Diagnosis(
+        session=session,
+        verdict=decision.verdict,
+        located=located(outcome) if decision.verdict != NOTHING else (),
+        conflicts=_conflicts(outcome.anchor if best is None else best.anchor),
+        effects=_named(outcome, decision, best),
+        tried=_tried(outcome),
+        metric=METRIC,
+        training=training,
+        heldout=heldout,
+        next_experiment=next_run(outcome, decision.named),
+        before=before,
+        after=after,
+        summary=_summary(outcome, decision, best, heldout),
+        notes=(*_notes(outcome, decision), *_lines(maps)),
+        evidence=Evidence(speeds=maps, seconds=dict(outcome.seconds)),
+    )
+
+
+def _chosen(outcome: Outcome, decision: Decision) -> Explained | None:
+    if decision.verdict != MISSING:
+        return None
+    every = {one.id: one for one in (*outcome.screened[::-1], *outcome.explanations[::-1])}
+    return every.get(decision.named[0])
+
+
+def parameter_set(outcome: Outcome, anchor: Anchor, best: Explained | None) -> ParameterSet:
+    """The session's parameters with the fitted baseline, and the effect where there is one."""
+    known = outcome.bench.parameters
+    changes = {}
+    fitted_on = "calibration swivels" if outcome.calibrated else "target swivels"
+    for prior, z in zip(anchor.priors, anchor.z, strict=True):
+        old = known.get(prior.path)
+        unit = {"tire.sliding_speed_m_s": "m/s", "floor.height_m": "m"}.get(prior.path, old.unit if old else "1")
+        value = anchor.values[prior.path]
+        source = f"fitted to {fitted_on}; std is the prior's"
+        changes[prior.path] = Estimate(value, prior.std * value, unit, source, at_bound=abs(z) > CONFLICT)
+    if "floor.length_m" not in known:
+        changes["floor.length_m"] = Estimate(FLOOR_LENGTH, None, "m", "assumed")
+    effects: dict[str, Mapping[str, Estimate]] = dict(known.effects)
+    if best is not None:
+        spreads = _spreads(best)
+        for effect, values in best.effects.items():
+            units = {p.name: p.unit for p in CATALOGUE[effect].parameters}
+            effects[effect] = {
+                name: Estimate(float(value), spreads.get(name), units[name], f"fitted to {fitted_on} and targets")
+                for name, value in values.items()
+            }
+    return known.updated(changes, effects=effects)
+
+
+def _spreads(best: Explained) -> dict[str, float]:
+    if best.candidate is None or best.spread is None:
+        return {}
+    return {
+        free.name: float(spread * (best.values[free.name] if free.log else 1.0))
+        for free, spread in zip(best.candidate.free, best.spread, strict=True)
+    }
+
+
+def _named(outcome: Outcome, decision: Decision, best: Explained | None) -> tuple[NamedEffect, ...]:
+    if decision.verdict != MISSING:
+        return ()
+    name = decision.named[0]
+    others = tuple(decision.named[1:])
+    if name == UNLISTED:
+        sentence = "None of the listed effects takes away what is new in these spectra."
+        if best is None:
+            return (NamedEffect(name, sentence, "", {}, decision.confidence, others),)
+        found = parameter_set(outcome, best.anchor, best).effects
+        parameters = {key: value for block in found.values() for key, value in block.items()}
+        k3, d2 = best.values["k3_N_m3"], best.values["d2_N_s2_m2"]
+        equation = f"F = K·s + D·v + {k3:.3g}·s³ + {d2:.3g}·v·|v|   (each tire; N, m, s)"
+        return (NamedEffect(name, sentence, equation, parameters, decision.confidence, others, "smooth force"),)
+    effect = CATALOGUE[name]
+    assert best is not None
+    parameters = {
+        key: value for key, value in parameter_set(outcome, best.anchor, best).effects[name].items()
+        if key in best.values or not best.values
+    }  # fmt: skip
+    return (NamedEffect(name, effect.sentence, effect.equation, parameters, decision.confidence, others),)
+
+
+def _tried(outcome: Outcome) -> tuple[Tried, ...]:
+    conditions = outcome.heldout or outcome.targets
+    every = (outcome.baseline, *outcome.explanations, *outcome.screened)
+    rows = []
+    for one in every:
+        found = against_simulation(outcome.bench, conditions, one.anchor.values, one.effects)
+        metric = float(np.mean(list(found.values()))) if found else float("nan")
+        rows.append(Tried(one.id, metric, float(one.evidence - outcome.baseline.evidence)))
+    return tuple(sorted(rows, key=lambda row: row.log_evidence, reverse=True))
+
+
+def _worth(
+    outcome: Outcome, conditions: tuple[Condition, ...], added: Mapping[str, float], effects: Mapping, floor: float
+) -> Worth:
+    before = against_simulation(outcome.bench, conditions, outcome.anchor.values, {})
+    after = against_simulation(outcome.bench, conditions, added, effects)
+    names = tuple(name for name in before if name in after)
+    gains = np.array([before[name] - after[name] for name in names])
+    interval = None
+    if len(gains) > 1:
+        random = np.random.default_rng(0)
+        means = random.choice(gains, (2000, len(gains))).mean(axis=1)
+        interval = (float(np.quantile(means, 0.025)), float(np.quantile(means, 0.975)))
+    return Worth(
+        float(np.mean([before[name] for name in names])), float(np.mean([after[name] for name in names])), floor, names,
+        interval,
+    )  # fmt: skip
+
+
+def _conflicts(anchor: Anchor) -> tuple[Conflict, ...]:
+    values, known = anchor.values, anchor.bench.parameters
+    return tuple(
+        Conflict(prior.path, prior.value, values[prior.path], float(z), known[prior.path].unit if prior.path in known else "")
+        for prior, z in zip(anchor.priors, anchor.z, strict=True)
+        if abs(z) > CONFLICT
+    )  # fmt: skip
+
+
+def _summary(outcome: Outcome, decision: Decision, best: Explained | None, heldout: Worth) -> str:
+    after = (
+        f"{heldout.before:.1f} dB become {heldout.after:.1f} dB on recordings never fitted "
+        f"(repeatability {heldout.noise_floor:.1f} dB)"
+    )
+    if decision.verdict == NOTHING:
+        if outcome.calibrated:
+            base = outcome.baseline.target
+            return (
+                f"The targets differ from the calibration by {base.rms_db:.1f} dB, and chance alone makes "
+                f"{base.chance_db:.1f} dB: nothing is missing."
+            )
+        return (
+            f"No explanation tried accounts for the spectra better than the fitted baseline "
+            f"({outcome.baseline.target.rms_db:.1f} dB away)."
+        )
+    if decision.verdict != MISSING:
+        return f"Something is missing that these recordings cannot tell: {decision.reason}."
+    if best is None or best.candidate is None:
+        return f"Something is missing and it is none of the listed effects: {decision.reason}."
+    if best.id == UNLISTED:
+        return f"What is missing is none of the listed effects; a smooth force of the tires comes nearest: {after}."
+    tie = f" (or {' or '.join(decision.named[1:])}, which fits as well)" if len(decision.named) > 1 else ""
+    return f"{CATALOGUE[best.id].sentence[:-1]}{tie}: {after}."
+
+
+def _notes(outcome: Outcome, decision: Decision) -> tuple[str, ...]:
+    notes = [*outcome.notes, str(outcome.grip)]
+    fit = outcome.anchor.fit
+    if outcome.calibrated:
+        notes.append(
+            f"the baseline was fitted on the calibration recordings to {fit.rms_db:.1f} dB; what it misses there is "
+            "carried over to the targets"
+        )
+    else:
+        notes.append(
+            "there are no calibration recordings: the baseline was fitted on the targets themselves and may have taken "
+            f"up part of what is missing ({fit.rms_db:.1f} dB stayed); an effect must be "
+            "twice as evident to be named, and what resembles a parameter of the baseline cannot be seen"
+        )
+    unknown = [p.path for p in outcome.anchor.priors
+               if (known := outcome.bench.parameters.get(p.path)) is not None and known.std is None]  # fmt: skip
+    if unknown:
+        notes.append(f"the parameter file does not say how well it knows {', '.join(unknown)}")
+    if decision.reason:
+        notes.append(decision.reason)
+    return tuple(notes)
+
+
+def _lines(maps: tuple) -> tuple[str, ...]:
+    if not maps:
+        return ()
+    notes = []
+    for found in maps:
+        top = found.frequency[np.argmax(found.recorded, axis=1)]
+        courses = ", ".join(f"{f:.0f} Hz at {np.degrees(s):.3g} deg/s" for f, s in zip(top, found.speed, strict=True))
+        notes.append(f"main line of {found.channel}: {courses}; {follows(found.speed, top)}")
+    return tuple(notes)

@@ -1,0 +1,197 @@
+"""From a campaign of swivels to explanations in order of their evidence."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from ssmr_ident.campaign import Campaign
+from ssmr_ident.core.errors import InputError
+from ssmr_ident.core.parameter import ParameterSet
+from ssmr_ident.diagnose.turning.anchor import SEEDS, Anchor, anchored, scale_of
+from ssmr_ident.diagnose.turning.bench import Bench
+from ssmr_ident.diagnose.turning.candidates import candidates, pitches_heard
+from ssmr_ident.diagnose.turning.conditions import Condition, conditions_of, held_back
+from ssmr_ident.diagnose.turning.grip import GripProfile, grip_profile
+from ssmr_ident.diagnose.turning.search import Explained, explained, freed, refined, screened
+
+REFINED, FREED = 6, 4  # explanations that are refined, and that get the baseline set free beside them
+FINAL_SEEDS = (1, 2, 3, 4)
+FAR = 40.0
+"""Of evidence: setting the baseline free has gained 27 at most, so what lies further behind cannot come first."""
+MANY = 5  # conditions from which on one run each has to do while searching
+Progress = Callable[[str, int, int], None]
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """All that was found.
+
+    Parameters
+    ----------
+    calibration, targets, heldout : tuples of Condition
+    anchor : Anchor
+        Baseline before anything was added.
+    baseline : Explained
+    explanations : tuple of Explained
+        Best first, at their final values; without the baseline.
+    screened : tuple of Explained
+        Those that were not followed further.
+    grip : GripProfile
+    notes : tuple of str
+    seconds : dict
+    """
+
+    bench: Bench
+    calibration: tuple[Condition, ...]
+    targets: tuple[Condition, ...]
+    heldout: tuple[Condition, ...]
+    anchor: Anchor
+    baseline: Explained
+    explanations: tuple[Explained, ...]
+    screened: tuple[Explained, ...]
+    grip: GripProfile
+    notes: tuple[str, ...]
+    seconds: dict[str, float] = field(default_factory=dict)
+
+    @property
+    def calibrated(self) -> bool:
+        return bool(self.calibration)
+
+    @property
+    def gain(self) -> float:
+        """Evidence of the best explanation over the baseline's."""
+        return self.explanations[0].evidence - self.baseline.evidence if self.explanations else -np.inf
+
+
+def examine(
+    campaign: Campaign, parameters: ParameterSet | None = None, seed: int = 0, progress: Progress | None = None
+) -> Outcome:
+    """Fit the baseline, try every explanation, and free the baseline beside the best few.
+
+    Parameters
+    ----------
+    campaign : Campaign
+        With at least one swivel or straight run of role target.
+    parameters : ParameterSet, optional
+        In place of the session's.
+    seed : int
+        Of the simulated floors.
+    progress : callable, optional
+        Called with the name of a stage, what of it is done, and of how much.
+    """
+    show = progress or (lambda stage, done, total: None)
+    clock = time.perf_counter()
+    seconds: dict[str, float] = {}
+    known = campaign.parameters if parameters is None else parameters
+    measurements, kept_notes = held_back(campaign)
+    conditions, notes = conditions_of(campaign, known, measurements)
+    calibration = tuple(c for c in conditions if c.role == "calibration")
+    targets = tuple(c for c in conditions if c.role == "target")
+    heldout = tuple(c for c in conditions if c.role == "heldout")
+    if not targets:
+        raise InputError(
+            str(campaign.session.folder), "holds no target swivel long enough to diagnose", "Give one role: target"
+        )
+    bench = Bench(known)
+    fitted_on = calibration or targets
+    seeds = tuple(1000 * seed + s for s in (SEEDS if len(targets) + len(calibration) < MANY else SEEDS[:1]))
+
+    count = _Counter(show, "baseline", 10)
+    anchor = anchored(bench, fitted_on, bool(calibration), scale_of(fitted_on), count.advance, seeds=seeds)
+    count.finish()
+    seconds["baseline"] = time.perf_counter() - clock
+    baseline = explained(anchor, None, {}, targets)
+    assert baseline is not None
+
+    every = candidates(_pitches(anchor, targets), _ceilings(targets), anchor.values.get("floor.height_m", 3e-5))
+    count = _Counter(show, "explanations tried", 2 * len(every))
+    tried = [one for one in (screened(anchor, c, targets, count.advance) for c in every) if one is not None]
+    count.finish()
+    tried.sort(key=lambda one: one.evidence, reverse=True)
+    count = _Counter(show, "best explanations refined", REFINED)
+    for i, one in enumerate(tried[:REFINED]):
+        tried[i] = refined(one, targets, lambda: None)
+        count.advance()
+    tried.sort(key=lambda one: one.evidence, reverse=True)
+    seconds["explanations"] = time.perf_counter() - clock - seconds["baseline"]
+
+    worth_it = [one for one in tried[:FREED] if one.evidence > max(baseline.evidence - FAR, tried[0].evidence - FAR)]
+    rounds = 2 if len(seeds) > 1 else 1
+    count = _Counter(show, "baseline set free beside them", len(worth_it) * rounds + 1)
+    best = [freed(one, targets, rounds, count.advance) for one in worth_it]
+    finals = [_final(one, targets, seed) for one in [baseline, *best]]
+    count.finish()
+    count = _Counter(show, "grip", 1)
+    grip = grip_profile(anchor, fitted_on)
+    count.finish()
+    ranked = sorted(finals[1:], key=lambda one: one.evidence, reverse=True)
+    seconds["baseline beside explanations"] = time.perf_counter() - clock - sum(seconds.values())
+    return Outcome(
+        bench, calibration, targets, heldout, anchor, finals[0], tuple(ranked), tuple(tried[len(worth_it) :]), grip,
+        (*kept_notes, *notes), seconds,
+    )  # fmt: skip
+
+
+def _final(one: Explained, targets: tuple[Condition, ...], seed: int) -> Explained:
+    """The same values once more with more runs, so that chance in the simulation decides less."""
+    many = replace(one.anchor, seeds=tuple(1000 * seed + s for s in FINAL_SEEDS))
+    jobs = [(c, many.values, one.effects, s) for c in targets for s in many.seeds]
+    jobs += [(c, many.values, {}, s) for c in many.calibration for s in many.seeds]
+    many.bench.prefetch(jobs)
+    again = explained(many, one.candidate, one.values, targets)
+    return one if again is None else replace(again, spread=one.spread)
+
+
+def _pitches(anchor: Anchor, targets: tuple[Condition, ...]) -> tuple[float, ...]:
+    """Joint distances to try: what the excess over the baseline speaks for."""
+    excess, speeds = [], []
+    for c in targets:
+        blocks = anchor.blocks((c,), {}, anchor.shares[0])
+        run = anchor.bench.run(c, anchor.values, {}, anchor.seeds)
+        if blocks is None or run is None:
+            continue
+        channels = blocks[0].residual.reshape(len(c.mean.frequency), -1)[:, : len(c.names)]
+        excess.append(channels.mean(axis=1))
+        speeds.append(abs(run.yaw_rate) * lever(anchor) if c.experiment == "swivel" else _forward(c, anchor))
+    frequency = min((c.mean.frequency for c in targets), key=len)
+    return pitches_heard(frequency, [course[: len(frequency)] for course in excess], speeds)
+
+
+def lever(anchor: Anchor) -> float:
+    """Mean distance of the contacts from the centre of mass [m]."""
+    points = np.asarray(anchor.bench.parameters["contact_points_m"].value, dtype=float)
+    return float(np.hypot(points[:, 0], points[:, 1]).mean())
+
+
+def _forward(c: Condition, anchor: Anchor) -> float:
+    return float(np.abs(c.rates).mean()) * anchor.bench.parameters.number("tire.radius_m")
+
+
+def _ceilings(targets: tuple[Condition, ...]) -> tuple[float, ...]:
+    """Levels at which a sensor may have clipped: near the largest readings of each channel."""
+    levels = []
+    for c in targets:
+        n = len(c.names)
+        top = np.maximum(
+            c.mean.levels[:n] + np.exp(c.mean.levels[n : 2 * n]), np.exp(c.mean.levels[2 * n :]) - c.mean.levels[:n]
+        )
+        levels.append(np.abs(top))
+    highest = np.max(levels, axis=0)
+    return tuple(sorted({float(h * f) for h in highest for f in (0.93, 0.98, 1.03)}))
+
+
+class _Counter:
+    def __init__(self, show: Progress, stage: str, total: int) -> None:
+        self.show, self.stage, self.total, self.done = show, stage, total, 0
+        show(stage, 0, total)
+
+    def advance(self) -> None:
+        self.done = min(self.done + 1, self.total)
+        self.show(self.stage, self.done, self.total)
+
+    def finish(self) -> None:
+        self.show(self.stage, self.total, self.total)

@@ -1,0 +1,208 @@
+"""Every candidate over its starts, the best of them refined, the best few with the baseline set free beside them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.optimize import minimize
+
+from ssmr_ident.diagnose.turning.anchor import Anchor, values_at
+from ssmr_ident.diagnose.turning.candidates import Candidate, Values
+from ssmr_ident.diagnose.turning.conditions import Condition
+from ssmr_ident.diagnose.turning.likelihood import NEPER_DB, Score
+
+REFINEMENTS = 14  # evaluations per free parameter
+_STEP = 0.35  # of a logarithm, or of a hundredth of the bounds
+
+
+@dataclass(frozen=True, eq=False)
+class Explained:
+    """One explanation at its best.
+
+    Parameters
+    ----------
+    candidate : Candidate or None
+        None is the baseline.
+    values : dict
+        Of the candidate's free parameters.
+    anchor : Anchor
+        Baseline that it goes with.
+    target : Score
+    share : float
+        Of what the anchor misses on calibration recordings, carried over.
+    evidence : float
+        Log likelihood of targets and calibration, less what free parameters cost.
+    spread : (p,) float or None
+        Standard deviations of the free parameters on the scales of the search.
+    """
+
+    candidate: Candidate | None
+    values: Values
+    anchor: Anchor
+    target: Score
+    share: float
+    evidence: float
+    spread: np.ndarray | None = None
+
+    @property
+    def id(self) -> str:
+        return "baseline" if self.candidate is None else self.candidate.id
+
+    @property
+    def effects(self) -> dict[str, Values]:
+        return {} if self.candidate is None else self.candidate.effects(self.values)
+
+
+def cost(candidate: Candidate | None, targets: tuple[Condition, ...]) -> float:
+    """Half the logarithm of the number of independent values per free parameter (BIC)."""
+    if candidate is None:
+        return 0.0
+    values = sum(c.mean.cross.shape[0] * len(c.names) / 2.0 for c in targets)
+    return 0.5 * max(len(candidate.free), 1) * float(np.log(values))
+
+
+def explained(
+    anchor: Anchor, candidate: Candidate | None, values: Values, targets: tuple[Condition, ...]
+) -> Explained | None:
+    """Score one explanation with one set of values."""
+    effects = {} if candidate is None else candidate.effects(values)
+    found = anchor.score(targets, effects)
+    if found is None:
+        return None
+    evidence = found[0].log_likelihood + anchor.fit.log_likelihood * bool(anchor.calibration)
+    evidence -= 0.0 if anchor.calibration else 0.5 * float(anchor.z @ anchor.z)
+    return Explained(candidate, values, anchor, found[0], found[1], evidence - cost(candidate, targets))
+
+
+def screened(
+    anchor: Anchor, candidate: Candidate, targets: tuple[Condition, ...], advance: Callable[[], None]
+) -> Explained | None:
+    """The best start: all of them on one run at the slowest and fastest speed, the best two on everything."""
+    order = sorted(targets, key=lambda c: abs(c.turning))
+    few = tuple({c.kind: c for c in (order[0], order[-1])}.values())
+    coarse = replace(anchor, seeds=anchor.seeds[:1])
+    starts = list(candidate.starts)
+    if len(starts) > 2:
+        anchor.bench.prefetch(
+            (c, anchor.values, candidate.effects(start), coarse.seeds[0]) for start in starts for c in few
+        )
+        rough = [(explained(coarse, candidate, start, few), start) for start in starts]
+        ranked = sorted(((one.evidence, i) for i, (one, _) in enumerate(rough) if one is not None), reverse=True)
+        starts = [starts[i] for _, i in ranked[:2]]
+    advance()
+    anchor.bench.prefetch(
+        (c, anchor.values, candidate.effects(start), seed) for start in starts for c in targets for seed in anchor.seeds
+    )
+    found = [one for one in (explained(anchor, candidate, start, targets) for start in starts) if one is not None]
+    advance()
+    return max(found, key=lambda one: one.evidence, default=None)
+
+
+def refined(start: Explained, targets: tuple[Condition, ...], advance: Callable[[], None]) -> Explained:
+    """Nelder-Mead over the candidate's own parameters, from its best start."""
+    candidate = start.candidate
+    if candidate is None or not candidate.free:
+        return start
+    best = [start]
+
+    def objective(position: np.ndarray) -> float:
+        effects = candidate.effects(candidate.values(position))
+        start.anchor.bench.prefetch(
+            (c, start.anchor.values, effects, seed) for c in targets for seed in start.anchor.seeds
+        )
+        found = explained(start.anchor, candidate, candidate.values(position), targets)
+        advance()
+        if found is None:
+            return 1e9
+        if found.evidence > best[0].evidence:
+            best[0] = found
+        return -found.evidence
+
+    centre = candidate.position(start.values)
+    simplex = [centre]
+    for i, free in enumerate(candidate.free):
+        corner = centre.copy()
+        corner[i] += _STEP if free.log else 0.04 * free.span
+        if free.log and free.outward(corner[i]) >= free.upper:
+            corner[i] = centre[i] - _STEP
+        simplex.append(corner)
+    minimize(
+        objective, centre, method="Nelder-Mead",
+        options={"initial_simplex": np.array(simplex), "maxfev": REFINEMENTS * len(candidate.free), "xatol": 5e-3,
+                 "fatol": 0.05},
+    )  # fmt: skip
+    return best[0]
+
+
+def freed(start: Explained, targets: tuple[Condition, ...], rounds: int, advance: Callable[[], None]) -> Explained:
+    """Baseline and effect together by Gauss-Newton on calibration and target recordings."""
+    now = start
+    for _ in range(rounds):
+        after = _together(now, targets, advance)
+        if after is None:
+            break
+        now = after
+    return now
+
+
+def _together(now: Explained, targets: tuple[Condition, ...], advance: Callable[[], None]) -> Explained | None:
+    anchor, candidate = now.anchor, now.candidate
+    own = np.zeros(0) if candidate is None else candidate.position(now.values)
+    steps = np.array([] if candidate is None else [0.1 if f.log else 0.01 * f.span for f in candidate.free])
+    size = len(anchor.priors)
+    z = np.concatenate([anchor.z, own])
+    difference = np.concatenate([np.full(size, 0.7), steps])
+
+    def split(at: np.ndarray):
+        effects = {} if candidate is None else candidate.effects(candidate.values(at[size:]))
+        return values_at(anchor.priors, at[:size]), effects
+
+    def jobs(at: np.ndarray):
+        values, effects = split(at)
+        pairs = [(c, {}) for c in anchor.calibration] + [(c, effects) for c in targets]
+        return [(c, values, active, seed) for c, active in pairs for seed in anchor.seeds]
+
+    def residual(at: np.ndarray) -> np.ndarray | None:
+        values, effects = split(at)
+        direct = replace(anchor, calibration=())
+        parts = [direct.blocks(anchor.calibration, {}, 0.0, values), direct.blocks(targets, effects, 0.0, values)]
+        if any(part is None for part in parts):
+            return None
+        return np.concatenate([block.residual for part in parts if part is not None for block in part])
+
+    ahead = [z + difference * (np.arange(len(z)) == i) for i in range(len(z))]
+    anchor.bench.prefetch([job for at in [z, *ahead] for job in jobs(at)])
+    base = residual(z)
+    if base is None:
+        return None
+    columns = [residual(at) for at in ahead]
+    jacobian = np.column_stack(
+        [np.zeros_like(base) if c is None else (c - base) / d for c, d in zip(columns, difference, strict=True)]
+    )
+    advance()
+    tau = max(now.target.tau_db, 0.8) / NEPER_DB
+    weight = 1.0 / (6.0 * (0.05 + tau**2))
+    known = np.concatenate([np.ones(size), 0.05 / np.maximum(steps, 1e-9) ** 2])
+    curvature = weight * jacobian.T @ jacobian + np.diag(known)
+    pull = np.concatenate([anchor.z, np.zeros(len(own))])
+    change = np.linalg.solve(curvature, -weight * jacobian.T @ base - pull)
+    spread = np.sqrt(np.diag(np.linalg.inv(curvature)))[size:]
+    best: Explained | None = None
+    for length in (1.0, 0.5, 0.2):
+        at = z + length * change
+        anchor.bench.prefetch(jobs(at))
+        values, _ = split(at)
+        fit = replace(anchor, calibration=()).score(anchor.calibration, {}, values) if anchor.calibration else None
+        prior = 0.5 * float(at[:size] @ at[:size])
+        if anchor.calibration and fit is None:
+            continue
+        moved = replace(
+            anchor, z=at[:size],
+            fit=anchor.fit if fit is None else Score(fit[0].log_likelihood - prior, fit[0].tau_db, fit[0].rms_db),
+        )  # fmt: skip
+        found = explained(moved, candidate, {} if candidate is None else candidate.values(at[size:]), targets)
+        if found is not None and found.evidence > (now if best is None else best).evidence:
+            best = replace(found, spread=spread)
+    return best
