@@ -73,7 +73,7 @@ def _hardening(size: float, at: Scale, random: np.random.Generator) -> Physics:
 
 
 def _friction(size: float, at: Scale, random: np.random.Generator) -> Physics:
-    force, stiffness = between(size, 0.004, 0.12) * at.spring, random.uniform(5.0, 15.0) * at.rig.stiffness
+    force, stiffness = between(size, 0.003, 0.06) * at.spring, random.uniform(5.0, 15.0) * at.rig.stiffness
     parameters = {"F_c_N": force, "element_stiffness_N_m": stiffness}
     return Physics("dry_friction", parameters, (law("dahl", force, stiffness),))
 
@@ -95,7 +95,7 @@ def _relaxation(size: float, at: Scale, random: np.random.Generator) -> Physics:
 
 
 def _play(size: float, at: Scale, random: np.random.Generator) -> Physics:
-    gap = between(size, 0.03, 0.6) * at.displacement
+    gap = between(size, 0.01, 0.4) * at.displacement
     row = law("rounded_play", at.rig.stiffness, 0.5 * gap, 0.1 * gap)
     return Physics("free_play", {"gap_m": gap, "rounding": 0.1}, (row,))
 
@@ -132,29 +132,29 @@ def _saturating(size: float, at: Scale, random: np.random.Generator) -> Physics:
 
 
 def _coulomb(size: float, at: Scale, random: np.random.Generator) -> Physics:
-    row = law("tanh_friction", between(size, 0.004, 0.12) * at.spring, random.uniform(0.005, 0.03) * at.velocity)
+    row = law("tanh_friction", between(size, 0.003, 0.06) * at.spring, random.uniform(0.005, 0.03) * at.velocity)
     return Physics("dry_friction", {}, (row,), "friction as the tanh of the velocity")
 
 
 def _slider(size: float, at: Scale, random: np.random.Generator) -> Physics:
     stiffness = random.uniform(3.0, 15.0) * at.rig.stiffness
-    row = law("jenkins", between(size, 0.004, 0.12) * at.spring, stiffness)
+    row = law("jenkins", between(size, 0.003, 0.06) * at.spring, stiffness)
     return Physics("dry_friction", {}, (row,), "friction as a spring in series with a slider")
 
 
 def _falling(size: float, at: Scale, random: np.random.Generator) -> Physics:
-    force, width = between(size, 0.004, 0.12) * at.spring, 0.01 * at.velocity
+    force, width = between(size, 0.003, 0.06) * at.spring, 0.01 * at.velocity
     row = law("stribeck_friction", force, width, random.uniform(0.1, 0.5), random.uniform(0.05, 0.2) * at.velocity)
     return Physics("dry_friction", {}, (row,), "friction that is larger near rest")
 
 
 def _sharp_play(size: float, at: Scale, random: np.random.Generator) -> Physics:
-    row = law("play", at.rig.stiffness, 0.5 * between(size, 0.03, 0.6) * at.displacement)
+    row = law("play", at.rig.stiffness, 0.5 * between(size, 0.01, 0.4) * at.displacement)
     return Physics("free_play", {}, (row,), "play with sharp corners")
 
 
 def _soft_play(size: float, at: Scale, random: np.random.Generator) -> Physics:
-    half = 0.5 * between(size, 0.03, 0.6) * at.displacement
+    half = 0.5 * between(size, 0.01, 0.4) * at.displacement
     row = law("smooth_play", at.rig.stiffness, half, random.uniform(0.1, 0.3) * half)
     return Physics("free_play", {}, (row,), "play with softplus corners")
 

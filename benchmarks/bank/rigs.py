@@ -69,6 +69,8 @@ def draw_forced(kind: str, seed: int, effect: str | None, size: float | None, sh
     seconds = 2.0 if short else float(random.choice([2.0, 4.0, 8.0]) if kind == "none" else random.choice([4.0, 8.0]))
     drives = forces(FORCED, rate, seconds, random)
     quantity = str(random.choice(["acceleration", "acceleration", "position", "velocity"]))
+    if effect is not None and effect.startswith("sensor"):  # an accelerometer's
+        quantity = "acceleration"
     strongest = run_rig(rig, drives[2], rate, laws())
     at = Scale(rig, float(strongest[:, 0].std()), float(strongest[:, 1].std()), seconds)
     column, unit = QUANTITIES[quantity]
@@ -105,6 +107,8 @@ def draw_let_go(kind: str, seed: int, effect: str | None, size: float | None, sh
     seconds = min(6.0, 6.0 * 2.0 * rig.mass / rig.damping) if not short else 1.5
     quiet = np.zeros(round(rate * seconds))
     quantity = str(random.choice(["acceleration", "position"]))
+    if effect is not None and effect.startswith("sensor"):  # an accelerometer's
+        quantity = "acceleration"
     pulled = random.uniform(1e-3, 3e-3)
     # a decay is large for a short time only: its scale is a third of the start
     at = Scale(rig, pulled / 3.0, pulled / 3.0 * math.sqrt(rig.stiffness / rig.mass), seconds)
