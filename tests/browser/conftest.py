@@ -7,10 +7,17 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from made_diagnoses import EVERY
 
+from ssmr_ident.compare import Comparison, RecordingComparison
+from ssmr_ident.compare.outcome import Prediction
+from ssmr_ident.pipeline.spectrum import spectrum
+from ssmr_ident.pipeline.spectrum_page import write_spectrum_page
+from ssmr_ident.report.comparison_page import comparison_page
 from ssmr_ident.report.diagnosis_page import write_report
+from ssmr_ident.report.html import write_page
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 
@@ -38,7 +45,38 @@ def pages(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
         log = path.parent / "roll-1.csv"
         log.write_text("time [s],ay [m/s^2]\n0,0\n", encoding="utf-8")
         made[make.__name__] = write_report(make(), path, "ident diagnose my-session -o out", 0, [log])
+    made["comparison"] = _comparison(folder)
+    made["spectrum"] = _spectrum(folder)
     return made
+
+
+def _comparison(folder: Path) -> Path:
+    random = np.random.default_rng(0)
+    time = np.arange(0, 2, 0.005)
+    courses = np.column_stack([np.exp(-time) * np.sin(2 * np.pi * f * time) for f in (5.0, 8.0)])
+    noise = 0.05 * random.standard_normal(courses.shape)
+    prediction = Prediction(time, ("ax", "ay"), ("m/s^2", "m/s^2"), courses + noise, courses)
+    recordings = tuple(
+        RecordingComparison(
+            f"roll-{k}.csv", "free_response", "nrmse_percent", 9.0 - k, {"ax": 9.0, "ay": 8.0}, prediction
+        )
+        for k in range(8)
+    )
+    page = comparison_page(Comparison("my-session", "params.yaml", recordings), "ident compare my-session", ())
+    (folder / "comparison").mkdir()
+    return write_page(folder / "comparison" / "report.html", page)
+
+
+def _spectrum(folder: Path) -> Path:
+    out = folder / "spectrum"
+    out.mkdir()
+    time = np.arange(0, 10, 0.005)
+    lines = ["time [s],ax [m/s^2],ay [m/s^2]"]
+    lines += [f"{t:.3f},{np.sin(40 * t):.5f},{0.3 * np.sin(90 * t):.5f}" for t in time]
+    log = out / "log.csv"
+    log.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    write_spectrum_page(spectrum([log]), out, "ident spectrum log.csv -o spectrum", [log])
+    return out / "report.html"
 
 
 @pytest.fixture

@@ -29,7 +29,9 @@ def command(
     paths: Annotated[
         list[Path], typer.Argument(metavar="FILE-or-SESSION...", help="A session folder, or one or more logs.")
     ],
-    out: Annotated[Path | None, typer.Option("--out", "-o", help="Folder for spectrum.csv and the figures.")] = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", "-o", help="Folder for report.html, spectrum.csv and the figures.")
+    ] = None,
     part: Annotated[str | None, typer.Option("--range", help=RANGE_HELP)] = None,
     low_pass: Annotated[float | None, typer.Option("--low-pass", metavar="HZ", help=LOW_PASS_HELP)] = None,
     half_width: Annotated[
@@ -52,9 +54,11 @@ def command(
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No table.")] = False,
 ) -> None:
     """Butterworth, FFT and peaks of logs (thesis section 3.2): table, spectrum.csv and figures."""
+    from ssmr_ident.cli.called import called
     from ssmr_ident.core.errors import InputError
     from ssmr_ident.pipeline.spectrum import SpectrumChoices, spectrum
     from ssmr_ident.pipeline.spectrum_files import write
+    from ssmr_ident.pipeline.spectrum_page import write_spectrum_page
     from ssmr_ident.readers import ReadOptions
 
     for option, value in (("--low-pass", low_pass), ("--half-width", half_width), ("--fs", fs)):
@@ -68,6 +72,8 @@ def command(
     report = spectrum(paths, choices, options=options, progress=progress)
     if out is not None:
         report = write(report, out, format=format, figures=figures, progress=progress)
+        if figures:
+            report = write_spectrum_page(report, out, called(), paths)
     if progress:
         progress("")
     if as_json:

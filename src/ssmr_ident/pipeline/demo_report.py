@@ -6,9 +6,9 @@ from pathlib import Path
 
 from ssmr_ident.pipeline.demo import COMPARED, SWIVELS, Demo
 from ssmr_ident.pipeline.files_read import files_read
+from ssmr_ident.pipeline.spectrum_page import speed_section
 from ssmr_ident.report.comparison_page import comparison_section, distance
-from ssmr_ident.report.figures_speed import amplitude_figure, peaks_figure
-from ssmr_ident.report.html import Page, Picture, Section, Table, Verdict, file_hashes, picture, write_page
+from ssmr_ident.report.html import Page, Section, Table, Verdict, file_hashes, write_page
 
 _SHOWN = {
     "free_response": ("roll-1.xlsx", "pitch-1.xlsx", "yaw-1.xlsx"),
@@ -80,19 +80,7 @@ def write_demo_report(demo: Demo, command: str) -> Path:
 
 
 def _spectra(demo: Demo) -> Section:
-    figures: list[Picture] = []
-    for report in demo.spectra:
-        for configuration in dict.fromkeys(average.configuration for average in report.averages):
-            own = [average for average in report.averages if average.configuration == configuration]
-            alt = f"{configuration}: frequency and height of the three highest peaks of each axis over the yaw rate."
-            caption = (
-                f"{configuration}: at which frequencies the robot shakes most along each axis (above), how strongly "
-                "(middle), and how far the whole signal swings (below), over the speed at which it turns."
-            )
-            figures.append(picture(peaks_figure(configuration, own, report.speed_label), caption, alt))
-        alt = f"Amplitude of each axis over the yaw rate, {Path(report.source).parent.name}, one line per floor."
-        caption = "How far the signal swings (half of maximum minus minimum, below 50 Hz) over the turning speed."
-        figures.append(picture(amplitude_figure(report.averages, report.speed_label), caption, alt))
+    figures = [figure for report in demo.spectra for figure in speed_section(report).figures]
     return Section(
         "Spectra of the swivels", ("Peaks and amplitudes as in Appendix B of the thesis.",), figures=tuple(figures)
     )

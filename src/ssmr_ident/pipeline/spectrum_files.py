@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
+
+from matplotlib.figure import Figure
 
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.pipeline.spectrum import SpectrumReport
@@ -60,10 +62,7 @@ def _write_figures(report: SpectrumReport, out: Path, format: str, progress: Cal
         by_file.setdefault(row.label.file, []).append(row)
     for file, rows in by_file.items():
         progress(f"drawing {file}")
-        chosen = [row for row in rows if row.unit == "m/s^2"] or rows
-        drawn = [NamedAnalysis(row.channel, row.unit, row.analysis) for row in chosen[:MOST_PANELS]]
-        figure = recording_figure(_title(rows[0]), drawn)
-        files.append(style.save(figure, out / f"spectrum-{_stem(file)}", format))
+        files.append(style.save(recording_of_rows(rows), out / f"spectrum-{_stem(file)}", format))
     for configuration in dict.fromkeys(average.configuration for average in report.averages):
         own = [average for average in report.averages if average.configuration == configuration]
         figure = peaks_figure(configuration, own, report.speed_label)
@@ -72,6 +71,14 @@ def _write_figures(report: SpectrumReport, out: Path, format: str, progress: Cal
         figure = amplitude_figure(report.averages, report.speed_label)
         files.append(style.save(figure, out / "amplitude-over-speed", format))
     return files
+
+
+def recording_of_rows(rows: Sequence[SpectrumRow]) -> Figure:
+    """Course, close-up and spectrum of one log: its accelerations, or whatever it has."""
+    chosen = [row for row in rows if row.unit == "m/s^2"] or rows
+    return recording_figure(
+        _title(rows[0]), [NamedAnalysis(row.channel, row.unit, row.analysis) for row in chosen[:MOST_PANELS]]
+    )
 
 
 def _title(row: SpectrumRow) -> str:

@@ -18,6 +18,7 @@ MEANING = {
     "log_psd_db": "between the levels of the spectra, 1 to 50 Hz",
 }
 _DRAWN = {"nrmse_percent": "course over time", "log_psd_db": "power spectrum"}
+_DIFFERENCE = {"nrmse_percent": ", and the difference (blue)", "log_psd_db": ""}
 SHOWN = 6
 
 
@@ -58,7 +59,7 @@ def comparison_section(title: str, comparison: Comparison, shown: Collection[str
     figures = tuple(
         picture(
             overlay_figure(r.prediction, r.file),
-            f"{r.file}: recorded (grey) and simulated (orange), {_value(r, r.value)} apart.",
+            f"{r.file}: recorded (grey), simulated (orange){_DIFFERENCE[r.metric]}; {_value(r, r.value)} apart.",
             f"{r.file}: {_DRAWN[r.metric]} of each channel, recorded and simulated, {_value(r, r.value)} apart.",
         )
         for r in sorted(comparison.recordings, key=lambda r: -r.value)

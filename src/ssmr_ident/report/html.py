@@ -6,7 +6,7 @@ import hashlib
 import os
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib import resources
 from itertools import count
 from pathlib import Path
@@ -51,11 +51,15 @@ class Table:
 
 @dataclass(frozen=True)
 class Drawing:
-    """One drawing as SVG text; ``alt`` says it in words, ``name`` is its file's where it is written beside the page."""
+    """One drawing as SVG text; ``alt`` says it in words, ``name`` is its file's where it is written beside the page.
+
+    ``white`` keeps it on white in the dark, too: for drawings with dark lines as pixels, which no style sheet reaches.
+    """
 
     svg: str
     alt: str
     name: str = ""
+    white: bool = False
 
 
 @dataclass(frozen=True)
@@ -135,9 +139,9 @@ def drawing(figure: Figure, alt: str, name: str = "") -> Drawing:
     return Drawing(drawn(figure), alt, name)
 
 
-def picture(figure: Figure, caption: str, alt: str) -> Picture:
-    """A single figure with its caption and alternative text."""
-    return Picture((drawing(figure, alt),), caption)
+def picture(figure: Figure, caption: str, alt: str, white: bool = False) -> Picture:
+    """A single figure with its caption and alternative text; ``white`` as in :class:`Drawing`."""
+    return Picture((replace(drawing(figure, alt), white=white),), caption)
 
 
 def file_hashes(files: Sequence[Path]) -> tuple[tuple[str, str], ...]:
@@ -158,7 +162,7 @@ def render_page(page: Page) -> str:
         autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
     numbered = count(1)
-    environment.filters["inline"] = lambda d: Markup(inline(d.svg, f"d{next(numbered)}", d.alt))
+    environment.filters["inline"] = lambda d: Markup(inline(d.svg, f"d{next(numbered)}", d.alt, d.white))
     inside = {name: Markup((folder / f"report.{name}").read_text(encoding="utf-8")) for name in ("css", "js")}
     template = environment.from_string((folder / "report.html").read_text(encoding="utf-8"))
     drawings = [item for section in page.sections for figure in section.figures for item in figure.drawings]

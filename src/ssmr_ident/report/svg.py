@@ -29,7 +29,7 @@ def colours(svg: str) -> set[str]:
     return {f"#{name}" for attribute in _STYLE_ATTRIBUTE.findall(svg) for name in _COLOUR.findall(attribute)}
 
 
-def inline(svg: str, mark: str, label: str) -> str:
+def inline(svg: str, mark: str, label: str, white: bool = False) -> str:
     """The same SVG ready to stand in a page.
 
     Parameters
@@ -40,13 +40,17 @@ def inline(svg: str, mark: str, label: str) -> str:
         Unique on the page; ids begin with it, so that several figures do not take each other's shapes.
     label : str
         What a reader hears who does not see the figure.
+    white : bool
+        Keep all colours, on white paper.
 
     Colours become ``var(--f0072b2, #0072b2)``: the page's style sheet may give each another value in the dark.
     """
     svg = re.sub(r'(\bid="|url\(#|href="#)', rf"\g<1>{mark}-", svg)
-    svg = _STYLE_ATTRIBUTE.sub(lambda found: _COLOUR.sub(r"var(--f\1, #\1)", found[0]), svg)
+    if not white:
+        svg = _STYLE_ATTRIBUTE.sub(lambda found: _COLOUR.sub(r"var(--f\1, #\1)", found[0]), svg)
     width = float(svg.split('width="')[1].split("pt")[0])
-    opening = f'<svg role="img" aria-label="{escape(label)}" style="max-width: {width * 1.6:.0f}pt"'
+    paper = "; background: #fff; fill: #000" if white else ""
+    opening = f'<svg role="img" aria-label="{escape(label)}" style="max-width: {width * 1.6:.0f}pt{paper}"'
     head, _, rest = svg.partition(">")
     head = re.sub(r'\s(?:width|height|version|xmlns(?::xlink)?)="[^"]*"', "", head)
     return head.replace("<svg", opening, 1) + ">" + rest
