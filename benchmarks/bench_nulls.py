@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 from bank import KINDS, draw
-from scoring import append, engine, read, row_of, share
+from scoring import Row, append, engine, read, row_of, share
 from ssmr_ident.pipeline.diagnose import diagnose
 
 FAMILIES = tuple(name for name, kinds in KINDS.items() if "none" in kinds)
@@ -53,17 +53,24 @@ def main() -> None:
         append(arguments.out, row)
         if row["outcome"] != "clean":
             print(f"{row['name']:<18} {row['outcome']:<13} {row.get('named', row.get('error'))}", flush=True)
-    rows = read(arguments.out)
-    print(f"{'family':<12}{'false alarms':<40}{'clean':<40}seconds, median")
+    print(report(read(arguments.out)))
+
+
+def report(rows: list[Row]) -> str:
+    """Rates per family, and what was named."""
+    lines = [f"{'family':<12}{'false alarms':<40}{'clean':<40}seconds, median"]
     for family in [*FAMILIES, "all"]:
         part = [row for row in rows if family in (row["family"], "all")]
         if part:
             alarms, clean = (sum(r["outcome"] == name for r in part) for name in ("false alarm", "clean"))
             seconds = np.median([r["seconds"] for r in part])
-            print(f"{family:<12}{share(alarms, len(part)):<40}{share(clean, len(part)):<40}{seconds:.1f}")
+            lines.append(f"{family:<12}{share(alarms, len(part)):<40}{share(clean, len(part)):<40}{seconds:.1f}")
     named = Counter("+".join(row["named"]) for row in rows if row["outcome"] == "false alarm")
     others = Counter(row["outcome"] for row in rows)
-    print("named:", dict(named.most_common()), " outcomes:", dict(others))
+    lines.append("outcomes: " + ", ".join(f"{name} {count}" for name, count in others.most_common()))
+    if named:
+        lines.append("named: " + ", ".join(f"{name} {count}" for name, count in named.most_common()))
+    return "\n".join(lines)
 
 
 if __name__ == "__main__":

@@ -55,7 +55,9 @@ def ours(robot: Robot, effects: tuple[str, ...], seconds: float) -> Runner:
 
 def theirs(robot: Robot, tires: str, plain: bool, steps: int) -> Runner:
     """The same swivel in MuJoCo, all steps in one call into the engine, so that no time is Python's."""
-    from ssmr_ident.proof.mujoco_robot import WHEELS, Build, mjcf, start
+    from ssmr_ident.proof.mujoco_bodies import start
+    from ssmr_ident.proof.mujoco_build import WHEELS, Build
+    from ssmr_ident.proof.mujoco_robot import mjcf
     from ssmr_ident.proof.mujoco_run import engine
 
     mujoco = engine()

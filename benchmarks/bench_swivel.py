@@ -7,7 +7,7 @@
 Every session has a robot of its own, drawn about the bundled one; its file knows the robot as well as a lab does. The
 recordings are simulated with shorter steps than a diagnosis takes, over floors that it does not know, and go through
 the sensor's volts. An effect is drawn anew until it moves the spectra by more than twice what two runs of one kind
-differ by: smaller ones cannot be seen by anyone. Results are appended one by one, so a run can be broken off and taken up.
+differ by: smaller ones cannot be seen by anyone. Results are appended one by one: a run may be broken off and taken up.
 """
 
 from __future__ import annotations

@@ -1,0 +1,152 @@
+"""Write docs/theory/diagnosis_scores.md from the result files of the benchmarks: ``python benchmarks/write_scores.py``.
+
+python benchmarks/score_practice.py --out out/practice.jsonl
+python benchmarks/score_practice.py --real --out out/real.jsonl
+python benchmarks/bench_diagnosis.py --first 1000 --count 200 --out out/diagnosis.jsonl
+python benchmarks/bench_nulls.py --count 1000 --out out/nulls.jsonl
+python benchmarks/bench_power.py --family forced --out out/power.jsonl
+python benchmarks/bench_peers.py --out out/peers.jsonl
+python benchmarks/bench_cost.py > out/cost.txt
+"""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import io
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import bench_nulls
+import bench_peers
+import bench_power
+from scoring import Row, read, summary, table
+
+PAGE = Path(__file__).resolve().parents[1] / "docs" / "theory" / "diagnosis_scores.md"
+
+HEAD = """# What the diagnosis is worth
+
+Written by `python benchmarks/write_scores.py` from the results of the benchmarks named below; nothing here is typed by
+hand but the words. An engine's commit stands with each table; a + means that files were changed beside it.
+
+## How it is judged
+**Sessions.** `benchmarks/bank` draws random sessions with known answers, each from its seed: nine decays of a robot and
+four held out; pulls; bench tests of one wheel; a dragged block; rigs driven by a measured force, or let go. Masses,
+stiffnesses, dampings, inertias, geometry, the place, gains and bandwidth of the accelerometers are drawn so that the
+parameter file is honest: the truth lies about what the file says with the standard deviations that the file states.
+Noise is white with an autoregressive part of up to 60 % of its variance, a mains line of 60 and 180 Hz, a zero that
+wanders (accelerometers by 2 mg, load cells by 0.05 N within a recording at most), and 12 to 16 bits.
+
+**What is left out.** Nothing; one effect of the catalogue, in a size that is drawn evenly between the limit of what
+the session can show and plain sight; two of them; an effect in a formula that the catalogue does not have (hardening
+as two slopes or a sinh, softening as a tanh; friction as a tanh, as a spring in series with a slider, or larger near
+rest; play with sharp or softplus corners; Bouc-Wen with another exponent, or three sliders in parallel; damping with
+|v|^1.8; relaxation with two branches); something that is in no list (a damper that resists one way more than the
+other, a spring that touches on one side, a stiffness that changes over each recording, dry friction on one side).
+Other formulas come from plants of the bank's own, integrated by another method; where both can (the catalogue's
+formulas), they agree with the simulator to 0.03 % (`tests/unit/test_session_bank.py`). Not drawn so far: pulls in
+other formulas (the robot's pull has one plant only), rolling resistance in pulls (along the robot the fixture of a
+spinning pull holds what it would do), and nulls of the baseline `decoupled`, which no such robot has.
+
+**Outcomes.** *right*: verdict and every name; *tie*: every true name is named or in the reported tie of a name, three
+at most; *clean*: nothing missing, nothing named; *unseen*: missed where the baseline explains even recordings it never
+saw to within 2 % of what the true signals leave, so that nobody could gain by knowing; *part* and *extra*: some of the
+right names, or right names and more; the rest speaks for itself. The noise floor is that of the true signals, not the
+one that the diagnosis states.
+"""
+
+
+def versions(rows: Sequence[Row]) -> str:
+    """Which engines the rows are from."""
+    found = sorted({row["engine"] for row in rows if "engine" in row})
+    return f"Engine {', '.join(found)}.\n\n" if found else ""
+
+
+def block(text: str) -> str:
+    return f"```\n{text.strip()}\n```\n"
+
+
+def printed(run: Callable[[], None]) -> str:
+    stream = io.StringIO()
+    with contextlib.redirect_stdout(stream):
+        run()
+    return stream.getvalue()
+
+
+def page(folder: Path) -> str:
+    """The whole page; a benchmark without results is said to be missing."""
+    parts = [HEAD]
+
+    def section(title: str, file: str, words: str, text: Callable[[list[Row]], str]) -> None:
+        rows = read(folder / file)
+        body = versions(rows) + text(rows) if rows else "Not measured yet.\n"
+        parts.append(f"## {title}\n{words}\n{body}")
+
+    section(
+        "Practice sessions",
+        "practice.jsonl",
+        "Held-out errors are those of `compare` on the further recordings that each session has in a folder of its "
+        "own, which the diagnosis never sees (`score_practice.py`).\n",
+        lambda rows: table(rows) + "\n\n" + block(summary(rows)),
+    )
+    section("Real recordings", "real.jsonl", "Each with what it must show.\n", _real)
+    section(
+        "Fresh random sessions",
+        "diagnosis.jsonl",
+        "`bench_diagnosis.py`; by family, then by what was left out.\n",
+        lambda rows: block(summary(rows)) + "\n" + block(summary(rows, "kind").split("\n\n")[0]),
+    )
+    section(
+        "False alarms",
+        "nulls.jsonl",
+        "`bench_nulls.py`: three in four sessions are short (4 to 6 recordings of 1.5 to 2 s), the rest full.\n",
+        lambda rows: block(bench_nulls.report(rows)),
+    )
+    section(
+        "How large an effect must be",
+        "power.jsonl",
+        "`bench_power.py`: the size from which 95 % are named right or in a tie, by a logistic fit over the sessions; "
+        "and the held-out error of the refitted baseline over the noise floor there.\n",
+        lambda rows: block(bench_power.report(rows)),
+    )
+    section(
+        "Peers",
+        "peers.jsonl",
+        PEERS,
+        lambda rows: block(printed(lambda: bench_peers.report(rows))),
+    )
+    cost = folder / "cost.txt"
+    text = block(cost.read_text(encoding="utf-8")) if cost.is_file() else "Not measured yet.\n"
+    parts.append(f"## Cost\n`bench_cost.py`: seconds over the number of recordings.\n\n{text}")
+    return "\n".join(parts)
+
+
+PEERS = """`bench_peers.py`, on driven rigs: those of the practice sessions and random ones with plain sizes (0.7), noise as above.
+*Least squares* is an output-error grey box of mass, damper and spring with the textbook's tests of its residual
+(whiteness, independence of the input, 1 %). *PySINDy* regresses what mass, damper and spring leave of the force on a
+library of fourteen terms with its default optimiser (STLSQ, threshold 0.1 of the residual's spread); motions that were
+not measured are integrated or differentiated within 4 to 35 Hz. *mujoco.sysid* fits the same rig as a sliding joint
+and its claims are the warnings of its own report. The first cannot name anything, and coloured noise or mains make its
+residual coloured as well; the last warns only of parameters at their bounds.
+"""
+
+
+def _real(rows: Sequence[Row]) -> str:
+    lines = ["| recording | said | holds | s |", "| --- | --- | --- | --- |"]
+    for row in rows:
+        remarks = "<br>".join(row.get("remarks", [row["outcome"]]))
+        lines.append(f"| {row['name']} | {', '.join(row.get('named', [])) or row.get('verdict', '–')} | {remarks} "
+                     f"| {row['seconds']:.1f} |")  # fmt: skip
+    return "\n".join(lines) + "\n"
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--results", type=Path, default=Path("out"), help="folder with the result files")
+    arguments = parser.parse_args()
+    PAGE.write_text(page(arguments.results), encoding="utf-8")
+    print(f"written: {PAGE}")
+
+
+if __name__ == "__main__":
+    main()
