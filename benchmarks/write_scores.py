@@ -121,13 +121,13 @@ def page(folder: Path) -> str:
     return "\n".join(parts)
 
 
-PEERS = """`bench_peers.py`, on driven rigs: those of the practice sessions and random ones with plain sizes (0.7), noise as above.
-*Least squares* is an output-error grey box of mass, damper and spring with the textbook's tests of its residual
-(whiteness, independence of the input, 1 %). *PySINDy* regresses what mass, damper and spring leave of the force on a
-library of fourteen terms with its default optimiser (STLSQ, threshold 0.1 of the residual's spread); motions that were
-not measured are integrated or differentiated within 4 to 35 Hz. *mujoco.sysid* fits the same rig as a sliding joint
-and its claims are the warnings of its own report. The first cannot name anything, and coloured noise or mains make its
-residual coloured as well; the last warns only of parameters at their bounds.
+PEERS = """`bench_peers.py`, on driven rigs: those of the practice sessions and random ones with plain sizes (0.7),
+noise as above. *Least squares* is an output-error grey box of mass, damper and spring with the textbook's tests of its
+residual (whiteness, independence of the input, 1 %). *PySINDy* regresses what mass, damper and spring leave of the
+force on a library of fourteen terms with its default optimiser (STLSQ, threshold 0.1 of the residual's spread);
+motions that were not measured are integrated or differentiated within 4 to 35 Hz. *mujoco.sysid* fits the same rig as
+a sliding joint and its claims are the warnings of its own report. The first cannot name anything, and coloured noise
+or mains make its residual coloured as well; the last warns only of parameters at their bounds.
 """
 
 
