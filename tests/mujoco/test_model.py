@@ -9,7 +9,8 @@ import pytest
 
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.physics.robot import Robot
-from ssmr_ident.proof.mujoco_robot import Build, chassis, hubs, wheel_inertia
+from ssmr_ident.proof.mujoco_bodies import chassis, hubs, wheel_inertia
+from ssmr_ident.proof.mujoco_build import Build
 from ssmr_ident.proof.mujoco_run import run_mujoco
 
 

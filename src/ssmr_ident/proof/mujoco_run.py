@@ -10,7 +10,9 @@ import numpy as np
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.shown import Shown
 from ssmr_ident.physics.robot import Robot
-from ssmr_ident.proof.mujoco_robot import AXES, WHEELS, Build, Cable, Mast, mjcf, start
+from ssmr_ident.proof.mujoco_bodies import start
+from ssmr_ident.proof.mujoco_build import AXES, WHEELS, Build, Cable, Mast
+from ssmr_ident.proof.mujoco_robot import mjcf
 
 
 @dataclass(frozen=True, eq=False)

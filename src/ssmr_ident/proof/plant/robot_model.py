@@ -9,9 +9,9 @@ import numpy as np
 
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.physics.robot import GRAVITY, Robot
-
-AXES = ("x", "y", "z")
-POINT_INERTIA = 1e-9  # kg m^2; the engine asks for some where a body only slides
+from ssmr_ident.proof.mjcf_text import row, six, text
+from ssmr_ident.proof.mujoco_bodies import POINT_INERTIA, steiner
+from ssmr_ident.proof.mujoco_build import AXES
 
 
 @dataclass(frozen=True)
@@ -71,26 +71,26 @@ def robot_xml(
     mass, centre, inertia = platform(robot, frame)
     turned = turned or Turned()
     marks = "".join(
-        f'    <site name="mark_{i}" pos="{_text(p[0])} {_text(p[1])} 0"/>\n' for i, p in enumerate(robot.contact_points)
+        f'    <site name="mark_{i}" pos="{text(p[0])} {text(p[1])} 0"/>\n' for i, p in enumerate(robot.contact_points)
     )
-    feet = "".join(f'      <site name="foot_{i}" pos="{_row(p)}"/>\n' for i, p in enumerate(robot.contact_points))
+    feet = "".join(f'      <site name="foot_{i}" pos="{row(p)}"/>\n' for i, p in enumerate(robot.contact_points))
     springs = "".join(
         _spring(f"tire_{wheel}_{AXES[axis]}", wheel, axis, robot) for wheel in range(4) for axis in range(3)
     )
-    held = "" if hook is None else f'      <site name="hook" pos="{_row(hook)}"/>\n'
+    held = "" if hook is None else f'      <site name="hook" pos="{row(hook)}"/>\n'
     pulled = "" if hook is None else "".join(_pull(axis) for axis in (0, 1))
     return f"""<mujoco model="plant">
   <compiler angle="radian" inertiafromgeom="false" eulerseq="zyx"/>
-  <option timestep="{_text(step)}" gravity="0 0 {-GRAVITY}" integrator="implicitfast">
+  <option timestep="{text(step)}" gravity="0 0 {-GRAVITY}" integrator="implicitfast">
     <flag contact="disable" constraint="disable" autoreset="disable"/>
   </option>
   <worldbody>
     <site name="origin"/>
-{marks}    <body name="platform" pos="0 0 {_text(robot.height)}">
+{marks}    <body name="platform" pos="0 0 {text(robot.height)}">
       <freejoint name="platform"/>
-      <inertial pos="{_row(centre)}" mass="{_text(mass)}" fullinertia="{_row(_six(inertia))}"/>
-      <site name="sensor" pos="{_row(robot.accelerometer.position)}" \
-euler="{_text(turned.z)} {_text(turned.y)} {_text(turned.x)}"/>
+      <inertial pos="{row(centre)}" mass="{text(mass)}" fullinertia="{row(six(inertia))}"/>
+      <site name="sensor" pos="{row(robot.accelerometer.position)}" \
+euler="{text(turned.z)} {text(turned.y)} {text(turned.x)}"/>
 {feet}{held}{_frame(frame)}    </body>
   </worldbody>
   <actuator>
@@ -110,7 +110,7 @@ def platform(robot: Robot, frame: Frame | None) -> tuple[float, np.ndarray, np.n
     place = np.array([0.0, 0.0, frame.height])
     mass = robot.mass - frame.mass
     centre = -frame.mass * place / mass
-    inertia = robot.inertia - frame.mass * _steiner(place) - mass * _steiner(centre)
+    inertia = robot.inertia - frame.mass * steiner(place) - mass * steiner(centre)
     moments = np.linalg.eigvalsh(inertia)
     if moments[0] <= 0.0 or moments[0] + moments[1] <= moments[2]:
         raise InputError("plant", "the frame holds more than the robot's inertia", "Give a lighter or lower frame")
@@ -119,7 +119,7 @@ def platform(robot: Robot, frame: Frame | None) -> tuple[float, np.ndarray, np.n
 
 def _spring(name: str, wheel: int, axis: int, robot: Robot) -> str:
     gear = " ".join("1" if i == axis else "0" for i in range(6))
-    law = f'biasprm="0 {_text(-robot.stiffness[axis])} {_text(-robot.damping[axis])}"'
+    law = f'biasprm="0 {text(-robot.stiffness[axis])} {text(-robot.damping[axis])}"'
     return (
         f'    <general name="{name}" site="foot_{wheel}" refsite="mark_{wheel}" gear="{gear}" gainprm="1" '
         f'biastype="affine" {law}/>\n'
@@ -135,7 +135,7 @@ def _frame(frame: Frame | None) -> str:
     if frame is None:
         return ""
     omega = 2.0 * math.pi * frame.frequency_hz
-    inertial = f'mass="{_text(frame.mass)}" diaginertia="{POINT_INERTIA} {POINT_INERTIA} {POINT_INERTIA}"'
+    inertial = f'mass="{text(frame.mass)}" diaginertia="{POINT_INERTIA} {POINT_INERTIA} {POINT_INERTIA}"'
     if frame.shape == "carriage":
         stiffness, damping, foot, top = frame.mass * omega**2, 2.0 * frame.damping_ratio * frame.mass * omega, 0.0, 0.0
         kind = "slide"
@@ -144,27 +144,11 @@ def _frame(frame: Frame | None) -> str:
         stiffness = moment * omega**2 + frame.mass * GRAVITY * ROD
         damping, foot, top, kind = 2.0 * frame.damping_ratio * moment * omega, -ROD, ROD, "hinge"
     joints = "".join(
-        f'        <joint name="sway_{axis}" type="{kind}" axis="{direction}" stiffness="{_text(stiffness)}" '
-        f'damping="{_text(damping)}"/>\n'
+        f'        <joint name="sway_{axis}" type="{kind}" axis="{direction}" stiffness="{text(stiffness)}" '
+        f'damping="{text(damping)}"/>\n'
         for axis, direction in (("x", "1 0 0"), ("y", "0 1 0"))
     )
-    return f"""      <body name="frame" pos="0 0 {_text(frame.height + foot)}">
-{joints}        <inertial pos="0 0 {_text(top)}" {inertial}/>
+    return f"""      <body name="frame" pos="0 0 {text(frame.height + foot)}">
+{joints}        <inertial pos="0 0 {text(top)}" {inertial}/>
       </body>
 """
-
-
-def _steiner(place: np.ndarray) -> np.ndarray:
-    return float(place @ place) * np.eye(3) - np.outer(place, place)
-
-
-def _text(value: float) -> str:
-    return repr(float(value))
-
-
-def _row(values: np.ndarray) -> str:
-    return " ".join(_text(value) for value in values)
-
-
-def _six(tensor: np.ndarray) -> np.ndarray:
-    return np.array([tensor[0, 0], tensor[1, 1], tensor[2, 2], tensor[0, 1], tensor[0, 2], tensor[1, 2]])
