@@ -246,10 +246,20 @@ def modal_observations(
     main = {name: trials for name, trials in modes.items() if not name.startswith(FURTHER)}
     further = {name: trials for name, trials in modes.items() if name.startswith(FURTHER) and len(trials) > 1}
     observations = []
+    last: dict[tuple[float, ...], dict[str, tuple[float, float]]] = {}
+
+    def modes_at(values: Mapping[str, float]) -> dict[str, tuple[float, float]]:
+        """Asked once for every motion at the same values: worked out once."""
+        key = tuple(values.values())
+        if key not in last:
+            last.clear()
+            last[key] = predicted_modes(builder(values), decoupled)
+        return last[key]
+
     for name, (mean, covariance) in (combine_trials(main) | ({} if decoupled else combine_trials(further))).items():
 
         def predict(values: Mapping[str, float], name: str = name) -> np.ndarray:
-            found = predicted_modes(builder(values), decoupled).get(name)
+            found = modes_at(values).get(name)
             # An over-damped motion has no mode: far from every measured one, so that the fit turns back.
             return np.array(found if found is not None else (1.0, 1.0))
 

@@ -46,6 +46,10 @@ SEEN_BY = {"roll": ("ay", "wx"), "pitch": ("ax", "wy"), "yaw": ("ay", "wz")}
 MOST_MODES = 3
 """A robot's log may hold its own mode, the neighbour it is coupled to, and the faster one of the pair."""
 
+ENOUGH_FOR_A_START = 30
+"""Iterations over the modes when all samples follow. Six decays and a pull: 30 and 300 iterations lead the samples to the
+same seven digits, in 5 s and 20 s; the modes alone walk a flat valley of mass, stiffness and friction to no end."""
+
 
 def fit_robot_session(
     campaign: Campaign,
@@ -117,10 +121,10 @@ def fit_robot_session(
     if not gathered.observations and not modal:
         gathered.findings.append("no recording here tells a parameter: all keep what robot.yaml says")
     body = None
-    posterior = most_probable(unknowns, [*gathered.observations, *modal])
     if method != "modal" and not decoupled and gathered.modes:
-        body = fit_samples(campaign, chosen, unknowns, gathered, posterior, seed)
-        posterior = posterior if body is None else body.posterior
+        start = most_probable(unknowns, [*gathered.observations, *modal], max_iterations=ENOUGH_FOR_A_START)
+        body = fit_samples(campaign, chosen, unknowns, gathered, start, seed)
+    posterior = most_probable(unknowns, [*gathered.observations, *modal]) if body is None else body.posterior
     step("all recordings together", 1, 1)
     fitted = updated(campaign.parameters, posterior)
     gathered.findings += floor_findings(posterior, gathered)
