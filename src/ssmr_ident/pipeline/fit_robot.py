@@ -47,8 +47,8 @@ MOST_MODES = 3
 """A robot's log may hold its own mode, the neighbour it is coupled to, and the faster one of the pair."""
 
 ENOUGH_FOR_A_START = 30
-"""Iterations over the modes when all samples follow. Six decays and a pull: 30 and 300 iterations lead the samples to the
-same seven digits, in 5 s and 20 s; the modes alone walk a flat valley of mass, stiffness and friction to no end."""
+"""Iterations over the modes when all samples follow. Six decays and a pull: 30 and 300 iterations lead the samples to
+the same seven digits, in 5 s and 20 s; the modes alone walk a flat valley of mass, stiffness and friction to no end."""
 
 
 def fit_robot_session(
