@@ -153,8 +153,8 @@ def _worth(
 def _conflicts(anchor: Anchor) -> tuple[Conflict, ...]:
     values, known = anchor.values, anchor.bench.parameters
     return tuple(
-        Conflict(prior.path, prior.value, values[prior.path], float(z), known[prior.path].unit if prior.path in known else "")
-        for prior, z in zip(anchor.priors, anchor.z, strict=True)
+        Conflict(prior.path, prior.value, values[prior.path], float(z), "" if path not in known else known[path].unit)
+        for prior, z, path in zip(anchor.priors, anchor.z, values, strict=True)
         if abs(z) > CONFLICT
     )  # fmt: skip
 

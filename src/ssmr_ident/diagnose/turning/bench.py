@@ -12,7 +12,7 @@ from ssmr_ident.compare.turning import AXES, turning_robot, with_floor
 from ssmr_ident.core.errors import InputError, SimulationError
 from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.diagnose.turning.conditions import Condition
-from ssmr_ident.diagnose.turning.spectra import Look, average, look
+from ssmr_ident.diagnose.turning.spectra import Look, average, levels_of, look
 from ssmr_ident.physics.slots import Effects
 from ssmr_ident.simulate.scenarios import Scenario
 from ssmr_ident.simulate.simulation import simulate
@@ -120,13 +120,13 @@ def measure(simulation, condition: Condition, seed: int) -> Run:
     """What the recording's sensor would have seen of a simulation."""
     skip = round(condition.settling * RATE)
     samples = np.column_stack([simulation[name][skip:] for name in condition.names])
-    clean = look(samples, RATE)
+    one = look(samples, RATE)
     random = np.random.default_rng(seed)
-    disturbed = look(samples + condition.disturbance * random.standard_normal(samples.shape), RATE)
+    levels = levels_of(samples + condition.disturbance * random.standard_normal(samples.shape))
     loads = min(float(simulation[f"load_{i}"][skip:].min()) for i in (1, 2, 3, 4))
     bins = len(condition.mean.frequency)
-    one = Look(clean.frequency[:bins], clean.cross[:bins], clean.dof, disturbed.levels, disturbed.level_variance)
-    return Run(one, float(simulation["wz"][skip:].mean()), loads)
+    seen = replace(one, frequency=one.frequency[:bins], cross=one.cross[:bins], levels=levels)
+    return Run(seen, float(simulation["wz"][skip:].mean()), loads)
 
 
 __all__ = ["AXES", "Bench", "Run", "changed", "measure", "simulated"]

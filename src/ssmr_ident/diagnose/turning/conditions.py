@@ -18,8 +18,8 @@ from ssmr_ident.signals.grid import even_samples
 
 SHORTEST = 4.0  # s; shorter records are starting and stopping, and hold too few segments
 LONGEST = 40.0  # s of simulation; a density is known to 16 % by then
-STEADY = 20.0  # s of simulation at constant wheel speeds
-SETTLING = 3.0  # s
+STEADY = 12.0  # s of simulation at constant wheel speeds, for each of several seeds
+SETTLING = 2.0  # s
 
 
 @dataclass(frozen=True, eq=False)

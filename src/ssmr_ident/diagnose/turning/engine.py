@@ -16,12 +16,17 @@ from ssmr_ident.diagnose.turning.bench import Bench
 from ssmr_ident.diagnose.turning.candidates import candidates, pitches_heard
 from ssmr_ident.diagnose.turning.conditions import Condition, conditions_of, held_back
 from ssmr_ident.diagnose.turning.grip import GripProfile, grip_profile
-from ssmr_ident.diagnose.turning.search import Explained, explained, freed, refined, screened
+from ssmr_ident.diagnose.turning.likelihood import Score
+from ssmr_ident.diagnose.turning.search import Explained, explained, freed, polished, refined, screened
 
-REFINED, FREED = 6, 4  # explanations that are refined, and that get the baseline set free beside them
+REFINED, FREED = 5, 3  # explanations that are refined, and that get the baseline set free beside them
 FINAL_SEEDS = (1, 2, 3, 4)
+LEFT = 6.0
+"""What the model's own error may add to the baseline's log likelihood where nothing is missing (docs/theory)."""
 FAR = 40.0
 """Of evidence: setting the baseline free has gained 27 at most, so what lies further behind cannot come first."""
+REFINE_FAR = 100.0
+"""The same for refining a candidate's own parameters from the start of its search."""
 MANY = 5  # conditions from which on one run each has to do while searching
 Progress = Callable[[str, int, int], None]
 
@@ -101,7 +106,10 @@ def examine(
     seeds = tuple(1000 * seed + s for s in (SEEDS if len(targets) + len(calibration) < MANY else SEEDS[:1]))
 
     count = _Counter(show, "baseline", 10)
-    anchor = anchored(bench, fitted_on, bool(calibration), scale_of(fitted_on), count.advance, seeds=seeds)
+    scale = scale_of(fitted_on)
+    quiet = bool(calibration) and _quiet(bench, calibration, targets, scale, seeds)
+    rounds = 1 if quiet else 3
+    anchor = anchored(bench, fitted_on, bool(calibration), scale, count.advance, rounds, seeds)
     count.finish()
     seconds["baseline"] = time.perf_counter() - clock
     baseline = explained(anchor, None, {}, targets)
@@ -109,20 +117,32 @@ def examine(
 
     every = candidates(_pitches(anchor, targets), _ceilings(targets), anchor.values.get("floor.height_m", 3e-5))
     count = _Counter(show, "explanations tried", 2 * len(every))
-    tried = [one for one in (screened(anchor, c, targets, count.advance) for c in every) if one is not None]
+    starts = [pair for pair in (screened(anchor, c, targets, count.advance) for c in every) if pair]
+    tried = [pair[0] for pair in starts]
+    other = {pair[0].id: pair[-1] for pair in starts}
     count.finish()
     tried.sort(key=lambda one: one.evidence, reverse=True)
-    count = _Counter(show, "best explanations refined", REFINED)
-    for i, one in enumerate(tried[:REFINED]):
+    behind = 0.0 if quiet else REFINE_FAR
+    promising = [one for one in tried[:REFINED] if one.evidence > max(baseline.evidence, tried[0].evidence) - behind]
+    count = _Counter(show, "best explanations refined", len(promising) + 1)
+    for i, one in enumerate(promising):
         tried[i] = refined(one, targets, lambda: None)
         count.advance()
+    count.finish()
     tried.sort(key=lambda one: one.evidence, reverse=True)
     seconds["explanations"] = time.perf_counter() - clock - seconds["baseline"]
 
-    worth_it = [one for one in tried[:FREED] if one.evidence > max(baseline.evidence - FAR, tried[0].evidence - FAR)]
+    behind = 0.0 if quiet else FAR
+    worth_it = [one for one in tried[:FREED] if one.evidence > max(baseline.evidence, tried[0].evidence) - behind]
     rounds = 2 if len(seeds) > 1 else 1
-    count = _Counter(show, "baseline set free beside them", len(worth_it) * rounds + 1)
+    worth_it.sort(key=lambda one: one.evidence, reverse=True)
+    count = _Counter(show, "baseline set free beside them", len(worth_it) * rounds + 2 * (rounds + 1))
     best = [freed(one, targets, rounds, count.advance) for one in worth_it]
+    best.sort(key=lambda one: one.evidence, reverse=True)
+    if best and best[0].evidence > baseline.evidence:
+        best[0] = polished(best[0], other[best[0].id], targets, rounds + 1, count.advance)
+    if not calibration:  # the explanations had their baseline fitted further on the targets; so must it be
+        baseline = freed(baseline, targets, 2 * rounds + 1, lambda: None)
     finals = [_final(one, targets, seed) for one in [baseline, *best]]
     count.finish()
     count = _Counter(show, "grip", 1)
@@ -134,6 +154,17 @@ def examine(
         bench, calibration, targets, heldout, anchor, finals[0], tuple(ranked), tuple(tried[len(worth_it) :]), grip,
         (*kept_notes, *notes), seconds,
     )  # fmt: skip
+
+
+def _quiet(
+    bench: Bench, calibration: tuple[Condition, ...], targets: tuple[Condition, ...], scale: np.ndarray, seeds: tuple
+) -> bool:
+    """Whether targets and calibration of the same speeds differ by chance only, whatever the baseline."""
+    plain = Anchor(bench, scale, (), np.zeros(0), calibration, Score(0.0, 0.0, 0.0), seeds)
+    if not all(plain.at_calibrated_speed(c) for c in targets):
+        return False
+    found = plain.score(targets, {})
+    return found is not None and found[0].left <= LEFT
 
 
 def _final(one: Explained, targets: tuple[Condition, ...], seed: int) -> Explained:

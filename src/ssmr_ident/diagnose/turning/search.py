@@ -13,7 +13,7 @@ from ssmr_ident.diagnose.turning.candidates import Candidate, Values
 from ssmr_ident.diagnose.turning.conditions import Condition
 from ssmr_ident.diagnose.turning.likelihood import NEPER_DB, Score
 
-REFINEMENTS = 14  # evaluations per free parameter
+REFINEMENTS = 10  # evaluations per free parameter
 _STEP = 0.35  # of a logarithm, or of a hundredth of the bounds
 
 
@@ -78,8 +78,8 @@ def explained(
 
 def screened(
     anchor: Anchor, candidate: Candidate, targets: tuple[Condition, ...], advance: Callable[[], None]
-) -> Explained | None:
-    """The best start: all of them on one run at the slowest and fastest speed, the best two on everything."""
+) -> list[Explained]:
+    """The best two starts, best first: all of them on one run at the slowest and fastest speed, two on everything."""
     order = sorted(targets, key=lambda c: abs(c.turning))
     few = tuple({c.kind: c for c in (order[0], order[-1])}.values())
     coarse = replace(anchor, seeds=anchor.seeds[:1])
@@ -97,7 +97,7 @@ def screened(
     )
     found = [one for one in (explained(anchor, candidate, start, targets) for start in starts) if one is not None]
     advance()
-    return max(found, key=lambda one: one.evidence, default=None)
+    return sorted(found, key=lambda one: one.evidence, reverse=True)
 
 
 def refined(start: Explained, targets: tuple[Condition, ...], advance: Callable[[], None]) -> Explained:
@@ -134,6 +134,31 @@ def refined(start: Explained, targets: tuple[Condition, ...], advance: Callable[
                  "fatol": 0.05},
     )  # fmt: skip
     return best[0]
+
+
+def polished(
+    best: Explained, start: Explained, targets: tuple[Condition, ...], rounds: int, advance: Callable[[], None]
+) -> Explained:
+    """The winner once more, from another start and with its first parameter half as large again.
+
+    Spectra are no smooth functions of an effect's size, and what a search ends on depends on where it began.
+    """
+    candidate = best.candidate
+    if candidate is None or not candidate.free:
+        return best
+    first = candidate.free[0]
+    larger = dict(best.values)
+    larger[first.name] = first.outward(first.inward(larger[first.name]) + np.log(1.5)) if first.log else (
+        float(np.clip(1.5 * larger[first.name], first.lower, first.upper))
+    )  # fmt: skip
+    for anchor, values in ((best.anchor, start.values), (best.anchor, larger)):
+        again = explained(anchor, candidate, values, targets)
+        if again is None:
+            continue
+        found = freed(again, targets, rounds, advance)
+        if found.evidence > best.evidence:
+            best = found
+    return best
 
 
 def freed(start: Explained, targets: tuple[Condition, ...], rounds: int, advance: Callable[[], None]) -> Explained:

@@ -81,14 +81,16 @@ def look(samples: np.ndarray, sample_rate: float) -> Look:
     inside = (frequency >= BAND_HZ[0] - 1e-9) & (frequency <= min(BAND_HZ[1], 0.48 * sample_rate) + 1e-9)
     z = z[inside]
     cross = 2.0 * np.einsum("kis,kjs->kij", z, z.conj()).real / z.shape[2]
-    levels = _levels(samples)
-    parts = np.array([_levels(part) for part in np.array_split(samples, PARTS)])
+    levels = levels_of(samples)
+    parts = np.array([levels_of(part) for part in np.array_split(samples, PARTS)])
     variance = parts.var(axis=0, ddof=1) / PARTS
     return Look(frequency[inside], cross, 2.0 * len(samples) / sample_rate / WELCH, levels, variance)
 
 
-def _levels(samples: np.ndarray) -> np.ndarray:
-    low, middle, high = np.quantile(samples, EXTREMES, axis=0)
+def levels_of(samples: np.ndarray) -> np.ndarray:
+    """Means, and logarithms of upper and lower extremes over the median: (3 c,) float; samples : (n, c) float."""
+    order = np.sort(samples, axis=0)
+    low, middle, high = order[[round(share * (len(order) - 1)) for share in EXTREMES]]
     upper, lower = np.log(np.maximum([high - middle, middle - low], 1e-6))
     return np.concatenate([samples.mean(axis=0), upper, lower])
 

@@ -9,10 +9,8 @@ import numpy as np
 
 from ssmr_ident.diagnose.diagnosis import MISSING, NOTHING, UNDETERMINED
 from ssmr_ident.diagnose.turning.candidates import UNLISTED
-from ssmr_ident.diagnose.turning.engine import Outcome
+from ssmr_ident.diagnose.turning.engine import LEFT, Outcome
 
-LEFT = 6.0
-"""What tau may add to the baseline's log likelihood in sessions where nothing is missing, with calibration."""
 GAIN = (6.0, 12.0)
 """Evidence over the baseline that an explanation needs, with and without calibration recordings."""
 TIE = 6.0
