@@ -35,7 +35,7 @@ def _offset(size: float, random: np.random.Generator) -> Values:
 DECAYS: dict[str, Maker] = {
     "nonlinear_stiffness": _k3,
     "dry_friction": lambda size, random: {
-        "F_c_N": between(size, 0.05, 2.0),
+        "F_c_N": between(size, 0.03, 1.2),
         "element_stiffness_N_m": random.uniform(1e5, 5e5),
     },
     "hysteresis": lambda size, random: {
@@ -54,7 +54,7 @@ DECAYS: dict[str, Maker] = {
         "damping_ratio": random.uniform(0.02, 0.05),
     },
     "free_play": lambda size, random: {
-        "gap_m": between(size, 2e-5, 6e-4),
+        "gap_m": between(size, 8e-6, 4e-4),
         "rounding": random.uniform(0.05, 0.3),
         "share_x": float(random.choice([0.0, 1.0])),
     },
@@ -134,21 +134,21 @@ OTHER: dict[str, tuple[str, Callable[[float, float, np.random.Generator], np.nda
     ),
     "friction as the tanh of the velocity": (
         "dry_friction",
-        lambda size, k, random: law("tanh_friction", between(size, 0.05, 1.5), random.uniform(5e-4, 3e-3)),
+        lambda size, k, random: law("tanh_friction", between(size, 0.03, 1.0), random.uniform(5e-4, 3e-3)),
     ),
     "friction as a spring in series with a slider": (
         "dry_friction",
-        lambda size, k, random: law("jenkins", between(size, 0.05, 1.5), random.uniform(5e4, 3e5)),
+        lambda size, k, random: law("jenkins", between(size, 0.03, 1.0), random.uniform(5e4, 3e5)),
     ),
     "friction that is larger near rest": (
         "dry_friction",
         lambda size, k, random: law(
-            "stribeck_friction", between(size, 0.05, 1.5), 1e-3, random.uniform(0.1, 0.5), 8e-3
+            "stribeck_friction", between(size, 0.03, 1.0), 1e-3, random.uniform(0.1, 0.5), 8e-3
         ),
     ),
     "play with sharp corners": (
         "free_play",
-        lambda size, k, random: law("play", k, 0.5 * between(size, 2e-5, 5e-4)),
+        lambda size, k, random: law("play", k, 0.5 * between(size, 8e-6, 4e-4)),
     ),
     "three sliders in parallel (Iwan)": (
         "hysteresis",
