@@ -19,6 +19,7 @@ from ssmr_ident.diagnose.turning.maps import follows, speed_maps
 from ssmr_ident.diagnose.turning.next_run import next_run
 from ssmr_ident.diagnose.turning.search import Explained
 from ssmr_ident.diagnose.turning.verdict import Decision, decide, findings_of
+from ssmr_ident.diagnose.turning.words import EQUATIONS
 from ssmr_ident.diagnose.turning.worth import against_simulation, repeatability_db
 from ssmr_ident.physics.effects import CATALOGUE
 
@@ -118,7 +119,7 @@ def _named(outcome: Outcome, decision: Decision, best: Explained | None) -> tupl
         key: value for key, value in parameter_set(outcome, best.anchor, best).effects[name].items()
         if key in best.values or not best.values
     }  # fmt: skip
-    return (NamedEffect(name, effect.sentence, effect.equation, parameters, decision.confidence, others),)
+    return (NamedEffect(name, effect.sentence, EQUATIONS[name], parameters, decision.confidence, others),)
 
 
 def _tried(outcome: Outcome) -> tuple[Tried, ...]:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.stats import norm
 
 from ssmr_ident.diagnose.diagnosis import Located
 from ssmr_ident.diagnose.turning.engine import Outcome
 from ssmr_ident.diagnose.turning.likelihood import NEPER_DB
 
-ONCE_IN = 1000.0  # bins above the level by chance, over all looks
+ALARM = 0.01  # probability that chance alone marks any bin of a session
 LEAST_DB = 2.0
 
 
@@ -52,9 +53,7 @@ def located(outcome: Outcome, most: int = 8) -> tuple[Located, ...]:
 
 
 def _quantile(looks: int) -> float:
-    from scipy.stats import norm
-
-    return float(norm.isf(0.5 / (ONCE_IN * max(looks, 1)) * 50.0))
+    return float(norm.isf(0.5 * ALARM / max(looks, 1)))
 
 
 def _bands(above: np.ndarray) -> list[tuple[int, int]]:

@@ -10,7 +10,7 @@ from scipy import signal
 from ssmr_ident.signals.spectra import power_density
 
 BAND_HZ = (1.0, 50.0)  # of the contract's log_psd_db
-WELCH = 1.06
+WELCH = 0.53
 """Variance of a Welch density of T seconds (Hann, half overlapping, 1 Hz wide) is WELCH/T of its square."""
 EXTREMES = (0.005, 0.5, 0.995)
 PARTS = 4  # of a record, whose scatter says how far levels and extremes repeat

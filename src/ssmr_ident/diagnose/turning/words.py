@@ -1,0 +1,21 @@
+"""The laws of swivels' effects in plain text, for reports that cannot set formulas."""
+
+from __future__ import annotations
+
+EQUATIONS = {
+    "ground_roughness": "<h(r) h(r + d)> = height^2 exp(-(d/length)^2)",
+    "ground_joints": "h(path) = -depth sum_j exp(-(path - (j + 1/2) pitch)^2/(2 sigma^2)), sigma = width/4",
+    "wheel_eccentricity": "h_i = e sin(wheel angle_i + i pi/2)",
+    "flexible_mast": "m q'' = -m w^2 q - 2 zeta m w q' - m x_P'', w = 2 pi f_mast",
+    "com_offset": "p_i -> p_i - (offset_x, offset_y, 0)",
+    "wheel_lift": "N = max(0, K_z s_z + D_z s_z')",
+    "motor_belt": "m_rim b'' = -K_b b - D_b b' + sum of F_x over the side",
+    "stribeck": "mu(u) -> mu(u) (r + (1 - r) exp(-(u/v_s)^2)), r = kinetic_share",
+    "load_sensitive_friction": "mu(N) = mu (N/N_0)^(-exponent), N_0 = m g/4",
+    "slip_coupling": "mu -> mu min(|slip|/(lambda_max |r omega|), 1)",
+    "rolling_resistance": "F_x = -c_rr N sign(v_x)",
+    "coriolis": "M V' + M V^ V = F",
+    "sensor_saturation": "y = max(-range, min(range, a))",
+    "sensor_bandwidth": "H(s) = 1/(1 + sqrt(2) s/w + (s/w)^2), w = 2 pi bandwidth",
+    "sensor_misalignment": "a_log = (R_z R_y R_x)^T a",
+}

@@ -1,0 +1,113 @@
+"""The statistics under a diagnosis of swivels: what chance does to spectra, and what a model's own error costs."""
+
+import numpy as np
+import pytest
+
+from ssmr_ident.diagnose.turning.anchor import between
+from ssmr_ident.diagnose.turning.candidates import pitches_heard
+from ssmr_ident.diagnose.turning.grip import profile
+from ssmr_ident.diagnose.turning.likelihood import NEPER_DB, Block, log_variance, score
+from ssmr_ident.diagnose.turning.maps import follows
+from ssmr_ident.diagnose.turning.spectra import average, look, mixes
+from ssmr_ident.diagnose.turning.verdict import Finding, Findings, decide
+from ssmr_ident.signals.metrics import log_psd_db
+
+
+def test_white_noise_scatters_as_its_degrees_of_freedom_say():
+    random = np.random.default_rng(3)
+    logs = []
+    for _ in range(60):
+        one = look(random.standard_normal((20_000, 3)), 1000.0)
+        logs.append(one.log_density(np.ones(3)))
+    scatter = np.var(np.array(logs), axis=0).mean()
+    assert scatter == pytest.approx(log_variance(one.dof), rel=0.06)
+
+
+def test_density_is_that_of_the_metric():
+    random = np.random.default_rng(4)
+    a, b = random.standard_normal((2, 20_000, 2))
+    ours = np.array([np.log(np.einsum("kii->ki", look(x, 1000.0).cross)) for x in (a, b)])
+    distance = np.sqrt(np.mean((ours[0] - ours[1]) ** 2, axis=0)) * NEPER_DB
+    np.testing.assert_allclose(distance, log_psd_db(a, b, 1000.0), rtol=1e-6)
+
+
+def test_sums_hold_the_sign_of_coherence():
+    random = np.random.default_rng(5)
+    common = random.standard_normal(20_000)
+    samples = np.column_stack([common, -0.5 * common + 0.1 * random.standard_normal(20_000)])
+    mix = mixes(2)
+    density = np.exp(look(samples, 1000.0).log_density(np.ones(2))).mean(axis=0)
+    plus, minus = (density[int(np.flatnonzero((mix[:, 0] > 0) & (np.sign(mix[:, 1]) == s))[0])] for s in (1, -1))
+    assert minus / plus == pytest.approx((1.5**2 + 0.01) / (0.5**2 + 0.01), rel=0.05)
+
+
+def test_averaging_adds_degrees_of_freedom():
+    random = np.random.default_rng(6)
+    looks = [look(random.standard_normal((8000, 2)), 1000.0) for _ in range(3)]
+    mean = average(looks)
+    assert mean.dof == pytest.approx(3 * looks[0].dof)
+    np.testing.assert_allclose(mean.cross, np.mean([one.cross for one in looks], axis=0))
+
+
+def test_a_model_without_error_needs_no_tau_and_one_with_error_needs_its_size():
+    random = np.random.default_rng(7)
+    variance = log_variance(38.0)
+    chance = np.sqrt(variance) * random.standard_normal(900)
+    clean = score([Block(chance, variance, np.zeros(0), np.ones(0))])
+    assert clean.left < 1.0
+    off = score([Block(chance + 4.0 / NEPER_DB * random.standard_normal(900), variance, np.zeros(0), np.ones(0))])
+    assert off.tau_db == pytest.approx(4.0, rel=0.25)
+    assert off.left > 100.0
+    assert off.log_likelihood < clean.log_likelihood - 50.0
+
+
+def test_joint_distance_comes_from_lines_at_two_speeds():
+    frequency = np.arange(1.0, 51.0)
+    courses, speeds = [], [0.06, 0.11]
+    for speed in speeds:
+        line = speed / 0.012
+        courses.append(sum(2.0 * np.exp(-(((frequency - n * line) / 0.8) ** 2)) for n in (1, 2, 3)))
+    heard = pitches_heard(frequency, courses, speeds)
+    assert min(abs(pitch / 0.012 - 1.0) for pitch in heard) < 0.05
+
+
+def test_weights_between_speeds():
+    np.testing.assert_allclose(between(np.array([24.0, 48.0]), 36.0), [0.5, 0.5])
+    np.testing.assert_allclose(between(np.array([48.0, 24.0]), 24.0), [0.0, 1.0])
+    np.testing.assert_allclose(between(np.array([24.0, 48.0]), 90.0), [0.0, 1.0])
+    np.testing.assert_allclose(between(np.array([24.0, 24.0]), 24.0), [0.5, 0.5])
+
+
+def test_grip_interval_is_open_where_the_data_cannot_tell():
+    tried = np.array([0.02, 0.1, 0.3, 0.5, 0.7, 1.0])
+    flat = profile(tried, np.array([-0.1, 0.0, -0.2, -8.0, -30.0, -60.0]))
+    assert flat.lower is None
+    assert 0.3 < flat.upper < 0.5
+    assert "cannot tell smaller" in str(flat)
+    assert "cannot tell it" in str(profile(tried, np.zeros(6)))
+    inside = profile(tried, -(((tried - 0.5) / 0.05) ** 2) / 2)
+    assert inside.lower < 0.5 < inside.upper
+
+
+@pytest.mark.parametrize(
+    ("line", "word"), [([5.0, 7.5, 10.0], "in proportion"), ([8.0, 8.1, 8.0], "fixed"), ([9.0, 7.5, 6.0], "falling")]
+)
+def test_lines_over_speed(line, word):
+    assert word in follows(np.array([0.4, 0.6, 0.8]), np.array(line))
+
+
+def _found(calibrated=True, left=300.0, tau=6.0, rms=6.5, tried=()):
+    return Findings(calibrated, left, tau, rms, 1.4, tuple(Finding(*one) for one in tried))
+
+
+def test_verdicts():
+    clear = [("ground_joints", 150.0, 1.0, 2.0), ("ground_roughness", 80.0, 4.0, 4.5)]
+    assert decide(_found(tried=clear)).named == ("ground_joints",)
+    alike = [("com_offset", 50.0, 1.0, 2.0), ("stribeck", 49.0, 1.0, 2.0), ("unlisted", 51.0, 1.0, 2.0)]
+    assert decide(_found(tried=alike)).named == ("com_offset", "stribeck", "unlisted")
+    quiet = decide(_found(left=0.0, tau=0.0, rms=1.4, tried=[("ground_joints", -8.0, 0.0, 1.4)]))
+    assert (quiet.verdict, quiet.named) == ("nothing_missing", ())
+    poor = decide(_found(tried=[("coriolis", 4.0, 6.0, 6.4)]))
+    assert poor.named == ("unlisted",)
+    foreign = decide(_found(calibrated=False, left=900.0, tau=5.4, rms=5.5, tried=[("stribeck", 40.0, 4.4, 4.9)]))
+    assert foreign.verdict == "undetermined"
