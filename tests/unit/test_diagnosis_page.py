@@ -14,7 +14,7 @@ import pytest
 from made_diagnoses import EVERY, hardening, nothing, swivel, undetermined
 
 from ssmr_ident.diagnose.diagnosis import Diagnosis
-from ssmr_ident.diagnose.evidence import Evidence
+from ssmr_ident.diagnose.evidence import Evidence, SpeedMap
 from ssmr_ident.report.curves import busiest_part, thinned
 from ssmr_ident.report.diagnosis_page import diagnosis_page, render_report, write_report
 from ssmr_ident.report.html import Number, Table
@@ -144,6 +144,24 @@ def test_the_end_tells_command_version_seed_and_hashes(tmp_path: Path) -> None:
 
 def test_same_diagnosis_same_page() -> None:
     assert render_report(undetermined(), "c", 1) == render_report(undetermined(), "c", 1)
+
+
+def test_few_speeds_are_drawn_as_lines_and_many_as_maps() -> None:
+    def names(speeds: SpeedMap) -> list[str]:
+        evidence = replace(swivel().evidence, speeds=(speeds,))
+        sections = diagnosis_page(replace(swivel(), evidence=evidence), "").sections
+        figures = [f for s in sections for f in s.figures if "turning speed" in f.title]
+        return [d.name for f in figures for d in f.drawings]
+
+    full = swivel().evidence.speeds[0]
+    assert names(full) == ["waterfall-1-recorded", "waterfall-1-before", "waterfall-1-after", "levels-1"]
+    twice = np.array([0, 0, 3, 3])
+    few = replace(
+        full, speed=full.speed[twice], recorded=full.recorded[twice], before=full.before[twice],
+        after=full.after[twice], lines=(("beyond", np.full(4, 99.0)), *((n, c[twice]) for n, c in full.lines)),
+        names=("target", "held out") * 2,
+    )  # fmt: skip
+    assert names(few) == ["waterfall-1"]
 
 
 def test_text_from_outside_is_escaped() -> None:

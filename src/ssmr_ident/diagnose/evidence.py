@@ -111,6 +111,8 @@ class SpeedMap:
     recorded, before, after : (s, k) float [dB re 1 (m/s^2)^2/Hz]
     lines : tuple of (str, (s,) float [Hz])
         Rates that a line could follow: wheel rate, path speed over a pitch, a fixed frequency.
+    names : tuple of str
+        What each spectrum is, beside its speed: ``target``, ``held out``; empty where that needs no word.
     """
 
     channel: str
@@ -120,6 +122,7 @@ class SpeedMap:
     before: np.ndarray
     after: np.ndarray
     lines: tuple[tuple[str, np.ndarray], ...] = ()
+    names: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)

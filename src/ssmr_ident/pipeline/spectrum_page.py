@@ -69,7 +69,7 @@ def spectrum_page(report: SpectrumReport, command: str, files: Sequence[Path]) -
     if len(by_file) == 1:
         sentence = f"The strongest line of each channel of {report.source}:"
     sections = (speed_section(report), _recordings(by_file), _table(report), _notes(report))
-    kept = tuple(s for s in sections if s.figures or s.tables or s.paragraphs)
+    kept = tuple(s for s in sections if s.figures or s.tables or s.points)
     verdict = Verdict(label, "", sentence, facts)
     return Page(f"Spectra of {report.source}", (), kept, command, file_hashes(files), verdict=verdict)
 
@@ -125,7 +125,7 @@ def _table(report: SpectrumReport) -> Section:
 
 
 def _notes(report: SpectrumReport) -> Section:
-    return Section("What was noticed", tuple(f"{file}: {note.text}" for file, note in report.notes))
+    return Section("What was noticed", points=tuple(f"{file}: {note.text}" for file, note in report.notes))
 
 
 def _fact(channel: str, rows: Sequence[SpectrumRow]) -> Fact:

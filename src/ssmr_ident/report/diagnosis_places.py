@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from ssmr_ident.diagnose.diagnosis import Diagnosis
+from ssmr_ident.diagnose.evidence import SpeedMap
 from ssmr_ident.report.diagnosis_pictures import after_name, before_name
 from ssmr_ident.report.figures_diagnosis import drift_panel
 from ssmr_ident.report.figures_residual import cut_panel, residual_map_panel, surface_panel
-from ssmr_ident.report.figures_waterfall import level_panel, waterfall_panel
-from ssmr_ident.report.html import Picture, drawing
+from ssmr_ident.report.figures_waterfall import level_panel, many, stacked_panel, waterfall_panel
+from ssmr_ident.report.html import Drawing, Picture, drawing
 from ssmr_ident.report.numbers import number
 
 SHOWN_MAPS, SHOWN_SURFACES, SHOWN_DRIFTS = 2, 2, 4
@@ -82,20 +83,35 @@ def _drifts(diagnosis: Diagnosis) -> tuple[Picture, ...]:
 
 
 def _waterfalls(diagnosis: Diagnosis) -> tuple[Picture, ...]:
-    after, pictures = after_name(diagnosis), []
-    for index, s in enumerate(diagnosis.evidence.speeds, 1):
-        panels = [("recorded", s.recorded, "recorded"), ("before", s.before, before_name(diagnosis))]
-        panels += [("after", s.after, after)] if after else []
-        drawings = []
-        for tag, density, title in panels:
-            alt = f"{s.channel}, {title}: power of the vibration over turning speed and frequency."
-            drawings.append(drawing(waterfall_panel(s, density, title), alt, f"waterfall-{index}-{tag}"))
-        alt = f"{s.channel}: difference in level between recorded and simulated spectra at each turning speed."
-        drawings.append(drawing(level_panel(s, after), alt, f"levels-{index}"))
-        caption = (
-            "How strongly the robot shakes at each turning speed and frequency; fuller colour is "
-            "stronger. A line that keeps its frequency comes from the structure, one that rises with speed from wheels "
-            "or floor; dashed and dotted lines show where each candidate would lie. Last, how far the levels are apart."
-        )
-        pictures.append(Picture(tuple(drawings), caption, f"Vibration over turning speed: {s.channel}"))
-    return tuple(pictures)
+    speeds, after = diagnosis.evidence.speeds, after_name(diagnosis)
+    drawings: list[Drawing] = []
+    for index, s in enumerate(speeds, 1):
+        drawings += _map_drawings(diagnosis, s, index) if many(s) else [_stacked_drawing(s, after, index)]
+    if not drawings:
+        return ()
+    how = "fuller colour is stronger" if many(speeds[0]) else "higher is stronger; one turning speed above the other"
+    caption = (
+        f"How strongly the robot shakes at each frequency and turning speed, axis by axis ({how}), and how far the "
+        "levels of recorded and simulated spectra are apart (root mean square over frequencies). A line that keeps its "
+        "frequency comes from the structure, one that rises with speed from wheels or floor; dashed and dotted lines "
+        "show where each candidate would lie."
+    )
+    return (Picture(tuple(drawings), caption, "Vibration over turning speed"),)
+
+
+def _map_drawings(diagnosis: Diagnosis, s: SpeedMap, index: int) -> list[Drawing]:
+    after = after_name(diagnosis)
+    panels = [("recorded", s.recorded, "recorded"), ("before", s.before, before_name(diagnosis))]
+    panels += [("after", s.after, after)] if after else []
+    drawings = []
+    for tag, density, title in panels:
+        alt = f"{s.channel}, {title}: power of the vibration over turning speed and frequency."
+        panel = waterfall_panel(s, density, f"{s.channel}, {title}")
+        drawings.append(drawing(panel, alt, f"waterfall-{index}-{tag}"))
+    alt = f"{s.channel}: difference in level between recorded and simulated spectra at each turning speed."
+    return [*drawings, drawing(level_panel(s, after), alt, f"levels-{index}")]
+
+
+def _stacked_drawing(s: SpeedMap, after: str, index: int) -> Drawing:
+    alt = f"{s.channel}: recorded and simulated spectra at {len(s.speed)} turning speeds, one above the other."
+    return drawing(stacked_panel(s, after), alt, f"waterfall-{index}")

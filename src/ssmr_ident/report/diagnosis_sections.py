@@ -23,9 +23,9 @@ def sections(diagnosis: Diagnosis) -> tuple[Section, ...]:
         _which(diagnosis),
         _moved(diagnosis),
         _next(diagnosis),
-        Section("What limits this answer", diagnosis.notes),
+        Section("What limits this answer", points=diagnosis.notes),
     )
-    return tuple(s for s in made if s.paragraphs or s.tables or s.figures)
+    return tuple(s for s in made if s.paragraphs or s.points or s.tables or s.figures)
 
 
 def _effects(diagnosis: Diagnosis) -> Section:

@@ -6,7 +6,7 @@ import hashlib
 import os
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from importlib import resources
 from itertools import count
 from pathlib import Path
@@ -78,10 +78,11 @@ class Picture:
 
 @dataclass(frozen=True)
 class Section:
-    """A heading with what stands below it."""
+    """A heading with what stands below it; ``points`` are set as a list."""
 
     title: str
     paragraphs: tuple[str, ...] = ()
+    points: tuple[str, ...] = field(default=(), kw_only=True)
     tables: tuple[Table, ...] = ()
     figures: tuple[Picture, ...] = ()
     listings: tuple[str, ...] = ()

@@ -58,6 +58,7 @@ def speed_maps(
             before=stacked[:, 1, :, j],
             after=stacked[:, 2, :, j],
             lines=tuple(lines),
+            names=tuple("held out" if c.role == "heldout" else c.role for c in kept),
         )
         for j, name in enumerate(names)
     )
