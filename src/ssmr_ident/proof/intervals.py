@@ -20,6 +20,15 @@ def mean_interval(values: Sequence[float], level: float = 0.95) -> tuple[float, 
     return centre - reach, centre + reach
 
 
+def between(low: float, high: float, digits: str = ".2f") -> str:
+    """An interval in brackets; nothing where there is none.
+
+    >>> between(1.0, 1.25), between(NAN, NAN)
+    (' (1.00 … 1.25)', '')
+    """
+    return "" if math.isnan(low) else f" ({low:{digits}} … {high:{digits}})"
+
+
 def share_interval(hits: int, total: int, level: float = 0.95) -> tuple[float, float]:
     """Clopper and Pearson's interval of a share.
 

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import numpy as np
 
 from ssmr_ident.proof.figures import concealment_figure, confusion_figure, heldout_figure, power_figure
 from ssmr_ident.proof.gallery import chosen, overlay
+from ssmr_ident.proof.intervals import between, share_interval
 from ssmr_ident.proof.power import power
 from ssmr_ident.proof.run import Proof
 from ssmr_ident.proof.score import MEANING
+from ssmr_ident.proof.summary import Share
 from ssmr_ident.proof.table import Row
-from ssmr_ident.report.html import Page, Picture, Section, Table, picture, write_page
+from ssmr_ident.report.html import Fact, Page, Picture, Section, Table, Verdict, picture, write_page
 
 
 def write_proof_page(proof: Proof, command: str, further: tuple[Section, ...] = ()) -> Path:
@@ -36,21 +39,51 @@ def write_proof_page(proof: Proof, command: str, further: tuple[Section, ...] = 
         _all(proof),
         _seals(proof),
     )
-    page = Page("Physics concealed, found blind, unsealed", _lead(proof), sections, command, seed=proof.seed)
+    page = Page(
+        "Physics concealed, found blind, unsealed",
+        _lead(proof),
+        sections,
+        command,
+        verdict=_verdict(proof),
+        seed=proof.seed,
+    )
     return write_page(proof.folder / "proof.html", page)
 
 
-def _lead(proof: Proof) -> tuple[str, ...]:
+def _verdict(proof: Proof) -> Verdict:
     summary = proof.summary
     middle, low, high = summary.after_over_floor
+    facts = (
+        Fact("hidden effects named", f"{summary.named.hits} of {summary.named.total}", _range(summary.named)),
+        Fact(
+            "false alarms", f"{summary.false_alarms.hits} of {summary.false_alarms.total}", _range(summary.false_alarms)
+        ),
+        Fact("held-out error reduced", f"{summary.reduced.hits} of {summary.reduced.total}", _range(summary.reduced)),
+        Fact(
+            "error after, over the noise", "–" if math.isnan(middle) else f"{middle:.2f}", f"median{between(low, high)}"
+        ),
+    )
+    sentence = (
+        f"{summary.named.hits} of {summary.named.total} hidden effects were named, right or within a tie of three, "
+        f"and {summary.false_alarms.hits} of {summary.false_alarms.total} sessions in which nothing was missing gave a "
+        "false alarm."
+    )
+    return Verdict(f"{len(proof.rows)} sealed cases, opened", "found", sentence, facts)
+
+
+def _range(share: Share) -> str:
+    if not share.total:
+        return ""
+    low, high = share_interval(share.hits, share.total)
+    return f"{share.value:.0%}, 95 % interval {low:.0%} … {high:.0%}"
+
+
+def _lead(proof: Proof) -> tuple[str, ...]:
     return (
-        f"{len(proof.rows)} cases were recorded on a robot and a rig in MuJoCo, an engine that shares no law with the "
-        f"simulator under test. In {summary.named.total} of them physics was hidden that the baseline model lacks. The "
-        "truth and the held-out recordings were sealed by SHA-256 before the first diagnosis began; every diagnosis "
-        "ran as a process of its own on a copy of the session folder alone.",
-        f"Hidden effects named, right or within a tie of three: {summary.named}. False alarms where nothing was "
-        f"missing: {summary.false_alarms}. Held-out error reduced: {summary.reduced}. Held-out error with the named "
-        f"physics over the noise floor: median {middle:.2f} ({low:.2f} … {high:.2f}). Intervals are 95 %.",
+        "The recordings come from a robot and a rig in MuJoCo, an engine that shares no law with the simulator under "
+        "test. Physics that the baseline model lacks was hidden in most of them, at sizes from the limit of what can "
+        "be seen upwards. The truth and the held-out recordings were sealed by SHA-256 before the first diagnosis began; "
+        "every diagnosis ran as a process of its own on a copy of the session folder alone.",
     )
 
 

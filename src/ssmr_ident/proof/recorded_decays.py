@@ -103,10 +103,10 @@ def _decay(
     bench: Bench, motion: str, trial: int, level: float, chain: Chain, robot: Robot, random: np.random.Generator,
     heldout: bool, programme: Programme,
 ) -> Log:  # fmt: skip
-    late = round(random.uniform(0.03, 0.08) * RATE)  # the log begins a little after the release
     stride = round(1.0 / (RATE * bench.step))
-    fine, _ = bench.decay(push(motion, level, random), (late + programme.samples) / RATE)
-    clean = chain.clean(fine, 1.0 / bench.step, stride)[late : late + programme.samples]
+    # the release triggers the log
+    fine, _ = bench.decay(push(motion, level, random), programme.samples / RATE)
+    clean = chain.clean(fine, 1.0 / bench.step, stride)
     sensor = robot.accelerometer
     volts = converted(sensor.volts_zero + sensor.volts_per_m_s2 * chain.noisy(clean, RATE, random))
     logged = (volts - sensor.volts_zero) / sensor.volts_per_m_s2

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ssmr_ident.proof.intervals import NAN, median_interval, share_interval
+from ssmr_ident.proof.intervals import NAN, between, median_interval, share_interval
 from ssmr_ident.proof.score import CLEAN, FALSE_ALARM, MEANING, NAMED
 from ssmr_ident.proof.table import Row
 
@@ -67,7 +67,7 @@ class Summary:
             f"  hidden effects named:       {self.named}",
             f"  false alarms:               {self.false_alarms}",
             f"  held-out error reduced:     {self.reduced}",
-            f"  after over noise floor:     median {middle:.2f} ({low:.2f} … {high:.2f})",
+            f"  after over noise floor:     median {middle:.2f}{between(low, high)}",
         ]
         return "\n".join(lines)
 
