@@ -11,7 +11,7 @@ from ssmr_ident.report.diagnosis_pictures import after_name
 from ssmr_ident.report.diagnosis_sections import sections
 from ssmr_ident.report.figures_diagnosis import readable
 from ssmr_ident.report.html import Fact, Page, Verdict, file_hashes, render_page, write_page
-from ssmr_ident.report.numbers import alike, interval, measured, number
+from ssmr_ident.report.numbers import alike, interval, measured, number, share
 
 FIGURES = "figures"
 
@@ -90,7 +90,7 @@ def verdict(diagnosis: Diagnosis) -> Verdict:
 
 
 def _found(diagnosis: Diagnosis) -> tuple[Fact, ...]:
-    sure = [f"{_name(e.id)}: {number(100 * e.confidence)} %" for e in diagnosis.effects]
+    sure = [f"{_name(e.id)}: {share(e.confidence)}" for e in diagnosis.effects]
     ties = sorted({_name(id) for e in diagnosis.effects for id in e.indistinguishable_from})
     facts = [*_before_after(diagnosis)]
     if sure:
@@ -98,7 +98,7 @@ def _found(diagnosis: Diagnosis) -> tuple[Fact, ...]:
         facts.append(
             Fact(
                 "How sure of the name",
-                f"{number(100 * diagnosis.effects[0].confidence)} %" if one else "; ".join(sure),
+                share(diagnosis.effects[0].confidence) if one else "; ".join(sure),
                 f"fits as well: {', '.join(ties)}" if ties else "among the explanations tried",
             )
         )

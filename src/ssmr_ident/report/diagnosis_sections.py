@@ -10,7 +10,7 @@ from ssmr_ident.report.diagnosis_pictures import after_name, explained, known_st
 from ssmr_ident.report.diagnosis_places import places
 from ssmr_ident.report.figures_diagnosis import evidence_text, readable
 from ssmr_ident.report.html import Cell, Number, Section, Table
-from ssmr_ident.report.numbers import NONE, alike, interval, measured, number
+from ssmr_ident.report.numbers import NONE, alike, interval, measured, number, share
 from ssmr_ident.report.numbers import unit as printed
 
 
@@ -36,8 +36,10 @@ def _effects(diagnosis: Diagnosis) -> Section:
         paragraphs.append(_described(effect))
         for name, estimate in effect.parameters.items():
             rows.append((readable(effect.id), name, *_estimated(estimate)))
-    header = ("effect", "parameter", "value ± standard deviation", "95 % interval", "unit")
-    caption = "Fitted parameters of the physics added; the interval is ±1.96 standard deviations."
+    header = ("effect", "parameter", "value ± std", "95 % interval", "unit")
+    caption = (
+        "Fitted parameters of the physics added, ± their standard deviation; the interval is ±1.96 standard deviations."
+    )
     if any(estimate.std is None for effect in diagnosis.effects for estimate in effect.parameters.values()):
         caption += " None stands where the fit leaves structure behind, so that one would promise too much."
     return Section(title, tuple(paragraphs), (Table(caption, header, tuple(rows)),) if rows else ())
@@ -47,7 +49,7 @@ def _described(effect: NamedEffect) -> str:
     text = f"{readable(effect.id).capitalize()}: {effect.sentence} Law: {effect.equation}."
     if effect.form:
         text += f" Formula that fits best: {effect.form}."
-    text += f" Share of the probability among the explanations tried: {number(100 * effect.confidence)} %."
+    text += f" Share of the probability among the explanations tried: {share(effect.confidence)}."
     if effect.indistinguishable_from:
         names = ", ".join(readable(id) for id in effect.indistinguishable_from)
         text += f" These recordings cannot tell it from: {names}."
@@ -129,11 +131,12 @@ def _where(diagnosis: Diagnosis) -> Section:
     header = ("recording", "channel", "time [s]", "band [Hz]", "where in the motion", "share of the misfit [%]")
     tables = (Table("Places in which the mismatch sits, largest first.", header, tuple(rows)),) if rows else ()
     sentences = tuple(place.sentence for place in diagnosis.located if place.sentence)
+    opening: tuple[str, ...] = ()
     quiet = diagnosis.verdict == NOTHING
     title = "Where a mismatch was looked for" if quiet else "Where the mismatch sits"
     if quiet and not sentences:
-        sentences = ("No channel, time, band or state stands out of the noise.",) if diagnosis.evidence.maps else ()
-    return Section(title, sentences, tables, places(diagnosis))
+        opening = ("No channel, time, band or state stands out of the noise.",) if diagnosis.evidence.maps else ()
+    return Section(title, opening, tables, places(diagnosis), points=sentences)
 
 
 def _which(diagnosis: Diagnosis) -> Section:

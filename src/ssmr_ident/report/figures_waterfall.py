@@ -95,7 +95,7 @@ def stacked_panel(speeds: SpeedMap, after: str) -> Figure:
     axes.set_xlim(float(speeds.frequency[0]), float(speeds.frequency[-1]))
     axes.set_xlabel("frequency [Hz]")
     axes.set_title(f"{style.quantity_text(speeds.channel)}; one step is {step:.3g} dB", loc="left")
-    axes.legend(loc="upper left", bbox_to_anchor=(0, -0.42 / (0.4 + 0.75 * count)), ncols=2, borderaxespad=0)
+    figure.legend(loc="outside lower left", ncols=2, columnspacing=1)
     return figure
 
 

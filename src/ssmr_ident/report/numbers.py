@@ -63,6 +63,17 @@ def interval(low: float, high: float, of: str = "1") -> str:
     return f"{text} {unit(of)}".rstrip()
 
 
+def share(value: float) -> str:
+    """A share in per cent; never all, for only what was tried was weighed.
+
+    >>> share(0.52), share(0.99999), share(0.0)
+    ('52 %', 'above 99.9 %', 'below 0.1 %')
+    """
+    if value > 0.999:
+        return "above 99.9 %"
+    return "below 0.1 %" if value < 0.001 else f"{number(100 * value)} %"
+
+
 def alike(values: Sequence[float]) -> list[str]:
     """Values to read against each other: decimals for two digits of the smallest, for three where all are close.
 
