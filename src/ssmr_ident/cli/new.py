@@ -58,7 +58,7 @@ def command(
     elif not quiet:
         typer.echo(str(draft))
         typer.echo(f"written: {paths[0]}, {paths[1]}")
-        after = "Fill these in, then" if draft.questions else "Look them over, then"
+        after = "Fill in what is asked, then" if draft.questions else "Look them over, then"
         typer.echo(f"{after}: ident fit {session} -o params.yaml")
 
 

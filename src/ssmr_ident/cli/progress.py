@@ -17,7 +17,7 @@ def stages(hidden: bool = False) -> Iterator[Callable[[str, int, int], None]]:
         yield lambda name, done, total: None
         return
     columns = (TextColumn("{task.description:<48}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
-    with Progress(*columns, console=console) as bar:
+    with Progress(*columns, console=console, transient=True) as bar:
         tasks: dict[str, TaskID] = {}
 
         def step(name: str, done: int, total: int) -> None:

@@ -107,7 +107,7 @@ class Draft(Shown):
             lines.append(f"  {guess.file:<{width}}  {' '.join([str(guess.fields['experiment']), *about])}")
         lines += [f"  {file:<{width}}  left out: {reason}" for file, reason in self.aside]
         if self.questions:
-            lines.append(f"{len(self.questions)} lines to fill in:")
+            lines.append(f"{len(self.questions)} line{'s' if len(self.questions) > 1 else ''} to fill in:")
             asked: dict[tuple[str, str, str], list[str]] = {}
             for q in self.questions:
                 asked.setdefault((q.file, q.text, q.question), []).append(str(q.line))
