@@ -70,7 +70,7 @@ def test_what_friction_and_loops_take_per_cycle() -> None:
     loading = y * np.tanh(grown / y)
     area = 2.0 * (np.trapezoid(loading, grown) - 0.5 * y**2) * share * 2e4
     assert _work(amplitude, loop_share=share, loop_yield=y) == pytest.approx(area, rel=1e-2)
-    for laws in ({"cubic": 1e9}, {"knee": 2e-4, "knee_stiffness": 5e3}, {"gap": 2e-4, "gap_share_x": 1.0}):
+    for laws in ({"cubic": 1e9}, {"knee": 2e-4, "knee_share": 0.3}, {"gap": 2e-4, "gap_share_x": 1.0}):
         assert abs(_work(amplitude, **laws)) < 1e-12  # springs give back what they took
 
 

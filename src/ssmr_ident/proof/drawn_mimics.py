@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ssmr_ident.proof.drawn_springs import graded
+from ssmr_ident.proof.drawn_springs import graded, slopes
 from ssmr_ident.proof.hidden import Change, Hidden
 from ssmr_ident.proof.plant.robot_model import Frame
 
@@ -58,10 +58,7 @@ def frame_on_the_line(random: np.random.Generator, strength: float) -> Hidden:
 
 def softening_like_cable(random: np.random.Generator, strength: float) -> Hidden:
     """Tires that give way under load, as a cable that stretches would have it."""
-    k3 = -graded(strength, 5e5, 2e6)
-    return Hidden(
-        "nonlinear_stiffness", "softening cubic", {"k3_N_m3": k3}, "F = K s + k3 s^3", Change({"cubic": k3}), strength
-    )
+    return slopes("softening slopes", float(random.uniform(4e-4, 1e-3)), -graded(strength, 0.1, 0.4), strength)
 
 
 def gain_drift(random: np.random.Generator, strength: float) -> Hidden:

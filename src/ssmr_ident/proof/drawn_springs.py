@@ -39,44 +39,44 @@ class Scale:
     loop: tuple[float, float]
     loop_yield: tuple[float, float]
     gap: tuple[float, float]
-    stiffness: float
-    softest: float
 
 
 SCALES = {
     "decay": Scale(
         (1.5e8, 3e9), (2e-4, 5e-4), (0.08, 0.6), (0.12, 2.0), (80.0, 1500.0), (700.0, 6000.0), (0.02, 0.15),
-        (0.04, 0.25), (2e-4, 5e-4), (4e-5, 3e-4), 18e3, -4e8,
+        (0.04, 0.25), (2e-4, 5e-4), (4e-5, 3e-4),
     ),
     "rig": Scale(
         (4e7, 1.5e9), (4e-4, 1e-3), (0.06, 0.6), (0.06, 1.0), (15.0, 400.0), (400.0, 5000.0), (0.02, 0.2),
-        (0.02, 0.2), (2e-4, 6e-4), (2e-5, 2.5e-4), 18e3, -5e8,
+        (0.02, 0.2), (2e-4, 6e-4), (2e-5, 2.5e-4),
     ),
     "pull": Scale(
         (1e6, 2e7), (1.5e-3, 3e-3), (0.15, 0.6), (0.3, 3.0), (0.0, 0.0), (1500.0, 8000.0), (0.6, 5.0),
-        (0.08, 0.35), (8e-4, 2e-3), (0.0, 0.0), 18e3, -2e6,
+        (0.08, 0.35), (8e-4, 2e-3), (0.0, 0.0),
     ),
 }  # fmt: skip
 
 
 def hardening(scale: Scale) -> Draw:
-    """Cubic, either sign, or two slopes."""
+    """Cubic, or two slopes that harden or soften. A softening cubic would give way altogether further out."""
 
     def draw(random: np.random.Generator, strength: float) -> Hidden:
-        form = random.choice(["hardening cubic", "softening cubic", "two slopes"], p=[0.5, 0.2, 0.3])
-        if form == "two slopes":
-            knee = random.uniform(*scale.knee_m)
-            extra = scale.stiffness * graded(strength, *scale.knee_share)
-            how = "F = K s + K2 (|s| - knee) sign(s) beyond the knee"
-            parameters = {"knee_m": knee, "knee_stiffness_N_m": extra}
-            laws = {"knee": knee, "knee_stiffness": extra}
-        else:
+        form = str(random.choice(["hardening cubic", "hardening slopes", "softening slopes"], p=[0.5, 0.25, 0.25]))
+        if form == "hardening cubic":
             k3 = graded(strength, *scale.cubic)
-            k3 = k3 if form.startswith("hard") else max(-0.4 * k3, scale.softest)
             how, parameters, laws = "F = K s + k3 s^3", {"k3_N_m3": k3}, {"cubic": k3}
-        return Hidden("nonlinear_stiffness", str(form), parameters, how, Change(laws), strength)
+            return Hidden("nonlinear_stiffness", form, parameters, how, Change(laws), strength)
+        share = graded(strength, *scale.knee_share) * (1.0 if form.startswith("hard") else -0.6)
+        return slopes(form, float(random.uniform(*scale.knee_m)), share, strength)
 
     return draw
+
+
+def slopes(form: str, knee: float, share: float, strength: float) -> Hidden:
+    """K up to the knee, (1 + share) K beyond, in every spring."""
+    how = "F = K s up to the knee, with the slope (1 + share) K beyond it"
+    parameters = {"knee_m": knee, "knee_share": share}
+    return Hidden("nonlinear_stiffness", form, parameters, how, Change({"knee": knee, "knee_share": share}), strength)
 
 
 def friction(scale: Scale) -> Draw:

@@ -13,7 +13,7 @@ UNITS = {
     **{"K_m_N_m": "N/m", "tau_s": "s", "yield_m": "m", "gap_m": "m", "f_mast_Hz": "Hz", "mass_kg": "kg"},
     **{"height_above_com_m": "m", "K_cable_N_m": "N/m", "zero_drift_N_s": "N/s", "gain_drift_1_s": "1/s"},
     **{"stribeck_velocity_m_s": "m/s", "range_m_s2": "m/s^2", "range_N": "N", "bandwidth_hz": "Hz"},
-    **{"offset_x_m": "m", "offset_y_m": "m", "knee_m": "m", "knee_stiffness_N_m": "N/m", "pulse_Hz": "Hz"},
+    **{"offset_x_m": "m", "offset_y_m": "m", "knee_m": "m", "pulse_Hz": "Hz"},
     **{"reach_1_m2": "1/m^2", "root_N_s05_m05": "N s^0.5/m^0.5"},
     **{f"angle_{axis}_rad": "rad" for axis in "xyz"},
 }

@@ -82,8 +82,8 @@ def _lead(proof: Proof) -> tuple[str, ...]:
     return (
         "The recordings come from a robot and a rig in MuJoCo, an engine that shares no law with the simulator under "
         "test. Physics that the baseline model lacks was hidden in most of them, at sizes from the limit of what can "
-        "be seen upwards. The truth and the held-out recordings were sealed by SHA-256 before the first diagnosis began; "
-        "every diagnosis ran as a process of its own on a copy of the session folder alone.",
+        "be seen upwards. The truth and the held-out recordings were sealed by SHA-256 before the first diagnosis "
+        "began; every diagnosis ran as a process of its own on a copy of the session folder alone.",
     )
 
 

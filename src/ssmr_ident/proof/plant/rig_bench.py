@@ -87,7 +87,7 @@ def drive(rig: RigPlant, force: np.ndarray) -> np.ndarray:
         _control(place, speed, control, force, n, hidden, rig.stiffness, rig.damping, rig.laws)
         mujoco.mj_step2(model, data)
         log[n, 1] = acceleration[0]
-    if not np.isfinite(log).all():
+    if not np.isfinite(log).all() or any(warning.number for warning in data.warning):
         raise SimulationError(f"the rig left the finite numbers with laws {rig.laws.tolist()}")
     return log
 

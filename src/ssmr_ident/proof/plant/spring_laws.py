@@ -15,12 +15,12 @@ from ssmr_ident.core.kernel import kernel
 
 # Slots of a law vector; 0 means absent in every one of them.
 LAWS = (
-    *("cubic", "knee", "knee_stiffness", "friction", "friction_stiffness", "dahl", "quadratic"),
+    *("cubic", "knee", "knee_share", "friction", "friction_stiffness", "dahl", "quadratic"),
     *("maxwell", "maxwell_time", "loop_share", "loop_yield", "gap", "gap_share_x"),
     *("uneven_damper", "reach_damper", "uneven_spring", "root_damper", "pulse_share", "pulse_rad_s"),
 )
 (
-    CUBIC, KNEE, KNEE_STIFFNESS, FRICTION, FRICTION_STIFFNESS, DAHL, QUADRATIC,
+    CUBIC, KNEE, KNEE_SHARE, FRICTION, FRICTION_STIFFNESS, DAHL, QUADRATIC,
     MAXWELL, MAXWELL_TIME, LOOP_SHARE, LOOP_YIELD, GAP, GAP_SHARE_X,
     UNEVEN_DAMPER, REACH_DAMPER, UNEVEN_SPRING, ROOT_DAMPER, PULSE_SHARE, PULSE_RAD_S,
 ) = range(len(LAWS))  # fmt: skip
@@ -59,8 +59,8 @@ def beside(s, v, t, hidden, stiffness, damping, ratio, gap_share, tangential, la
     force = laws[CUBIC] * s * s * s + ratio * laws[MAXWELL] * (s - hidden[2])
     if not tangential:
         return force
-    if laws[KNEE_STIFFNESS] != 0.0 and abs(s) > laws[KNEE]:
-        force += laws[KNEE_STIFFNESS] * (s - math.copysign(laws[KNEE], s))
+    if laws[KNEE_SHARE] != 0.0 and abs(s) > laws[KNEE]:
+        force += laws[KNEE_SHARE] * stiffness * (s - math.copysign(laws[KNEE], s))
     force += laws[FRICTION_STIFFNESS] * hidden[0] + laws[QUADRATIC] * v * abs(v)
     if laws[LOOP_SHARE] != 0.0:
         force += laws[LOOP_SHARE] * stiffness * (hidden[1] - s)
