@@ -12,6 +12,7 @@ from multiprocessing import get_context
 from pathlib import Path
 
 from ssmr_ident.core.errors import InputError
+from ssmr_ident.core.shown import Shown
 from ssmr_ident.proof.answer import read_answer
 from ssmr_ident.proof.blind import DIAGNOSE, BlindRun, run_blind
 from ssmr_ident.proof.cases import draw_case
@@ -27,7 +28,7 @@ STAGES = ("recording", "diagnosing", "opening")
 
 
 @dataclass(frozen=True)
-class Proof:
+class Proof(Shown):
     """What a proof came to.
 
     Parameters

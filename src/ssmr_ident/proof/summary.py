@@ -8,13 +8,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ssmr_ident.core.shown import Shown
 from ssmr_ident.proof.intervals import NAN, between, median_interval, share_interval
 from ssmr_ident.proof.score import CLEAN, FALSE_ALARM, MEANING, NAMED
 from ssmr_ident.proof.table import Row
 
 
 @dataclass(frozen=True)
-class Share:
+class Share(Shown):
     """Hits out of a total, with the 95 % interval of Clopper and Pearson."""
 
     hits: int
@@ -32,7 +33,7 @@ class Share:
 
 
 @dataclass(frozen=True)
-class Summary:
+class Summary(Shown):
     """What a proof came to.
 
     Parameters

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from ssmr_ident.core.atomic import write_bytes, write_text
 from ssmr_ident.core.errors import InputError
+from ssmr_ident.core.shown import Shown
 from ssmr_ident.proof.answer import read_answer
 from ssmr_ident.proof.blind import BlindRun
 from ssmr_ident.proof.run import open_case
@@ -23,7 +24,7 @@ SEAL, TRUTH = "seal.sha256", "sealed.bin"
 
 
 @dataclass(frozen=True)
-class Unsealed:
+class Unsealed(Shown):
     """A truth and a diagnosis side by side."""
 
     row: Row
