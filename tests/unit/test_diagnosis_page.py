@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 from made_diagnoses import EVERY, hardening, nothing, swivel, undetermined
 
-from ssmr_ident.diagnose.diagnosis import Diagnosis
-from ssmr_ident.diagnose.evidence import Evidence, SpeedMap
+from ssmr_ident.diagnose.diagnosis import Conflict, Diagnosis, Tried, Worth
+from ssmr_ident.diagnose.evidence import Evidence, ForceSurface, SpeedMap
 from ssmr_ident.report.curves import busiest_part, thinned
 from ssmr_ident.report.diagnosis_page import diagnosis_page, render_report, write_report
 from ssmr_ident.report.html import Number, Table
@@ -162,6 +162,31 @@ def test_few_speeds_are_drawn_as_lines_and_many_as_maps() -> None:
         names=("target", "held out") * 2,
     )  # fmt: skip
     assert names(few) == ["waterfall-1"]
+
+
+def test_poor_evidence_is_drawn_as_it_is() -> None:
+    """One point, one column, no number: what a short or failed fit leaves."""
+    full, few = hardening(), np.array([0.001, 0.002])
+    evidence = replace(
+        full.evidence,
+        maps=(
+            replace(full.evidence.maps[0], time=np.array([1.0]), before=np.full((50, 1), 9.0), after=np.zeros((50, 1))),
+        ),
+        surfaces=(ForceSurface("r", "w", few, few, few, few), ForceSurface("r", "w", *(np.array([]),) * 4)),
+        drifts=(replace(full.evidence.drifts[0], **{k: np.array([1.0]) for k in ("position", "value", "std")}),),
+    )
+    poor = replace(
+        full,
+        evidence=evidence,
+        tried=(Tried("nonlinear_stiffness", float("nan"), float("-inf")), Tried("baseline", 0.0, 0.0)),
+        conflicts=(Conflict("mass_kg", 2.0, 2.0, 0.0, "kg"), Conflict("tire.x", 0.0, 1.0, float("inf"), "m")),
+        heldout=Worth(0.0, 0.0, float("nan")),
+    )
+    page = render_report(poor, "", 0)
+    assert "nan%" not in page
+    assert page.count("force-surface") == 0  # names are of files only
+    names = [d.name for s in diagnosis_page(poor, "").sections for f in s.figures for d in f.drawings]
+    assert [n for n in names if n.startswith("force-surface")] == ["force-surface-1-before", "force-surface-1-after"]
 
 
 def test_text_from_outside_is_escaped() -> None:

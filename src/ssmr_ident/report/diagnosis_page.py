@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -111,8 +112,8 @@ def _clear(diagnosis: Diagnosis) -> tuple[Fact, ...]:
     largest = max(worth.before, worth.noise_floor)
     left, floor = alike((worth.before, worth.noise_floor))
     facts = [
-        Fact("Model, on held-out recordings", f"{left} {unit}", _spread(diagnosis), worth.before / largest),
-        Fact("Noise alone would leave", f"{floor} {unit}", "the noise floor", worth.noise_floor / largest),
+        Fact("Model, on held-out recordings", f"{left} {unit}", _spread(diagnosis), _bar(worth.before, largest)),
+        Fact("Noise alone would leave", f"{floor} {unit}", "the noise floor", _bar(worth.noise_floor, largest)),
         Fact("Explanations tried", f"{len(tried)}", "none earns its place"),
     ]
     moved = max((abs(c.sigmas) for c in diagnosis.conflicts), default=None)
@@ -139,11 +140,17 @@ def _before_after(diagnosis: Diagnosis) -> tuple[Fact, ...]:
         gain = f"improved by {interval(*worth.improvement, unit)} (95 %)"
     count = len(worth.recordings)
     on = f"on {count} recording{'s' if count > 1 else ''} never fitted" if count else "on recordings never fitted"
-    facts = [Fact("Model before", f"{before} {unit}", on, worth.before / largest, "before")]
+    facts = [Fact("Model before", f"{before} {unit}", on, _bar(worth.before, largest), "before")]
     if name := after_name(diagnosis):
-        facts.append(Fact(name.capitalize(), f"{after} {unit}", gain, worth.after / largest, "after"))
-    facts.append(Fact("Noise alone would leave", f"{floor} {unit}", "the noise floor", worth.noise_floor / largest))
+        facts.append(Fact(name.capitalize(), f"{after} {unit}", gain, _bar(worth.after, largest), "after"))
+    facts.append(
+        Fact("Noise alone would leave", f"{floor} {unit}", "the noise floor", _bar(worth.noise_floor, largest))
+    )
     return tuple(facts)
+
+
+def _bar(value: float, largest: float) -> float:
+    return value / largest if math.isfinite(value) and largest > 0 else 0.0
 
 
 def _spread(diagnosis: Diagnosis) -> str:

@@ -40,7 +40,8 @@ def _maps(diagnosis: Diagnosis) -> tuple[Picture, ...]:
 
 def _surfaces(diagnosis: Diagnosis) -> tuple[Picture, ...]:
     after, pictures = after_name(diagnosis), []
-    for index, s in enumerate(diagnosis.evidence.surfaces[:SHOWN_SURFACES], 1):
+    surfaces = [s for s in diagnosis.evidence.surfaces if len(s.displacement)]
+    for index, s in enumerate(surfaces[:SHOWN_SURFACES], 1):
         alt = f"{s.recording}: force that the model does not explain, over displacement and velocity, {s.where}"
         panels = [("before", s.before, before_name(diagnosis))] + ([("after", s.after, after)] if after else [])
         drawings = [

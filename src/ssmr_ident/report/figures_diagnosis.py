@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Sequence
 
 import numpy as np
@@ -35,6 +36,8 @@ def evidence_text(value: float) -> str:
     >>> evidence_text(8.013), evidence_text(-5228.4)
     ('8.0', '−5228')
     """
+    if not math.isfinite(value):
+        return number(value)
     return f"{value:.{1 if abs(value) < 100 else 0}f}".replace("-", "−")
 
 
@@ -146,14 +149,20 @@ def moved_panel(conflicts: Sequence[Conflict], after: Sequence[float | None], na
     figure = style.new_figure(PANEL, 0.95 + 0.3 * len(conflicts))
     axes = figure.subplots()
     rows = np.arange(len(conflicts))
+    largest = max((abs(c.sigmas) for c in conflicts if math.isfinite(c.sigmas)), default=3.0)
     axes.axvspan(-2, 2, color=style.SHADE, lw=0, zorder=0)
     colour, label = first_look(name)
-    axes.barh(rows, [c.sigmas for c in conflicts], color=colour, height=0.5, label=label)
+    axes.barh(
+        rows,
+        [float(np.clip(c.sigmas, -1.25 * largest, 1.25 * largest)) for c in conflicts],
+        color=colour,
+        height=0.5,
+        label=label,
+    )
     known = [(row, value) for row, value in zip(rows, after, strict=True) if value is not None]
     if known:
         where, values = zip(*known, strict=True)
         axes.plot(values, where, "o", color=style.BLUE, ms=5, label=name)
-    largest = max(abs(c.sigmas) for c in conflicts)
     if largest > 30:  # small ones would vanish beside it
         axes.set_xscale("symlog", linthresh=3, linscale=1)
         steps = [step for step in (3, 10, 30, 100, 300, 1000) if step <= 2 * largest]

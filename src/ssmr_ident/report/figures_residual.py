@@ -47,7 +47,7 @@ def residual_map_panel(residual: ResidualMap, power: np.ndarray, title: str) -> 
         shading="nearest",
         rasterized=True,
     )
-    if np.nanmax(power) > residual.threshold_db > np.nanmin(power):
+    if min(power.shape) > 1 and np.nanmax(power) > residual.threshold_db > np.nanmin(power):
         axes.contour(
             residual.time, residual.frequency, power, [residual.threshold_db], colors=style.INK, linewidths=0.8
         )
@@ -90,7 +90,7 @@ def surface_panel(surface: ForceSurface, force: np.ndarray, title: str, cells: i
     (across, across_unit), (along, along_unit) = _scaled(surface)
     edges = [np.linspace(*_reach(values), cells + 1) for values in (across, along)]
     counted = np.histogram2d(across, along, edges)[0]
-    counted[counted < FEWEST] = 0
+    counted[counted < min(FEWEST, counted.max())] = 0
     both = []
     for values in (surface.before, force):
         with np.errstate(invalid="ignore"):
@@ -138,6 +138,9 @@ def cut_panel(surface: ForceSurface, over: str, after: str, bins: int = 15) -> F
     if after:
         lines.append((surface.after, style.BLUE, after))
     for force, colour, label in lines:
+        if len(filled) < 3:
+            axes.plot(values, force, ".", color=colour, ms=3, label=label)
+            continue
         low, middle, high = np.array([np.quantile(force[place == k], (0.1, 0.5, 0.9)) for k in filled]).T
         axes.fill_between(centres, low, high, color=colour, alpha=0.2, lw=0)
         axes.plot(centres, middle, "o-", color=colour, ms=3, label=label)
@@ -159,5 +162,6 @@ def _scaled(surface: ForceSurface) -> tuple[tuple[np.ndarray, str], tuple[np.nda
 
 def _reach(values: np.ndarray) -> tuple[float, float]:
     """Lowest and highest, without the outermost thousandth: single points would stretch the picture."""
-    low, high = np.quantile(values, (0.001, 0.999))
+    outside = 0.001 if len(values) > 1000 else 0.0
+    low, high = np.quantile(values, (outside, 1 - outside))
     return (float(low), float(high)) if high > low else (float(low) - 0.5, float(high) + 0.5)

@@ -77,14 +77,16 @@ def share(value: float) -> str:
 def alike(values: Sequence[float]) -> list[str]:
     """Values to read against each other: decimals for two digits of the smallest, for three where all are close.
 
-    >>> alike([22.0, 3.41, 2.93]), alike([0.5, 0.0123]), alike([2.95, 2.91])
-    (['22.0', '3.4', '2.9'], ['0.500', '0.012'], ['2.95', '2.91'])
+    >>> alike([22.0, 3.41, 2.93]), alike([0.5, 0.0123]), alike([2.95, 2.91]), alike([5.0, 1e-4])
+    (['22.0', '3.4', '2.9'], ['0.500', '0.012'], ['2.95', '2.91'], ['5', '1·10⁻⁴'])
     """
     sizes = [abs(v) for v in values if math.isfinite(v) and v != 0]
     if not sizes:
         return [number(v) for v in values]
     digits = 3 if max(sizes) < 2 * min(sizes) else 2
-    decimals = min(max(digits - 1 - math.floor(math.log10(min(sizes))), 0), 3)
+    decimals = max(digits - 1 - math.floor(math.log10(min(sizes))), 0)
+    if decimals > 3:
+        return [number(v) for v in values]
     return [_minus(f"{v:.{decimals}f}") if math.isfinite(v) else number(v) for v in values]
 
 
