@@ -57,7 +57,7 @@ def campaign(effects: dict, runs: list[Run], seed: int, duration: float = 3.0, n
         measurements.append(Measurement(entry, Recording(time, tuple(channels), Provenance(name, "", "test"))))
     last = measurements[-1]
     measurements.append(replace(last, entry=replace(last.entry, file="kept.csv", role="heldout")))
-    session = Session("rig", Path("."), "rig.yaml", "sdof", tuple(m.entry for m in measurements))
+    session = Session("rig", Path(), "rig.yaml", "sdof", tuple(m.entry for m in measurements))
     return Campaign(session, ROUGH, tuple(measurements))
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -98,7 +99,7 @@ def integrated(signal: Array, step: float, times: int, frequency: float) -> Arra
     return filtered(signal, step, lambda s: s ** float(-times), lowest, HIGHEST * frequency)
 
 
-def filtered(signal: Array, step: float, operator, lowest: float, highest: float) -> Array:  # type: ignore[no-untyped-def]
+def filtered(signal: Array, step: float, operator: Callable[[Array], Array], lowest: float, highest: float) -> Array:
     """A signal through ``operator(s)``, s = i·2π·f, within a band whose edges are a third of an octave wide.
 
     The ends are continued by their own mirror image turned about the end point, so that slopes go on smoothly.

@@ -1,9 +1,9 @@
 """Which variable orders the unexplained force: time, displacement, velocity, travel or load.
 
 Samples are parted into bins of equal number along each variable; the one whose bins' means hold most of the variance
-orders best. First the force itself is looked at, which is a law's own shape; then the logarithm of its square, which
-shows where it acts when its sign does not follow. Samples are correlated in time, so chance is judged by exchanging
-blocks as long as the correlation.
+orders best. First the force itself is looked at (over all but time), a law's own shape; then the logarithm of its
+square, which shows where it acts when its sign does not follow. Samples are correlated in time, so chance is judged
+by signals of the same spectrum with phases drawn anew. Source: Theiler et al., Physica D 58 (1992) 77.
 """
 
 from __future__ import annotations
@@ -15,7 +15,6 @@ import numpy as np
 
 from ssmr_ident.diagnose.motion import motion_of
 from ssmr_ident.diagnose.quantity import prefixed
-from ssmr_ident.identify.joint import worth
 from ssmr_ident.identify.trials.trial import Trial
 
 Array = np.ndarray
@@ -23,8 +22,7 @@ Array = np.ndarray
 CUTS = np.linspace(0.1, 0.9, 9)
 """Quantiles between bins."""
 
-EXCHANGES = 199
-FEWEST_BLOCKS = 12
+SURROGATES = 199
 CLEAR = 0.01
 """p-value below which a region is told."""
 
@@ -61,7 +59,7 @@ class Ordering:
     explained : float
         Share of the variance between bins.
     p_value : float
-        Of the best of all variables, by exchanged blocks.
+        Of the best of all variables, by signals with other phases.
     """
 
     variable: str
@@ -103,11 +101,12 @@ def ordering(force: Array, variables: Mapping[str, tuple[Array, str]], seed: int
     force : (n,) float
     variables : mapping of name to ((n,) float, unit)
     seed : int
-        Of the exchanges.
+        Of the phases.
     """
     power = force**2
     level = np.log(power + 0.1 * power.mean() + 1e-300)
-    name, explained, p_value = _best(force, variables, seed)
+    laws = {name: pair for name, pair in variables.items() if name != "time"}
+    name, explained, p_value = _best(force, laws, seed)
     follows = p_value < CLEAR
     if not follows:
         name, explained, p_value = _best(level, variables, seed)
@@ -126,15 +125,14 @@ def _best(signal: Array, variables: Mapping[str, tuple[Array, str]], seed: int) 
     found = {name: _between(signal, place) / total for name, place in places.items()}
     name = max(found, key=lambda key: found[key])
     rng = np.random.default_rng(seed)
-    count = len(signal)
-    length = int(np.clip(count / max(worth(signal), 1.0), 4, max(4, count // FEWEST_BLOCKS)))
+    spectrum = np.fft.rfft(signal)
     beaten = 0
-    for _ in range(EXCHANGES):
-        begin = int(rng.integers(length))
-        blocks = [np.arange(start, min(start + length, count)) for start in range(begin, count, length)]
-        order = np.concatenate([*(blocks[k] for k in rng.permutation(len(blocks))), np.arange(begin)])
-        beaten += max(_between(signal[order], place) for place in places.values()) >= found[name] * total
-    return name, found[name], (beaten + 1) / (EXCHANGES + 1)
+    for _ in range(SURROGATES):
+        turned = spectrum * np.exp(2j * np.pi * rng.random(len(spectrum)))
+        other = np.fft.irfft(turned, len(signal))
+        scale = total / (float(other @ other) + 1e-300)
+        beaten += max(_between(other, place) for place in places.values()) * scale >= found[name] * total
+    return name, found[name], (beaten + 1) / (SURROGATES + 1)
 
 
 def _between(signal: Array, place: Array) -> float:

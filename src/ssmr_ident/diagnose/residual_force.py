@@ -19,7 +19,7 @@ from ssmr_ident.physics.rig import RIG_KEYS
 
 Array = np.ndarray
 
-LOWEST, HIGHEST = 0.3, 6.0
+LOWEST, HIGHEST = 0.5, 6.0
 """Band in which a force is worked out, in units of the oscillator's frequency: below, integrated noise drowns it."""
 
 STANDS_OUT = 3.0

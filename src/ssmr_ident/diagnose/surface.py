@@ -67,7 +67,8 @@ def _surface(
     points = np.concatenate(parts)
     names = [before.trials[index].name for index, _ in pairs]
     name = names[0] if len(names) == 1 else f"{names[0]} and {len(names) - 1} more"
-    return ForceSurface(name, where, *points.T, units)
+    displacement, velocity, first, second = points.T
+    return ForceSurface(name, where, displacement, velocity, first, second, units)
 
 
 def _moving(points: Array, trial: Trial) -> Array:
