@@ -31,6 +31,9 @@ def main() -> None:
     with tempfile.TemporaryDirectory(dir=folder.parent, prefix=".raw-") as temporary:
         fresh = Path(temporary) / folder.name
         make(fresh, arguments.seed)
+        if (folder / "concealed").is_dir():  # sealed once, and not to be had again from a seed
+            shutil.copytree(folder / "concealed", fresh / "concealed")
+            write_checksums(fresh)
         if folder.exists():
             shutil.rmtree(folder)
         fresh.rename(folder)
