@@ -65,6 +65,7 @@ def command(
     from ssmr_ident.cli.inspect_log import summary_of
     from ssmr_ident.cli.inspect_save import save_choices
     from ssmr_ident.cli.inspect_screen import show
+    from ssmr_ident.cli.progress import doing
     from ssmr_ident.core.errors import InputError
     from ssmr_ident.readers import ReadOptions, read
     from ssmr_ident.readers.folder import logs_in
@@ -92,11 +93,11 @@ def command(
     summaries, errors = [], list(unread)
     for file in files:
         try:
-            recordings = read(file, options)
+            with doing(f"reading {file.name}", hidden=quiet or as_json):
+                found = [summary_of(recording, mains) for recording in read(file, options)]
         except InputError as error:
             errors.append(error)
             continue
-        found = [summary_of(recording, mains) for recording in recordings]
         summaries += found
         if not as_json:
             show(found, quiet=quiet)
