@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import jsonschema
 import pytest
+import yaml
+from made_diagnoses import EVERY
 from typer.testing import CliRunner
 
 from ssmr_ident import cli
+from ssmr_ident.diagnose import Diagnosis
 from ssmr_ident.pipeline.demo_table import DemoRow, DemoTable
 from ssmr_ident.pipeline.scoreboard_rows import Row, Scoreboard
 
@@ -101,6 +105,13 @@ def test_demo() -> None:
     check("demo", {"table": table.as_list(), "report": "out/report.html"})
     board = Scoreboard((Row("a", "2.1", "s", "1", "1", True), Row("b", "2.2", "s", "1", "1", None)))
     check("demo", board.as_dict())
+
+
+@pytest.mark.parametrize("make", EVERY, ids=lambda make: make.__name__)
+def test_diagnosis(make: Callable[[], Diagnosis]) -> None:
+    """Every kind of verdict, as it is written to diagnosis.yaml and read back."""
+    check("diagnosis", json.loads(json.dumps(make().as_dict(), allow_nan=False)))
+    check("diagnosis", yaml.safe_load(yaml.safe_dump(make().as_dict())))
 
 
 @pytest.mark.parametrize("name", ["compare", "fit", "diagnosis"])
