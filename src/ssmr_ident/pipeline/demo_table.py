@@ -13,6 +13,7 @@ import numpy as np
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.shown import Shown
 from ssmr_ident.pipeline.fit import SessionFit
+from ssmr_ident.report.numbers import NONE, measured, unit
 
 
 @dataclass(frozen=True)
@@ -36,7 +37,7 @@ class DemoTable(Shown):
     def cells(self) -> tuple[tuple[str, ...], ...]:
         """As text: quantity with unit, thesis, identified, simulated."""
         return tuple(
-            (f"{r.quantity} [{r.unit}]", r.thesis, _with_std(r.identified, r.std), _plain(r.simulated))
+            (f"{r.quantity} [{unit(r.unit) or NONE}]", r.thesis, measured(r.identified, r.std), _plain(r.simulated))
             for r in self.rows
         )
 
@@ -154,7 +155,3 @@ def _mean(values: Sequence[float]) -> tuple[float, float | None]:
 
 def _plain(value: float | None) -> str:
     return "" if value is None else f"{value:.4g}" if abs(value) < 1e4 else f"{value:.0f}"
-
-
-def _with_std(value: float, std: float | None) -> str:
-    return _plain(value) if std is None else f"{_plain(value)} ± {std:.2g}"

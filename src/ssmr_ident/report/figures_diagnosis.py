@@ -165,7 +165,7 @@ def moved_panel(conflicts: Sequence[Conflict], after: Sequence[float | None], na
         axes.plot(values, where, "o", color=style.BLUE, ms=5, label=name)
     if largest > 30:  # small ones would vanish beside it
         axes.set_xscale("symlog", linthresh=3, linscale=1)
-        steps = [step for step in (3, 10, 30, 100, 300, 1000) if step <= 2 * largest]
+        steps = [step for step in (3, 30, 300, 3000) if step <= 2 * largest]
         steps = [*(-s for s in reversed(steps)), 0, *steps]
         axes.set_xticks(steps, [number(s) for s in steps])
         axes.minorticks_off()

@@ -93,7 +93,7 @@ def alike(values: Sequence[float]) -> list[str]:
 def _aligned(values: tuple[float, float], width: float) -> tuple[tuple[str, str], int]:
     """Two values to the same decimal, where ``width`` has two digits."""
     power = _power(max(values, key=abs))
-    scaled = width / 10.0**power
+    scaled = float(f"{width / 10.0**power:.1e}")  # 0.0999… is 0.10
     decimals = max(0, 1 - math.floor(math.log10(scaled))) if scaled > 0 else 2
     first, second = (_minus(f"{value / 10.0**power:.{min(decimals, 8)}f}") for value in values)
     return (first, second), power
