@@ -108,10 +108,10 @@ def _motions(published: Path, decays: SessionFit, simulated: SessionFit) -> list
     for motion in ("roll", "pitch", "yaw"):
         own = [r for r in decays.results.values() if r.get("motion") == motion]
         made = [r for r in simulated.results.values() if r.get("motion") == motion]
-        for key, name, unit in (("omega_n_rad_s", "natural frequency", "rad/s"), ("xi", "damping ratio", "1")):
+        for key, name, si in (("omega_n_rad_s", "natural frequency", "rad/s"), ("xi", "damping ratio", "1")):
             mean, std = _mean([r[key] for r in own])
             again = _mean([r[key] for r in made])[0]
-            rows.append(DemoRow(f"{motion}: {name}", unit, motions[motion][key], mean, std, again))
+            rows.append(DemoRow(f"{motion}: {name}", si, motions[motion][key], mean, std, again))
     return rows
 
 
