@@ -1,7 +1,8 @@
 """Swivel sessions drawn at random, diagnosed, and counted: right, tied, false alarms.
 
     python benchmarks/bench_swivel.py effects 60 --seed 1 -o effects.jsonl
-    python benchmarks/bench_swivel.py null 200 --seed 2 -o null.jsonl
+    python benchmarks/bench_swivel.py null 20 --seed 2 -o null.jsonl
+    python benchmarks/bench_swivel.py repeat 200 --seed 3
     python benchmarks/bench_swivel.py report effects.jsonl null.jsonl
 
 Every session has a robot of its own, drawn about the bundled one; its file knows the robot as well as a lab does. The
@@ -23,7 +24,10 @@ import numpy as np
 
 from ssmr_ident.campaign import Campaign, Measurement, to_quantities
 from ssmr_ident.core.parameter import Estimate, ParameterSet
-from ssmr_ident.diagnose.turning.engine import Outcome, examine
+from ssmr_ident.diagnose.turning.anchor import scale_of
+from ssmr_ident.diagnose.turning.bench import Bench
+from ssmr_ident.diagnose.turning.conditions import conditions_of
+from ssmr_ident.diagnose.turning.engine import LEFT, Outcome, examine, repeated
 from ssmr_ident.diagnose.turning.spectra import look
 from ssmr_ident.diagnose.turning.verdict import decide, findings_of
 from ssmr_ident.diagnose.turning.worth import channel_logs, distance_db
@@ -37,7 +41,7 @@ from ssmr_ident.simulate.simulation import simulate
 
 SECONDS, STEP, SETTLE = 20.0, 1.5e-4, 4.0
 VISIBLE = 2.0  # times the repeatability
-TRIES = 15
+TRIES = 6
 SPEEDS = (18, 24, 30, 36, 42, 48, 54, 60, 72)
 SPREADS = {  # what the truth is off nominal by, and what the file knows it to, relative
     "mass_kg": 0.01, "inertia_kg_m2.xx": 0.08, "inertia_kg_m2.yy": 0.08, "inertia_kg_m2.zz": 0.08,
@@ -206,12 +210,27 @@ def run_many(kind: str, count: int, seed: int, output: Path) -> None:
         if number in done:
             continue
         effect = None if kind == "null" else names[i % len(names)]
-        campaign, truth = session(number, effect, calibrated=(i // len(names) + i) % 2 == 0)
+        campaign, truth = session(number, effect, calibrated=(i + i // len(names)) % 3 != 2)
         begun = time.perf_counter()
         row = truth if campaign is None else row_of(examine(campaign), truth, time.perf_counter() - begun)
         with output.open("a") as file:
             file.write(json.dumps(row) + "\n")
         print(number, effect, row.get("calibrated"), row.get("seconds"), flush=True)
+
+
+def repeats(count: int, seed: int) -> None:
+    """Only the first question, and only of null sessions with calibration: do targets repeat it within chance?"""
+    left = []
+    for i in range(count):
+        campaign, _ = session(1000 * seed + i, None, calibrated=True)
+        conditions, _ = conditions_of(campaign, campaign.parameters)
+        calibration = tuple(c for c in conditions if c.role == "calibration")
+        targets = tuple(c for c in conditions if c.role == "target")
+        found = repeated(Bench(campaign.parameters), calibration, targets, scale_of(calibration), (1, 2))
+        left.append(found.left)
+        if (i + 1) % 20 == 0:
+            above = sum(value > LEFT for value in left)
+            print(f"{i + 1} null sessions: {above} above {LEFT:g}; largest {np.sort(left)[-3:].round(2)}", flush=True)
 
 
 def report(paths: list[Path]) -> None:
@@ -249,12 +268,14 @@ def report(paths: list[Path]) -> None:
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("kind", choices=("effects", "null", "report"))
+    parser.add_argument("kind", choices=("effects", "null", "repeat", "report"))
     parser.add_argument("arguments", nargs="+")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("-o", "--output", type=Path, default=Path("swivel.jsonl"))
     given = parser.parse_args()
     if given.kind == "report":
         report([Path(path) for path in given.arguments])
+    elif given.kind == "repeat":
+        repeats(int(given.arguments[0]), given.seed)
     else:
         run_many(given.kind, int(given.arguments[0]), given.seed, given.output)

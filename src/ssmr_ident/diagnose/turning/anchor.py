@@ -27,7 +27,7 @@ FITTED = (
     "inertia_kg_m2.xx", "inertia_kg_m2.yy", "inertia_kg_m2.zz",
 )  # fmt: skip
 _DIFFERENCE = 0.7  # standard deviations of the prior; spectra of chaotic runs are no smooth functions of less
-_ROUNDS = 3
+_ROUNDS = 4
 
 
 @dataclass(frozen=True)
@@ -268,7 +268,7 @@ def _gauss_newton(free, conditions, priors, z, now, value, advance):
     jacobian = np.column_stack(columns)
     weight = 1.0 / (6.0 * (0.05 + (now.tau_db / 4.343) ** 2))
     change = np.linalg.solve(weight * jacobian.T @ jacobian + np.eye(len(priors)), -weight * jacobian.T @ base - z)
-    for length in (1.0, 0.5, 0.25):
+    for length in (1.0, 0.5, 0.25, 0.1):
         found = value(z + length * change)
         if found is not None and found.log_likelihood > now.log_likelihood:
             return found, z + length * change, True

@@ -6,7 +6,6 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ssmr_ident.compare.turning import FLOOR_LENGTH
 from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.diagnose.diagnosis import MISSING, NOTHING, Conflict, Diagnosis, NamedEffect, Tried, Worth
 from ssmr_ident.diagnose.evidence import Evidence
@@ -24,6 +23,10 @@ from ssmr_ident.diagnose.turning.worth import against_simulation, repeatability_
 from ssmr_ident.physics.effects import CATALOGUE
 
 METRIC = "log_psd_db"
+NEW_UNITS = {"tire.sliding_speed_m_s": "m/s", "floor.height_m": "m"}
+SPREAD_FACTOR, MODEL_SPREAD = 3.0, 0.07
+"""The curvature's standard deviations times this, and this share of a size on top: what errors of simulated sessions
+need, whose baselines are fitted too (docs/theory/swivel.md)."""
 CONFLICT = 3.0  # standard deviations of the prior
 
 
@@ -72,12 +75,10 @@ def parameter_set(outcome: Outcome, anchor: Anchor, best: Explained | None) -> P
     fitted_on = "calibration swivels" if outcome.calibrated else "target swivels"
     for prior, z in zip(anchor.priors, anchor.z, strict=True):
         old = known.get(prior.path)
-        unit = {"tire.sliding_speed_m_s": "m/s", "floor.height_m": "m"}.get(prior.path, old.unit if old else "1")
+        unit = NEW_UNITS.get(prior.path, old.unit if old else "1")
         value = anchor.values[prior.path]
         source = f"fitted to {fitted_on}; std is the prior's"
         changes[prior.path] = Estimate(value, prior.std * value, unit, source, at_bound=abs(z) > CONFLICT)
-    if "floor.length_m" not in known:
-        changes["floor.length_m"] = Estimate(FLOOR_LENGTH, None, "m", "assumed")
     effects: dict[str, Mapping[str, Estimate]] = dict(known.effects)
     if best is not None:
         spreads = _spreads(best)
@@ -93,9 +94,11 @@ def parameter_set(outcome: Outcome, anchor: Anchor, best: Explained | None) -> P
 def _spreads(best: Explained) -> dict[str, float]:
     if best.candidate is None or best.spread is None:
         return {}
+    floor = [MODEL_SPREAD if free.log else 0.0 for free in best.candidate.free]
+    widened = np.hypot(SPREAD_FACTOR * best.spread, floor)
     return {
         free.name: float(spread * (best.values[free.name] if free.log else 1.0))
-        for free, spread in zip(best.candidate.free, best.spread, strict=True)
+        for free, spread in zip(best.candidate.free, widened, strict=True)
     }
 
 

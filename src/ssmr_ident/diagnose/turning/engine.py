@@ -13,13 +13,17 @@ from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.turning.anchor import SEEDS, Anchor, anchored, scale_of
 from ssmr_ident.diagnose.turning.bench import Bench
-from ssmr_ident.diagnose.turning.candidates import candidates, pitches_heard
+from ssmr_ident.diagnose.turning.candidates import Candidate, candidates, pitches_heard
 from ssmr_ident.diagnose.turning.conditions import Condition, conditions_of, held_back
 from ssmr_ident.diagnose.turning.grip import GripProfile, grip_profile
 from ssmr_ident.diagnose.turning.likelihood import Score
 from ssmr_ident.diagnose.turning.search import Explained, explained, freed, polished, refined, screened
 
-REFINED, FREED = 5, 3  # explanations that are refined, and that get the baseline set free beside them
+REFINED, FREED, FREED_STRAIGHT = (
+    5,
+    3,
+    6,
+)  # explanations that are refined, and that get the baseline set free beside them
 FINAL_SEEDS = (1, 2, 3, 4)
 LEFT = 6.0
 """What the model's own error may add to the baseline's log likelihood where nothing is missing (docs/theory)."""
@@ -27,7 +31,9 @@ FAR = 40.0
 """Of evidence: setting the baseline free has gained 27 at most, so what lies further behind cannot come first."""
 REFINE_FAR = 100.0
 """The same for refining a candidate's own parameters from the start of its search."""
-MANY = 5  # conditions from which on one run each has to do while searching
+DISTORTED_DB = 2.0
+"""Own error of a baseline fitted on the targets from which on it may have been bent by what is missing."""
+MANY = 3  # target conditions from which on one run each has to do while searching
 Progress = Callable[[str, int, int], None]
 
 
@@ -103,12 +109,13 @@ def examine(
         )
     bench = Bench(known)
     fitted_on = calibration or targets
-    seeds = tuple(1000 * seed + s for s in (SEEDS if len(targets) + len(calibration) < MANY else SEEDS[:1]))
+    seeds = tuple(1000 * seed + s for s in (SEEDS if len(targets) < MANY else SEEDS[:1]))
 
     count = _Counter(show, "baseline", 10)
     scale = scale_of(fitted_on)
-    quiet = bool(calibration) and _quiet(bench, calibration, targets, scale, seeds)
-    rounds = 1 if quiet else 3
+    again = repeated(bench, calibration, targets, scale, seeds) if calibration else None
+    quiet = again is not None and again.left <= LEFT
+    rounds = 2 if quiet else 4
     anchor = anchored(bench, fitted_on, bool(calibration), scale, count.advance, rounds, seeds)
     count.finish()
     seconds["baseline"] = time.perf_counter() - clock
@@ -116,55 +123,87 @@ def examine(
     assert baseline is not None
 
     every = candidates(_pitches(anchor, targets), _ceilings(targets), anchor.values.get("floor.height_m", 3e-5))
-    count = _Counter(show, "explanations tried", 2 * len(every))
-    starts = [pair for pair in (screened(anchor, c, targets, count.advance) for c in every) if pair]
-    tried = [pair[0] for pair in starts]
-    other = {pair[0].id: pair[-1] for pair in starts}
+    tried, starts = _tried(anchor, every, targets, baseline, quiet, show)
+    if not calibration and baseline.target.tau_db > DISTORTED_DB:
+        # fitted on the targets, the baseline may have bent itself round what is missing: once more from the file
+        straight = replace(anchor, z=np.zeros(len(anchor.priors)))
+        more, others = _tried(straight, every, targets, baseline, quiet, show, refine=False)
+        best_there = more[:FREED_STRAIGHT]
+        tried, starts = [*tried[:FREED], *best_there, *tried[FREED:]], {**others, **starts}
+        followed = tried[: FREED + len(best_there)]
+    else:
+        followed = tried[:FREED]
+    seconds["explanations"] = time.perf_counter() - clock - seconds["baseline"]
+
+    rounds = 2 if calibration else 3
+    level = baseline.evidence if quiet else max(baseline.evidence, max(one.evidence for one in tried)) - FAR
+    worth_it = [one for one in followed if one.evidence > level or one.anchor is not anchor]
+    count = _Counter(show, "baseline set free beside them", len(worth_it) * rounds + 2 * (rounds + 1))
+    best = [freed(one, targets, rounds * (1 + (one.anchor is not anchor)), count.advance) for one in worth_it]
+    best.sort(key=lambda one: one.evidence, reverse=True)
+    if best and best[0].evidence > baseline.evidence:
+        best[0] = polished(best[0], starts[best[0].id], targets, rounds + 1, count.advance)
+    if not calibration:  # the explanations had their baseline fitted further on the targets; so must it be
+        baseline = freed(baseline, targets, 3 * rounds, lambda: None)
+    finals = [_final(one, targets, seed) for one in [baseline, *_one_each(best)]]
     count.finish()
-    tried.sort(key=lambda one: one.evidence, reverse=True)
-    behind = 0.0 if quiet else REFINE_FAR
-    promising = [one for one in tried[:REFINED] if one.evidence > max(baseline.evidence, tried[0].evidence) - behind]
+    count = _Counter(show, "grip", 1)
+    grip = grip_profile(anchor, fitted_on)
+    count.finish()
+    rest = [one for one in _one_each(tried) if one.id not in {other.id for other in finals}]
+    ranked = sorted(finals[1:], key=lambda one: one.evidence, reverse=True)
+    seconds["baseline beside explanations"] = time.perf_counter() - clock - sum(seconds.values())
+    return Outcome(
+        bench, calibration, targets, heldout, anchor, finals[0], tuple(ranked), tuple(rest), grip,
+        (*kept_notes, *notes), seconds,
+    )  # fmt: skip
+
+
+def _tried(
+    anchor: Anchor,
+    every: tuple[Candidate, ...],
+    targets: tuple[Condition, ...],
+    baseline: Explained,
+    quiet: bool,
+    show: Progress,
+    refine: bool = True,
+) -> tuple[list[Explained], dict[str, Explained]]:
+    """All candidates with this baseline, best first and the promising ones refined; and a second start of each."""
+    count = _Counter(show, "explanations tried", 2 * len(every))
+    pairs = [pair for pair in (screened(anchor, c, targets, count.advance) for c in every) if pair]
+    count.finish()
+    tried = sorted((pair[0] for pair in pairs), key=lambda one: one.evidence, reverse=True)
+    if not refine:
+        return tried, {pair[0].id: pair[-1] for pair in pairs}
+    level = baseline.evidence if quiet else tried[0].evidence - REFINE_FAR
+    promising = [one for one in tried[:REFINED] if one.evidence > level]
     count = _Counter(show, "best explanations refined", len(promising) + 1)
     for i, one in enumerate(promising):
         tried[i] = refined(one, targets, lambda: None)
         count.advance()
     count.finish()
     tried.sort(key=lambda one: one.evidence, reverse=True)
-    seconds["explanations"] = time.perf_counter() - clock - seconds["baseline"]
-
-    behind = 0.0 if quiet else FAR
-    worth_it = [one for one in tried[:FREED] if one.evidence > max(baseline.evidence, tried[0].evidence) - behind]
-    rounds = 2 if len(seeds) > 1 else 1
-    worth_it.sort(key=lambda one: one.evidence, reverse=True)
-    count = _Counter(show, "baseline set free beside them", len(worth_it) * rounds + 2 * (rounds + 1))
-    best = [freed(one, targets, rounds, count.advance) for one in worth_it]
-    best.sort(key=lambda one: one.evidence, reverse=True)
-    if best and best[0].evidence > baseline.evidence:
-        best[0] = polished(best[0], other[best[0].id], targets, rounds + 1, count.advance)
-    if not calibration:  # the explanations had their baseline fitted further on the targets; so must it be
-        baseline = freed(baseline, targets, 2 * rounds + 1, lambda: None)
-    finals = [_final(one, targets, seed) for one in [baseline, *best]]
-    count.finish()
-    count = _Counter(show, "grip", 1)
-    grip = grip_profile(anchor, fitted_on)
-    count.finish()
-    ranked = sorted(finals[1:], key=lambda one: one.evidence, reverse=True)
-    seconds["baseline beside explanations"] = time.perf_counter() - clock - sum(seconds.values())
-    return Outcome(
-        bench, calibration, targets, heldout, anchor, finals[0], tuple(ranked), tuple(tried[len(worth_it) :]), grip,
-        (*kept_notes, *notes), seconds,
-    )  # fmt: skip
+    return tried, {pair[0].id: pair[-1] for pair in pairs}
 
 
-def _quiet(
+def _one_each(explanations: list[Explained]) -> list[Explained]:
+    """The best of each id, in order."""
+    best: dict[str, Explained] = {}
+    for one in explanations:
+        if one.id not in best or one.evidence > best[one.id].evidence:
+            best[one.id] = one
+    return sorted(best.values(), key=lambda one: one.evidence, reverse=True)
+
+
+def repeated(
     bench: Bench, calibration: tuple[Condition, ...], targets: tuple[Condition, ...], scale: np.ndarray, seeds: tuple
-) -> bool:
-    """Whether targets and calibration of the same speeds differ by chance only, whatever the baseline."""
+) -> Score | None:
+    """Targets against calibration of the same speeds, whatever the baseline; None where speeds differ."""
     plain = Anchor(bench, scale, (), np.zeros(0), calibration, Score(0.0, 0.0, 0.0), seeds)
     if not all(plain.at_calibrated_speed(c) for c in targets):
-        return False
+        return None
     found = plain.score(targets, {})
-    return found is not None and found[0].left <= LEFT
+    return None if found is None else found[0]
 
 
 def _final(one: Explained, targets: tuple[Condition, ...], seed: int) -> Explained:

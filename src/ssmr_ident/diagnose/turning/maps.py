@@ -13,12 +13,16 @@ from ssmr_ident.diagnose.turning.likelihood import NEPER_DB
 from ssmr_ident.diagnose.turning.worth import channel_logs
 from ssmr_ident.physics.slots import Effects
 
+NARROW = 0.2  # of the logarithm of speed, over which a course can be told
+UNSTEADY = 0.12  # of the logarithm of frequency about a power of speed: more is no one line
+
 
 def speed_maps(
     outcome: Outcome, before: Mapping[str, float], after: Mapping[str, float], effects: Effects
 ) -> tuple[SpeedMap, ...]:
     """One map per channel over the speeds of all target and heldout conditions."""
-    conditions = sorted((*outcome.targets, *outcome.heldout), key=lambda c: abs(c.turning))
+    kinds = {c.kind: c for c in (*outcome.heldout, *outcome.targets)}  # a target before the end kept back of it
+    conditions = sorted(kinds.values(), key=lambda c: abs(c.turning))
     names = conditions[0].names
     conditions = [
         c for c in conditions if c.names == names and len(c.mean.frequency) == len(conditions[0].mean.frequency)
@@ -70,9 +74,11 @@ def follows(speed: np.ndarray, line: np.ndarray) -> str:
     >>> follows(np.array([0.4, 0.6, 0.8]), np.array([5.0, 7.5, 10.0]))
     'in proportion to speed (exponent 1.00): the floor or the wheels'
     """
-    if len(speed) < 2 or np.ptp(speed) == 0.0:
-        return "at one speed only, so nothing says whose it is"
-    exponent = float(np.polyfit(np.log(speed), np.log(line), 1)[0])
+    if np.ptp(np.log(speed)) < NARROW:
+        return "at too much the same speed to say whose it is"
+    exponent, level = np.polyfit(np.log(speed), np.log(line), 1)
+    if np.std(np.log(line) - exponent * np.log(speed) - level) > UNSTEADY:
+        return "with no steady course over speed"
     if abs(exponent) < 0.25:
         return f"fixed (exponent {exponent:.2f}): the structure, or the stick-slip of the tires"
     if 0.75 < exponent < 1.25:

@@ -10,6 +10,7 @@ import numpy as np
 from ssmr_ident.diagnose.diagnosis import MISSING, NOTHING, UNDETERMINED
 from ssmr_ident.diagnose.turning.candidates import UNLISTED
 from ssmr_ident.diagnose.turning.engine import LEFT, Outcome
+from ssmr_ident.diagnose.turning.grip import FOREIGN_DB
 
 GAIN = (6.0, 12.0)
 """Evidence over the baseline that an explanation needs, with and without calibration recordings."""
@@ -18,8 +19,6 @@ TIE = 6.0
 MOST = 3  # that are named together
 SHARE = 1.0 / 3.0
 """Of the misfit beyond chance that an explanation has to take away."""
-FOREIGN_DB = 3.5
-"""Own error of a baseline fitted on the targets from which on it is no model of this robot."""
 TEMPER = 0.5
 """Of the evidence when it is turned into confidence: errors of the model go with each other from bin to bin."""
 
