@@ -71,7 +71,7 @@ def _proved(
 
     with stages(hidden=hidden) as step:
         proof = prove(cases, seed, output, jobs, progress=step, announce=announce)
-        scores = against(proof.rows, output / "sessions", step) if peers else ()
+        scores = against(proof.rows, output / "sessions", jobs, step) if peers else ()
         step("page", 0, 1)
         page = write_proof_page(proof, call, (peer_section(scores),) if peers else ())
         step("page", 1, 1)

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import as_completed
 from dataclasses import dataclass
 from pathlib import Path
 
 from ssmr_ident.campaign import load
 from ssmr_ident.proof.answer import Answer, Claim
 from ssmr_ident.proof.peers import PEERS, PeerAnswer
+from ssmr_ident.proof.run import processes
 from ssmr_ident.proof.score import CLEAN, FAILED, FALSE_ALARM, MEANING, NAMED, marked
 from ssmr_ident.proof.summary import Share
 from ssmr_ident.proof.table import Row
@@ -43,20 +45,27 @@ class PeerScore:
 
 
 def against(
-    rows: Sequence[Row], sessions: Path, report: Callable[[str, int, int], None] | None = None
+    rows: Sequence[Row], sessions: Path, jobs: int = 1, report: Callable[[str, int, int], None] | None = None
 ) -> tuple[PeerScore, ...]:
     """Run every peer on the rigs, which is what they know, and mark them as the diagnosis is marked."""
     rigs = [row for row in rows if row.truth["family"] == "rig"]
     found: dict[str, list[tuple[Row, str, float]]] = {name: [] for name in PEERS}
-    for done, row in enumerate(rigs, start=1):
-        campaign = load(sessions / row.case)
-        for name, peer in PEERS.items():
-            answer = peer(campaign)
+    with processes(jobs) as submit:
+        waiting = [submit(asked, sessions / row.case) for row in rigs]
+        for done, _ in enumerate(as_completed(waiting), start=1):
+            if report:
+                report("other programs", done, len(rigs))
+    for row, future in zip(rigs, waiting, strict=True):
+        for name, answer in future.result().items():
             found[name].append((row, marked(row.truth, as_answer(answer)).outcome, answer.seconds))
-        if report:
-            report("other programs", done, len(rigs))
     own = PeerScore("ident diagnose", *_scored([(row, row.mark.outcome, row.seconds) for row in rigs]))
     return (own, *(PeerScore(name, *_scored(marks)) for name, marks in found.items()))
+
+
+def asked(session: Path) -> dict[str, PeerAnswer]:
+    """What every peer says of a session."""
+    campaign = load(session)
+    return {name: peer(campaign) for name, peer in PEERS.items()}
 
 
 def as_answer(peer: PeerAnswer) -> Answer:

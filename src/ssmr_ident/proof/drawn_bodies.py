@@ -53,7 +53,7 @@ def off_centre(random: np.random.Generator, strength: float) -> Hidden:
 
 def lifted(random: np.random.Generator, strength: float) -> Hidden:
     """Pushed so hard that wheels leave the floor; every plant's wheels can, the others are not pushed so hard."""
-    loud = graded(strength, 1.9, 3.0)
+    loud = graded(strength, 2.4, 3.4)
     how = "the robot is let go from so far that wheels leave the floor, lose their grip and land"
     return Hidden("wheel_lift", "unilateral contact", {}, how, Change(loud=loud), strength)
 

@@ -30,8 +30,8 @@ def rig_reach_damper(random: np.random.Generator, strength: float) -> Hidden:
 
 
 def tire_reach_damper(random: np.random.Generator, strength: float) -> Hidden:
-    """In tires that move half a millimetre."""
-    return reach_damper(random, strength, 5e-4)
+    """In tires that move a millimetre and more along x."""
+    return reach_damper(random, strength, 1.5e-3)
 
 
 def root_damper(random: np.random.Generator, strength: float) -> Hidden:

@@ -83,7 +83,7 @@ def decays(case: Case, drawn: Drawn, random: np.random.Generator, programme: Pro
     if case.trap == "noise":
         white *= 6.0
     if case.trap == "hum":
-        hum = float(random.uniform(0.6, 1.8))
+        hum = float(random.uniform(0.5, 1.3))
     chain = Chain(white, hum, plant.robot.accelerometer.bandwidth_hz, drawn.robot.accelerometer.range_m_s2)
     logs = []
     for heldout, motions in ((False, programme.targets), (True, programme.heldout)):

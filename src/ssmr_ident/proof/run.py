@@ -121,7 +121,7 @@ def open_case(envelope: Envelope, seal: str, run: BlindRun, folder: Path, answer
 def _sealed(
     cases: int, seed: int, sessions: Path, jobs: int, extent: Extent | None, report: Progress
 ) -> list[Envelope]:
-    with _processes(jobs) as submit:
+    with processes(jobs) as submit:
         waiting = [submit(seal_case, seed, number, sessions, extent) for number in range(1, cases + 1)]
         for done, _ in enumerate(as_completed(waiting), start=1):
             report(STAGES[0], done, cases)
@@ -145,7 +145,7 @@ def _opened(
     envelopes: Sequence[Envelope], runs: Sequence[BlindRun], out: Path, jobs: int, report: Progress
 ) -> list[Row]:
     seals = read_seals(out / "seals.csv")  # as they lie on disk, not as this process remembers them
-    with _processes(jobs) as submit:
+    with processes(jobs) as submit:
         waiting = [
             submit(open_case, envelope, seals.get(case, ""), run, out / "opened" / case, out / "answers" / case)
             for envelope, run in zip(envelopes, runs, strict=True)
@@ -157,7 +157,7 @@ def _opened(
 
 
 @contextmanager
-def _processes(jobs: int) -> Iterator[Callable[..., Future]]:
+def processes(jobs: int) -> Iterator[Callable[..., Future]]:
     """A pool's submit; one job needs no process of its own."""
     if jobs > 1:
         with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 import json
 import tempfile
 import zlib
@@ -62,7 +61,7 @@ def keep(envelope: Envelope, folder: Path) -> None:
         "truth": _text(envelope.truth),
         "heldout": {name: _text(data) for name, data in envelope.heldout.items()},
     }
-    write_bytes(folder / TRUTH, zlib.compress(json.dumps(content, sort_keys=True).encode(), 9))
+    write_bytes(folder / TRUTH, zlib.compress(json.dumps(content, sort_keys=True, ensure_ascii=False).encode(), 9))
     write_text(folder / SEAL, f"{envelope.digest}\n")
 
 
@@ -130,8 +129,8 @@ def _same_session(folder: Path, diagnosis: Path) -> None:
 
 
 def _text(data: bytes) -> str:
-    return base64.b85encode(data).decode()
+    return data.decode("latin-1")  # every byte is a letter there, and the words of a log stay short when packed
 
 
 def _bytes(text: str) -> bytes:
-    return base64.b85decode(text)
+    return text.encode("latin-1")
