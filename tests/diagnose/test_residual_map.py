@@ -15,8 +15,8 @@ def test_noise_exceeds_the_threshold_once_in_a_hundred_maps(count: int) -> None:
     everything = np.ones(count, dtype=bool)
     maps = [cells(rng.standard_normal(count), everything) for _ in range(1500)]
     exceeded = sum(np.nanmax(found.power) > found.threshold for found in maps)
-    # 15 are expected; outside 5 … 28 once in 300
-    assert 5 <= exceeded <= 28
+    # 15 at most are expected, and not far fewer: outside once in 500
+    assert 3 <= exceeded <= 27
     everywhere = np.mean([found.power[2:-2] for found in maps])
     assert everywhere == pytest.approx(1.0, abs=0.02)
 

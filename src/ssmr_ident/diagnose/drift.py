@@ -8,20 +8,20 @@ spring stiffens as A², play softens as 1/A. Source: Feldman, Hilbert Transform 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from ssmr_ident.diagnose.evidence import Drift
 from ssmr_ident.diagnose.parts import Part, windows
 from ssmr_ident.diagnose.reading import reading
+from ssmr_ident.diagnose.trend import bins, chance, scatter
 from ssmr_ident.identify.joint import JointFit
 from ssmr_ident.identify.objective import Unknown
 
 Array = np.ndarray
 
 KINDS, PER_KIND = ("stiffness", "damping", "mu_kinetic"), 2
-BINS, PER_BIN = 8, 3
-PERMUTATIONS = 399
 FEWEST = 6
 """Windows below which an axis is not looked at."""
 
@@ -33,6 +33,12 @@ SUSPECT = 0.05
 
 FARTHEST = 1.6
 """Natural logarithm by which a straight line is believed: a factor of five."""
+
+STATE = ("amplitude", "speed", "side", "direction")
+"""Axes whose scale is that of one motion."""
+
+SECOND = ("side", "direction", "time")
+"""Axes that are looked at for parameters that drift along no other."""
 
 UNITS = {"amplitude": "m", "speed": "m/s", "time": "s", "travel": "m", "load": "N", "pulling speed": "m/s"}
 
@@ -59,18 +65,17 @@ def drifts(fit: JointFit, most: int = 4, seed: int = 0) -> tuple[Drift, ...]:
     found: list[Drift] = []
     for axis in _axes(parts):
         chosen = [part for part in parts if axis in part.along]
-        position = np.array([part.along[axis] for part in chosen])
         unit = UNITS[axis].replace("m", "rad") if rotary and axis in ("amplitude", "speed") else UNITS[axis]
-        found += _along(axis, unit, position, chosen, unknowns, points, rng)
+        found += _along(axis, unit, chosen, unknowns, points, rng)
     halves = [] if any(trial.channels == ("force",) for trial in fit.trials) else windows(fit, columns, halved=True)
     for axis in ("side", "direction"):
         chosen = [part for part in halves if axis in part.along]
         if len(chosen) >= FEWEST:
-            position = np.array([part.along[axis] for part in chosen])
-            found += _along(axis, "1", position, chosen, unknowns, points, rng)
-    # the first swing is the largest and lies on the side of the release: what drifts with size differs by side too
-    sized = {drift.parameter for drift in found if drift.along not in ("side", "direction") and drift.p_value < SUSPECT}
-    found = [drift for drift in found if drift.along not in ("side", "direction") or drift.parameter not in sized]
+            found += _along(axis, "1", chosen, unknowns, points, rng)
+    found = [replace(drift, reading=reading(drift, len(found))) for drift in found]
+    # the first swing is the largest, early, and on the side of the release: what drifts with size differs there too
+    sized = {drift.parameter for drift in found if drift.along not in SECOND and drift.p_value < SUSPECT}
+    found = [drift for drift in found if drift.along not in SECOND or drift.parameter not in sized]
     order = sorted(found, key=lambda drift: (drift.p_value, -_spread(drift)))
     return tuple(order[:most])
 
@@ -103,71 +108,46 @@ def _axes(parts: Sequence[Part]) -> list[str]:
 
 
 def _along(
-    axis: str, unit: str, position: Array, parts: Sequence[Part], unknowns: Sequence[Unknown], points: Array,
+    axis: str, unit: str, parts: Sequence[Part], unknowns: Sequence[Unknown], points: Array,
     rng: np.random.Generator,
 ) -> list[Drift]:  # fmt: skip
-    shapes = _shapes(axis, position)
-    place = _place(position)
-    count = int(place.max()) + 1
-    if count < 2:
-        return []
-    centres = np.array([position[place == k].mean() for k in range(count)])
     drifts = []
     for k, unknown in enumerate(unknowns):
-        moves, stds = (np.array([getattr(part, name)[k] for part in parts]) for name in ("move", "std"))
-        weight = 1.0 / (stds**2 + _scatter(moves, stds))
-        p = _chance(shapes, moves, weight, rng)
-        reach = FARTHEST / unknown.spread if unknown.logarithmic else np.inf
-        means = [np.average(moves[place == b], weights=weight[place == b]) for b in range(count)]
-        ahead = points[k] + np.clip(means, -reach, reach)
-        whole = unknown.value(float(points[k]))
-        value = np.array([unknown.value(float(at)) for at in ahead]) / whole
-        errors = [float(np.sum(weight[place == b])) ** -0.5 for b in range(count)]
-        std = np.abs([unknown.std(float(at), e) / whole for at, e in zip(ahead, errors, strict=True)])
-        law = reading(unknown.name, axis, centres, value, std, p)
-        drifts.append(Drift(unknown.name, axis, unit, centres, value, std, p, law))
+        chosen = _telling_motion(parts, k) if axis in STATE else list(parts)
+        if len(chosen) >= FEWEST:
+            found = _one(axis, unit, chosen, k, unknown, float(points[k]), rng)
+            drifts += [found] if found else []
     return drifts
 
 
-def _shapes(axis: str, position: Array) -> Array:
-    """What a drift may look like along an axis, beside a constant: straight, and 1/A."""
-    columns = [np.ones(len(position)), position / np.max(np.abs(position))]
-    if axis in ("amplitude", "speed", "load", "pulling speed") and len(np.unique(position)) > 2:
-        columns.append(np.min(position) / position)
-    return np.column_stack(columns)
+def _telling_motion(parts: Sequence[Part], k: int) -> list[Part]:
+    """Parts of the motion that says most of a parameter."""
+    told: dict[tuple[object, ...], float] = {}
+    for part in parts:
+        told[part.motion] = told.get(part.motion, 0.0) + float(part.std[k]) ** -2.0
+    return [part for part in parts if part.motion == max(told, key=lambda motion: told[motion])]
 
 
-def _place(position: Array) -> Array:
-    """Bin of every part: its own level where there are few, else bins of equal number."""
-    levels = np.unique(position)
-    if len(levels) <= BINS // 2:
-        return np.searchsorted(levels, position)
-    bins = min(BINS, max(2, len(position) // PER_BIN))
-    return np.argsort(np.argsort(position, kind="stable"), kind="stable") * bins // len(position)
-
-
-def _scatter(moves: Array, stds: Array) -> float:
-    """Variance between parts beyond their own (DerSimonian and Laird 1986): a straight line's error, mostly."""
-    weight = stds**-2.0
-    mean = np.average(moves, weights=weight)
-    excess = float(weight @ (moves - mean) ** 2) - (len(moves) - 1)
-    return max(excess, 0.0) / float(weight.sum() - (weight @ weight) / weight.sum())
-
-
-def _chance(shapes: Array, moves: Array, weight: Array, rng: np.random.Generator) -> float:
-    """p-value of a drift by exchanging the parts' places."""
-    root = np.sqrt(weight)
-    level = root / np.linalg.norm(root)
-    signal = root * moves
-    signal = signal - level * (level @ signal)
-
-    def explained(order: Array) -> float:
-        basis = np.linalg.qr(root[:, None] * shapes[order])[0]
-        return float(np.sum((basis.T @ signal) ** 2))
-
-    found = explained(np.arange(len(moves)))
-    beaten = sum(explained(rng.permutation(len(moves))) >= found for _ in range(PERMUTATIONS))
-    return (beaten + 1) / (PERMUTATIONS + 1)
+def _one(
+    axis: str, unit: str, parts: Sequence[Part], k: int, unknown: Unknown, point: float, rng: np.random.Generator
+) -> Drift | None:
+    position = np.array([part.along[axis] for part in parts])
+    place = bins(position)
+    count = int(place.max()) + 1
+    if count < 2:
+        return None
+    moves, stds = (np.array([getattr(part, name)[k] for part in parts]) for name in ("move", "std"))
+    weight = 1.0 / (stds**2 + scatter(moves, stds))
+    p = chance(position, moves, weight, rng)
+    reach = FARTHEST / unknown.spread if unknown.logarithmic else np.inf
+    means = [np.average(moves[place == b], weights=weight[place == b]) for b in range(count)]
+    errors = [float(np.sum(weight[place == b])) ** -0.5 for b in range(count)]
+    ahead = point + np.clip(means, -reach, reach)
+    whole = unknown.value(point)
+    value = np.array([unknown.value(float(at)) for at in ahead]) / whole
+    std = np.abs([unknown.std(float(at), e) / whole for at, e in zip(ahead, errors, strict=True)])
+    centres = np.array([position[place == b].mean() for b in range(count)])
+    return Drift(unknown.name, axis, unit, centres, value, std, p)
 
 
 def _spread(drift: Drift) -> float:

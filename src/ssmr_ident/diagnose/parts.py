@@ -47,11 +47,14 @@ class Part:
         Where the part lies: amplitude, speed, time, travel, load; or the side of a sign.
     move, std : (p,) float
         Of the parameters' scaled coordinates.
+    motion : tuple
+        Parts of one motion share it: their amplitudes can be held against each other.
     """
 
     along: dict[str, float]
     move: Array
     std: Array
+    motion: tuple[object, ...] = ()
 
 
 def windows(fit: JointFit, columns: Sequence[int], halved: bool = False) -> list[Part]:
@@ -71,6 +74,7 @@ def windows(fit: JointFit, columns: Sequence[int], halved: bool = False) -> list
         count = len(trial.times) - trial.lost
         since = trial.times[trial.lost :] - trial.times[0]
         state, period = _state(fit, index)
+        motion = _motion(fit, index, period)
         pieces = min(MOST, int(since[-1] / period), count // FEWEST)
         if pieces < 2:
             continue
@@ -85,13 +89,13 @@ def windows(fit: JointFit, columns: Sequence[int], halved: bool = False) -> list
                 along["load"] = float(np.mean(np.abs(trial.target[trial.lost :][rows, 0])))
                 along["pulling speed"] = travel / float(since[-1])
             if not halved:
-                found.append(_part(fit, index, inside, columns, along))
+                found.append(_part(fit, index, inside, columns, along, motion))
                 continue
             for axis, name in (("amplitude", "side"), ("speed", "direction")):
                 for sign in (-1.0, 1.0):
                     half = inside & (sign * state[axis] > 0.0)
                     if np.count_nonzero(half) >= FEWEST // 2:
-                        found.append(_part(fit, index, half, columns, {**along, name: sign}))
+                        found.append(_part(fit, index, half, columns, {**along, name: sign}, motion))
     largest = max((part.along.get("amplitude", 0.0) for part in found), default=0.0)
     return [part for part in found if part.along.get("amplitude", np.inf) >= MOVING * largest]
 
@@ -108,7 +112,22 @@ def _state(fit: JointFit, index: int) -> tuple[dict[str, Array], float]:
     return state, (LONG if len(trial.nuisances) > FEW else 1.0) / motion.frequency
 
 
-def _part(fit: JointFit, index: int, inside: Array, columns: Sequence[int], along: dict[str, float]) -> Part:
+def _motion(fit: JointFit, index: int, period: float) -> tuple[object, ...]:
+    """A robot's motions differ by channel and frequency (to a third of an octave); a rig has one."""
+    trial = fit.trials[index]
+    if len(trial.nuisances) <= FEW:
+        return (trial.experiment,)
+    return (trial.experiment, trial.channels[main_channel(trial)], round(3.0 * float(np.log2(period))))
+
+
+def _part(
+    fit: JointFit,
+    index: int,
+    inside: Array,
+    columns: Sequence[int],
+    along: dict[str, float],
+    motion: tuple[object, ...],
+) -> Part:
     trial, slopes = fit.trials[index], fit.slopes[index]
     kept = np.concatenate([inside & counting(fit, index, c) for c in range(len(trial.channels))])
     a, b, r = slopes.shared[kept][:, columns], slopes.own[kept], fit.residuals[index][kept]
@@ -119,4 +138,4 @@ def _part(fit: JointFit, index: int, inside: Array, columns: Sequence[int], alon
     right = a.T @ r - cross.T @ solved[:, -1]
     information[np.diag_indices_from(information)] += TINY  # what a part says nothing of stays open
     covariance = np.linalg.inv(information)
-    return Part(along, covariance @ right, np.sqrt(np.diag(covariance)))
+    return Part(along, covariance @ right, np.sqrt(np.diag(covariance)), motion)

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from ssmr_ident.diagnose.evidence import Drift
+
 Array = np.ndarray
 
-CLEAR = 0.005
-"""p-value below which a drift is read: some eight pairs of parameter and axis are looked at."""
+CLEAR = 0.05
+"""p-value, over all drifts that were looked at, below which one is read (Bonferroni)."""
 
 LAWS = {
     ("damping", "amplitude", "1/A", 1): "damping grows as 1/amplitude: dry friction",
@@ -30,18 +32,18 @@ LAWS = {
 SHAPES = {"1/A": lambda a: 1.0 / a, "A": lambda a: a, "A^2": lambda a: a**2}
 
 
-def reading(parameter: str, along: str, position: Array, value: Array, std: Array, p_value: float) -> str:
+def reading(drift: Drift, looks: int) -> str:
     """The law that a drift follows best; empty where it is not clear.
 
     Parameters
     ----------
-    parameter, along : str
-    position, value, std : (n,) float
-        Relative values, as in ``evidence.Drift``.
-    p_value : float
+    drift : Drift
+    looks : int
+        Number of drifts that were looked at.
     """
-    if p_value >= CLEAR:
+    if drift.p_value * looks >= CLEAR:
         return ""
+    parameter, along, value = drift.parameter, drift.along, drift.value
     kind = next((kind for kind in ("stiffness", "damping") if kind in parameter), "mu")
     if along in ("side", "direction"):
         share = 200.0 * abs(value[1] - value[0]) / (value[1] + value[0])
@@ -52,7 +54,7 @@ def reading(parameter: str, along: str, position: Array, value: Array, std: Arra
     shapes = sorted({shape for k, axis, shape, _ in LAWS if (k, axis) == (kind, along)})
     if not shapes:
         return f"{kind} changes with the {along}"
-    fits = {shape: _slope(SHAPES[shape](position), value, std) for shape in shapes}
+    fits = {shape: _slope(SHAPES[shape](drift.position), value, drift.std) for shape in shapes}
     shape = min(fits, key=lambda name: fits[name][1])
     sign = 1 if fits[shape][0] > 0 else -1
     return LAWS.get((kind, along, shape, sign), f"{kind} {'grows' if sign > 0 else 'falls'} with the {along}")

@@ -1,8 +1,8 @@
 """Power of what is left over, over time and frequency, against what white noise gives.
 
 Each cell is the mean of two sine-taper periodograms, under noise a chi-square with four degrees of freedom (two in
-the lowest row and the highest, where sine and cosine are one). Cells overlap, so how many count as independent is
-taken from maps of white noise; the threshold then follows from the chi-square's tail.
+the lowest row and the highest, where sine and cosine are one). The threshold follows from its tail and the number of
+cells (Bonferroni); that cells overlap makes it a little strict: at such heights, noise in neighbours is hardly shared.
 Source: Riedel and Sidorenko, IEEE Trans. Signal Process. 43 (1995) 188 (sine tapers).
 """
 
@@ -27,10 +27,6 @@ ONCE_IN = 100
 FEWEST_VALID = 0.3
 """Share of a window that must count for it to be drawn."""
 
-COLUMNS, MAPS, SEED = 48, 300, 2024
-"""Size, number and seed of the maps of white noise from which the independent cells are counted (to 6 %, which moves
-the threshold by 0.02 dB)."""
-
 
 @dataclass(frozen=True, eq=False)
 class Cells:
@@ -45,7 +41,7 @@ class Cells:
     power : (k, m) float
         Mean 1 under noise, in the equivalent of the rows with four degrees of freedom; nan where too little counts.
     threshold : float
-        Exceeded by noise once in 100 maps.
+        Exceeded by noise once in 100 maps at most.
     """
 
     starts: Array
@@ -130,8 +126,8 @@ def cells(white: Array, counts: Array) -> Cells:
     valid = counts[windows] @ np.mean(tapers**2, axis=0)
     with np.errstate(divide="ignore", invalid="ignore"):
         power = np.mean(np.abs(spectra) ** 2, axis=1).T / np.where(valid >= FEWEST_VALID, valid, np.nan)
-    freedom, independent = _null(length)
-    tail = 1.0 / (ONCE_IN * max(independent * len(starts), 1.0))
+    freedom = _freedom(length)
+    tail = 1.0 / (ONCE_IN * power.size)
     limits = chi2.isf(tail, freedom) / freedom
     usual = float(chi2.isf(tail, 2 * TAPERS) / (2 * TAPERS))
     # rows with less freedom are lowered, so that one threshold holds for all
@@ -150,23 +146,15 @@ def _tapers(length: int) -> Array:
 
 
 @lru_cache(maxsize=32)
-def _null(length: int) -> tuple[Array, float]:
-    """Degrees of freedom per row, and independent cells per window."""
+def _freedom(length: int) -> Array:
+    """Degrees of freedom per row of a map of white noise (Satterthwaite's, of a quadratic form of normal numbers)."""
     waves = np.exp(-2j * np.pi * np.outer(np.arange(length // 2 + 1), np.arange(length)) / length)
     freedom = np.empty(len(waves))
     for row, wave in enumerate(waves):
         parts = np.concatenate([_tapers(length) * wave.real, _tapers(length) * wave.imag])
-        gram = parts @ parts.T  # a quadratic form of normal numbers; Satterthwaite's degrees of freedom
+        gram = parts @ parts.T
         freedom[row] = np.trace(gram) ** 2 / np.sum(gram**2)
-    hop = max(1, length // OVERLAP)
-    noise = np.random.default_rng(SEED).standard_normal((MAPS, length + hop * (COLUMNS - 1)))
-    largest = np.empty(MAPS)
-    for index, white in enumerate(noise):
-        windows = np.lib.stride_tricks.sliding_window_view(white, length)[::hop]
-        power = np.mean(np.abs(np.fft.rfft(windows[:, None, :] * _tapers(length), axis=-1)) ** 2, axis=1)
-        largest[index] = chi2.logsf(power.max(axis=0) * freedom, freedom).min()
-    # the smallest of N independent tail probabilities p: N is the inverse of the mean of -ln(1 - p)
-    return freedom, float(-1.0 / np.mean(np.log1p(-np.exp(largest)))) / COLUMNS
+    return freedom
 
 
 def _decibel(power: Array) -> Array:
