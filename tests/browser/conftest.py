@@ -10,9 +10,11 @@ from typing import Any
 import numpy as np
 import pytest
 from made_diagnoses import EVERY
+from made_fit import made_fit
 
 from ssmr_ident.compare import Comparison, RecordingComparison
 from ssmr_ident.compare.outcome import Prediction
+from ssmr_ident.pipeline.fit_page import fit_page
 from ssmr_ident.pipeline.spectrum import spectrum
 from ssmr_ident.pipeline.spectrum_page import write_spectrum_page
 from ssmr_ident.report.comparison_page import comparison_page
@@ -47,6 +49,7 @@ def pages(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
         made[make.__name__] = write_report(make(), path, "ident diagnose my-session -o out", 0, [log])
     made["comparison"] = _comparison(folder)
     made["spectrum"] = _spectrum(folder)
+    made["fit"] = _fit(folder)
     return made
 
 
@@ -103,3 +106,9 @@ def opened(chromium: Any) -> Iterator[Callable[..., Any]]:
     yield open_page
     for context in contexts:
         context.close()
+
+
+def _fit(folder: Path) -> Path:
+    (folder / "fit").mkdir()
+    page = fit_page(made_fit(), "ident fit my-session --figures fit", 3, ())
+    return write_page(folder / "fit" / "report.html", page)

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-NAMES = ("hardening", "nothing", "undetermined", "swivel", "comparison", "spectrum")
+NAMES = ("hardening", "nothing", "undetermined", "swivel", "comparison", "spectrum", "fit")
 Opened = Callable[..., Any]
 
 

@@ -30,7 +30,8 @@ def command(
         ),
     ] = None,
     figures: Annotated[
-        Path | None, typer.Option(help="Folder for figures: frequency and damping over amplitude, saw-teeth.")
+        Path | None,
+        typer.Option(help="Folder for report.html and figures: frequency and damping over amplitude, saw-teeth."),
     ] = None,
     coulomb: Annotated[
         bool, typer.Option(help="Allow dry friction and a force offset for a drive without a spring.")
@@ -39,9 +40,11 @@ def command(
     """Frequencies, damping, stiffness, inertia, friction from the recordings, with uncertainties."""
     import json
 
+    from ssmr_ident.cli.called import called
     from ssmr_ident.cli.progress import stages
     from ssmr_ident.core.errors import InputError
     from ssmr_ident.pipeline.fit import fit_session
+    from ssmr_ident.pipeline.fit_page import write_fit_page
     from ssmr_ident.session import write_parameters
 
     if output is not None and not output.absolute().parent.is_dir():
@@ -51,6 +54,8 @@ def command(
     if output is not None:
         write_parameters(output, fit.parameters)
     drawn = () if figures is None else fit.write_figures(figures)
+    if figures is not None:
+        write_fit_page(fit, figures, called(), seed, session)
     if as_json:
         typer.echo(json.dumps(fit.as_dict(), ensure_ascii=False, indent=1, allow_nan=False))
     elif not quiet:
@@ -58,6 +63,4 @@ def command(
         if output is not None:
             typer.echo(f"written: {output}")
         if figures is not None:
-            typer.echo(
-                f"figures: {len(drawn)} in {figures}" if drawn else "figures: none, for there was nothing to draw"
-            )
+            typer.echo(f"report.html in {figures}, figures: {len(drawn) or 'none, for there was nothing to draw'}")
