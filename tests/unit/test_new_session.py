@@ -91,6 +91,29 @@ def test_a_header_without_a_quantity_is_taken_by_its_unit() -> None:
     assert guess.fields["channels"] == {"force": "shaker", "position": "enc"}
 
 
+def test_two_columns_of_one_unit_are_asked_about(tmp_path: Path) -> None:
+    random = np.random.default_rng(4)
+    columns = {name: (random.normal(size=2000), unit) for name, unit in (("push", "N"), ("enc", "m"), ("lvdt", "m"))}
+    writers.write_csv(tmp_path / "a.csv", _recording(500.0, **columns))
+    draft = draft_session(tmp_path, mass=3.0)
+    assert draft.guesses[0].fields["experiment"] == "forced"
+    assert [q.text for q in draft.questions if q.file == "session.yaml"] == [
+        'channels: {"force": "push", "position": TODO}'
+    ]
+    draft.write()
+    with pytest.raises(InputError, match=r"session.yaml:11: still says TODO.*which of enc, lvdt"):
+        read_session(tmp_path)
+
+
+def test_letters_without_units_are_guessed_and_said(tmp_path: Path) -> None:
+    random = np.random.default_rng(4)
+    rows = "".join(f"{k / 500},{a:.4f},{b:.4f}\n" for k, (a, b) in enumerate(random.normal(size=(500, 2))))
+    (tmp_path / "a.csv").write_text("t,F,x\n" + rows)
+    draft = draft_session(tmp_path, mass=3.0)
+    assert draft.guesses[0].fields["channels"] == {"force": "F", "position": "x"}
+    assert "the file has no units" in draft.session_text
+
+
 @pytest.fixture(scope="module")
 def robot_logs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("my logs")

@@ -25,6 +25,7 @@ AXES = ("ax", "ay", "az")
 RATES = {"wx": "roll", "wy": "pitch", "wz": "yaw"}
 FORCES = ("force", "torque")
 MOTIONS = ("position", "velocity", "acceleration", "angle", "angular_rate", "position_reference", "acceleration_2")
+SYMBOLS = {"f": "force", "x": "position", "v": "velocity", "a": "acceleration"}
 SCALES = ("force", "torque", *MOTIONS, *AXES, *RATES)
 
 DIES_AWAY = 0.5
@@ -128,15 +129,24 @@ def _quantities(recording: Recording, entry: _Entry) -> dict[str, np.ndarray]:
     entry.fields["experiment"] = TODO  # its place in the entry, before channels
     named = {c.name: c.samples for c in recording.channels if c.name in SCALES}
     mapping: dict[str, str] = {}
+    reason = "by their units?"
     strangers = [c for c in recording.channels if c.name not in QUANTITIES]
     for channel in strangers:
-        quantity = QUANTITY_OF_UNIT.get(channel.unit)
-        alike = [c for c in strangers if c.unit == channel.unit]
-        if quantity in SCALES and quantity not in named and len(alike) == 1:
-            mapping[quantity] = channel.label or channel.name
-            named[quantity] = channel.samples
+        header = channel.label or channel.name
+        quantity = SYMBOLS.get(header.lower()) if channel.unit == "" else QUANTITY_OF_UNIT.get(channel.unit)
+        if quantity not in SCALES or quantity in named:
+            continue
+        alike = [c.label or c.name for c in strangers if c.unit == channel.unit != ""]
+        mapping[quantity] = TODO if len(alike) > 1 else header
+        named[quantity] = channel.samples
+        if len(alike) > 1:
+            reason = f"which of {', '.join(alike)} is the {quantity}?"
+        elif channel.unit == "":
+            reason = (
+                f"by their letters? the file has no units: SI is taken, others are said by units: {{{header}: lbf}}"
+            )
     if mapping:
-        entry.say("channels", mapping, "by their units?")
+        entry.say("channels", mapping, reason)
     return named
 
 

@@ -30,8 +30,13 @@ QUESTIONS = {
     "accelerometer.volts_zero": "reading without acceleration, by the data sheet",
     "accelerometer.volts_per_m_s2": "sensitivity, by the data sheet",
     "tire.radius_m": "of the wheels",
+    "stiffness_N_m": "a start for the fit: mass·(2π·f)², f the frequency at which it rings",
+    "stiffness_N_m_rad": "a start for the fit: inertia·(2π·f)², f the frequency at which it rings",
+    "damping_N_s_m": "a start for the fit: a few percent of 2·√(mass·stiffness)",
+    "damping_N_m_s_rad": "a start for the fit: a few percent of 2·√(inertia·stiffness)",
+    "mu_static": "highest force over the weight",
+    "mu_kinetic": "level of the force over the weight",
 }
-FOLLOWS = "a start for the fit; follows from the mass"
 _UNITS = {"mass_kg": "kg", "damping_N_s_m": "N s/m", "stiffness_N_m": "N/m", "inertia_kg_m2": "kg m^2"}
 _UNITS |= {"damping_N_m_s_rad": "N m s/rad", "stiffness_N_m_rad": "N m/rad"}
 _G = 9.81
@@ -125,7 +130,7 @@ def _asked(text: str) -> str:
     for line in text.splitlines():
         if "value: nan" in line:
             key = line.split(":", 1)[0].strip()
-            question = next((q for path, q in QUESTIONS.items() if path.rsplit(".", 1)[-1] == key), FOLLOWS)
+            question = next(q for path, q in QUESTIONS.items() if path.rsplit(".", 1)[-1] == key)
             unit = line.split("unit: ", 1)[1].split('"')[1]
             line = f'{line.split("{", 1)[0]}{{value: TODO, unit: "{unit}"}}  # {question}'
         lines.append(line)
@@ -166,7 +171,7 @@ def _response(guess: LogGuess, rotary: bool) -> tuple[np.ndarray, np.ndarray, np
     recording = guess.recording
     samples = {c.name: c.samples for c in recording.channels}
     for quantity, header in guess.fields.get("channels", {}).items():
-        samples[quantity] = next(c.samples for c in recording.channels if header in (c.label, c.name))
+        samples |= {q: c.samples for q in (quantity,) for c in recording.channels if header in (c.label, c.name)}
     name = next((name for name in MOTIONS if name in samples and name in DERIVATIVES), None)
     if name is None:
         return None

@@ -180,7 +180,7 @@ def draft_session(
         raise InputError(
             str(folder),
             f"none of its {len(files)} logs could be used",
-            f"{aside[0][0]}: {aside[0][1]}" if aside else "",
+            f"{aside[0][0]}: {aside[0][1]}. Say what its columns are: docs/howto/formats.md" if aside else "",
         )
     baseline = baseline or ("sdof" if all(guess.kind == "rig" for guess in listed) else "rigid6")
     wrong = [guess for guess in listed if guess.kind == "rig" and baseline in ("rigid6", "decoupled")]
@@ -242,7 +242,10 @@ def _session_text(
         ]
         lines += [f"  {'-' if index == 0 else ' '} {line}" for index, line in enumerate(entry)]
     if aside:
-        lines += ["", "# Left out:"]
+        lines += [
+            "",
+            "# Left out; to take one in, give it an entry with what the message asks for (units, columns, channels):",
+        ]
         lines += [f"#   {file}: {' '.join(reason.split())}" for file, reason in aside]
     return "\n".join(lines) + "\n"
 
@@ -251,7 +254,7 @@ def _flow(value: Any) -> str:
     """A value on one line; JSON is YAML as well, and quotes what needs quoting."""
     if isinstance(value, str) and re.fullmatch(r"[A-Za-z_][\w./-]*", value) and value.lower() not in _WORDS_OF_YAML:
         return value
-    return json.dumps(value, ensure_ascii=False)
+    return json.dumps(value, ensure_ascii=False).replace(f'"{TODO}"', TODO)
 
 
 _OF_ROBOTS = {"direction", "height_m", "wheels_gripping", "wheel_rate_rad_s", "cable"}
