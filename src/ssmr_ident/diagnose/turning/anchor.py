@@ -115,7 +115,7 @@ class Anchor:
             assert run is not None
             densities = densities + weight * (c.mean.log_density(self.scale) - self.log_density(run, c))
             levels = levels + weight * (c.mean.levels - run.look.levels)
-            variance += weight**2 * log_variance(c.mean.dof)
+            variance += weight**2 * (log_variance(c.mean.dof) + c.wander)
             spread = spread + weight**2 * c.mean.level_variance
         return np.asarray(densities), np.asarray(levels), variance, np.asarray(spread)
 
@@ -141,7 +141,7 @@ class Anchor:
     def _block(self, condition: Condition, run: Run, share: float, changed: bool) -> Block:
         measured, predicted = condition.mean.log_density(self.scale), self.log_density(run, condition)
         missed = self.missed(condition)
-        variance = log_variance(condition.mean.dof)
+        variance = log_variance(condition.mean.dof) + condition.wander
         level = condition.mean.levels - run.look.levels
         channels = len(condition.names)
         floor = np.concatenate([np.full(channels, ZERO_STD**2), np.full(2 * channels, EXTREME_STD**2)])

@@ -12,6 +12,7 @@ from ssmr_ident.compare.turning import AXES, wanted_rates
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.core.recording import Recording
+from ssmr_ident.diagnose.turning.likelihood import NEPER_DB, log_variance
 from ssmr_ident.diagnose.turning.spectra import Look, average, look, white_noise
 from ssmr_ident.physics.robot import Robot, robot_from_parameters
 from ssmr_ident.signals.grid import even_samples
@@ -49,6 +50,9 @@ class Condition:
         Measured mean of the gyroscope.
     halves_db : float
         Distance of the spectra of two halves of a record, mean over records and channels [dB].
+    wander : float
+        Variance of log densities between runs beyond chance, as the halves of records show it: some swivels change
+        between two ways of shaking, and two runs of them differ by more than Welch's scatter.
     """
 
     role: str
@@ -66,6 +70,7 @@ class Condition:
     turning: float
     yaw_rate: float | None
     halves_db: float
+    wander: float
 
     @property
     def kind(self) -> tuple:
@@ -185,14 +190,22 @@ def _condition(robot: Robot, group: list[Measurement]) -> Condition:
         duration=duration,
         turning=float((asked[1] - asked[0]) / (2.0 * robot.half_track)),
         yaw_rate=float(np.mean(turns)) if turns else None,
-        halves_db=float(np.mean(halves)),
+        halves_db=float(np.mean(np.sqrt(halves))) * NEPER_DB,
+        wander=_wander(halves, looks),
     )
 
 
 def _halves(samples: np.ndarray, sample_rate: float) -> float:
+    """Mean square difference of the log densities of two halves, over bins and channels."""
     half = len(samples) // 2
     logs = [np.log(np.einsum("kii->ki", look(part, sample_rate).cross)) for part in (samples[:half], samples[half:])]
-    return float(np.mean(np.sqrt(np.mean((logs[0] - logs[1]) ** 2, axis=0)))) * 10.0 / float(np.log(10.0))
+    return float(np.mean((logs[0] - logs[1]) ** 2))
+
+
+def _wander(halves: list[float], looks: list[Look]) -> float:
+    """Halves differ by four times the variance of a whole by chance; what is more stays for a whole of any length."""
+    excess = [square - 4.0 * log_variance(one.dof) for square, one in zip(halves, looks, strict=True)]
+    return 0.5 * max(float(np.mean(excess)), 0.0)
 
 
 def _disturbance(samples: np.ndarray, sample_rate: float, noise: np.ndarray) -> np.ndarray:
