@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import importlib
 import os
-import pty
 import re
 import shlex
 import subprocess
@@ -27,6 +26,7 @@ def _ident(*arguments: str, **environment: str) -> subprocess.CompletedProcess[s
 
 def _on_a_terminal(*arguments: str, **environment: str) -> str:
     """All that a terminal of 100 columns would get."""
+    pty = pytest.importorskip("pty", reason="no pseudo-terminals here")
     master, slave = pty.openpty()
     kept = {key: value for key, value in os.environ.items() if key not in ("NO_COLOR", "FORCE_COLOR")}
     kept |= {"TERM": "xterm-256color", "COLUMNS": "100"}
