@@ -15,6 +15,7 @@ from ssmr_ident.proof.run import Proof
 from ssmr_ident.proof.score import MEANING
 from ssmr_ident.proof.summary import Share
 from ssmr_ident.proof.table import Row
+from ssmr_ident.proof.thesis import thesis_section
 from ssmr_ident.report.html import Fact, Page, Picture, Section, Table, Verdict, picture, write_page
 
 
@@ -37,6 +38,7 @@ def write_proof_page(proof: Proof, command: str, further: tuple[Section, ...] = 
         _power(proof),
         _gallery(proof),
         _all(proof),
+        thesis_section(),
         _seals(proof),
     )
     page = Page(
