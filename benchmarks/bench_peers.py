@@ -113,7 +113,7 @@ def report(rows: list[dict[str, Any]]) -> None:
             print(f"  parameters where something is missing: median error {100 * np.median(off):.1f} %", end="")
             print(f", true value in its 95 % interval {share(inside, total)}" if total else ", no intervals")
         said = Counter(claim.split(" · ")[-1] for r in nulls for claim in r["claims"])
-        print(f"  said of nulls: {dict(said.most_common(5))}")
+        print(f"  said of nulls: {', '.join(f'{claim} ({n})' for claim, n in said.most_common(5)) or 'nothing'}")
 
 
 if __name__ == "__main__":
