@@ -13,7 +13,7 @@ from ssmr_ident.proof.run import prove, seal_case
 from ssmr_ident.proof.seal import Envelope, SealBroken, read_seals, write_seals
 from ssmr_ident.proof.unseal import SEAL, TRUTH, keep, recheck, unseal
 
-ENVELOPE = Envelope("session-001", b'{"effects": []}', {"a.csv": b"1,2", "b.csv": b"3"})
+ENVELOPE = Envelope("session-001", b'{"effects": []}', {"a.csv": b"1,2", "b.csv": b"3"}, "s")
 
 
 def test_an_unchanged_truth_opens() -> None:
@@ -23,15 +23,16 @@ def test_an_unchanged_truth_opens() -> None:
 @pytest.mark.parametrize(
     "changed",
     [
-        Envelope("session-001", b'{"effects": [1]}', ENVELOPE.heldout, ENVELOPE.nonce),
-        Envelope("session-001", ENVELOPE.truth, {"a.csv": b"1,2", "b.csv": b"4"}, ENVELOPE.nonce),
-        Envelope("session-001", ENVELOPE.truth, {"a.csv": b"1,2b.csv3"}, ENVELOPE.nonce),
-        Envelope("session-001", ENVELOPE.truth, ENVELOPE.heldout),
+        Envelope("session-001", b'{"effects": [1]}', ENVELOPE.heldout, "s", ENVELOPE.nonce),
+        Envelope("session-001", ENVELOPE.truth, {"a.csv": b"1,2", "b.csv": b"4"}, "s", ENVELOPE.nonce),
+        Envelope("session-001", ENVELOPE.truth, {"a.csv": b"1,2b.csv3"}, "s", ENVELOPE.nonce),
+        Envelope("session-001", ENVELOPE.truth, ENVELOPE.heldout, "t", ENVELOPE.nonce),
+        Envelope("session-001", ENVELOPE.truth, ENVELOPE.heldout, "s"),
     ],
-    ids=["truth", "heldout", "files run together", "nonce"],
+    ids=["truth", "heldout", "files run together", "session", "nonce"],
 )
 def test_a_changed_truth_does_not(changed: Envelope) -> None:
-    with pytest.raises(SealBroken, match="has changed since it was sealed"):
+    with pytest.raises(SealBroken, match="have changed since they were sealed"):
         changed.opened(ENVELOPE.digest)
 
 
@@ -66,7 +67,7 @@ def test_a_diagnosis_that_changes_the_seals_ends_the_proof(tmp_path: Path, tiny:
     code = (
         f"import pathlib; p = pathlib.Path({str(out / 'seals.csv')!r}); t = p.read_text(); p.write_text(t[:-3] + '00')"
     )
-    with pytest.raises(SealBroken, match="has changed"):
+    with pytest.raises(SealBroken, match="have changed"):
         prove(1, 32, out, 1, (sys.executable, "-c", code), tiny)
 
 
@@ -90,6 +91,12 @@ def test_a_kept_session_opens_beside_a_diagnosis_only(tmp_path: Path, tiny: Exte
     run_blind(pretended, tmp_path / "session-003", other)
     with pytest.raises(InputError, match="is a diagnosis of 'session-003'"):
         unseal(folder, other)
+    log = next(path for path in folder.iterdir() if path.suffix in (".csv", ".txt", ".lvm", ".xlsx"))
+    kept = log.read_bytes()
+    log.write_bytes(kept[:-2] + b"9\n")
+    with pytest.raises(SealBroken):
+        unseal(folder, answer)
+    log.write_bytes(kept)
     seal = (folder / SEAL).read_text(encoding="utf-8")
     (folder / SEAL).write_text(seal.replace(seal[0], "0" if seal[0] != "0" else "1"), encoding="utf-8")
     with pytest.raises(SealBroken):

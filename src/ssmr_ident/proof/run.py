@@ -18,7 +18,7 @@ from ssmr_ident.proof.blind import DIAGNOSE, BlindRun, run_blind
 from ssmr_ident.proof.cases import draw_case
 from ssmr_ident.proof.recorded import Extent, record, write_session
 from ssmr_ident.proof.score import marked
-from ssmr_ident.proof.seal import Envelope, read_seals, write_seals
+from ssmr_ident.proof.seal import Envelope, read_seals, session_digest, write_seals
 from ssmr_ident.proof.summary import Summary, summarised
 from ssmr_ident.proof.table import Row, write_table
 from ssmr_ident.proof.worth import judged
@@ -106,7 +106,8 @@ def seal_case(seed: int, number: int, sessions: Path, extent: Extent | None = No
         folder = Path(place) / "heldout"
         write_session(recorded, folder, heldout=True)
         files = {path.name: path.read_bytes() for path in sorted(folder.iterdir())}
-    return Envelope(recorded.case.name, recorded.truth_text().encode(), files)
+    session = session_digest(sessions / recorded.case.name)
+    return Envelope(recorded.case.name, recorded.truth_text().encode(), files, session)
 
 
 def open_case(envelope: Envelope, seal: str, run: BlindRun, folder: Path, answer_folder: Path) -> Row:

@@ -34,18 +34,21 @@ class Envelope:
         JSON.
     heldout : mapping of str to bytes
         A session folder of its own that the diagnosis never sees.
+    session : str
+        Digest of the session that is diagnosed, so that neither is exchanged.
     nonce : bytes
     """
 
     case: str
     truth: bytes
     heldout: Mapping[str, bytes] = field(repr=False)
+    session: str = ""
     nonce: bytes = field(default_factory=lambda: secrets.token_bytes(32), repr=False)
 
     @property
     def digest(self) -> str:
-        """SHA-256 over nonce, truth and the held-out files with their names, as hexadecimal digits."""
-        return digest(self.nonce, self.truth, self.heldout)
+        """SHA-256 over nonce, truth, the held-out files with their names and the session's digest, in hexadecimal."""
+        return digest(self.nonce, self.truth, self.heldout, self.session)
 
     def opened(self, sealed: str) -> dict[str, Any]:
         """The truth, when the digest is still the sealed one.
@@ -55,7 +58,9 @@ class Envelope:
         SealBroken
         """
         if self.digest != sealed:
-            raise SealBroken(f"{self.case}: the truth has changed since it was sealed: {self.digest} is not {sealed}")
+            raise SealBroken(
+                f"{self.case}: truth or recordings have changed since they were sealed: {self.digest} is not {sealed}"
+            )
         return json.loads(self.truth)
 
     def unpack(self, folder: Path) -> None:
@@ -67,10 +72,16 @@ class Envelope:
             write_bytes(folder / "heldout" / name, content)
 
 
-def digest(nonce: bytes, truth: bytes, heldout: Mapping[str, bytes]) -> str:
+def session_digest(folder: Path, besides: tuple[str, ...] = ()) -> str:
+    """SHA-256 over the files of a session folder and their names, without those of other names given."""
+    files = {path.name: path.read_bytes() for path in folder.iterdir() if path.name not in besides}
+    return digest(b"", b"", files)
+
+
+def digest(nonce: bytes, truth: bytes, heldout: Mapping[str, bytes], session: str = "") -> str:
     """SHA-256 over a nonce, a truth and files; each part's length goes in before it, so that no two sets collide."""
     total = hashlib.sha256()
-    parts = [nonce, truth]
+    parts = [nonce, truth, session.encode()]
     for name in sorted(heldout):
         parts += [name.encode(), heldout[name]]
     for part in parts:

@@ -15,7 +15,7 @@ from ssmr_ident.proof.answer import read_answer
 from ssmr_ident.proof.blind import BlindRun
 from ssmr_ident.proof.run import open_case
 from ssmr_ident.proof.score import MEANING
-from ssmr_ident.proof.seal import Envelope, SealBroken, read_seals
+from ssmr_ident.proof.seal import Envelope, SealBroken, read_seals, session_digest
 from ssmr_ident.proof.table import Row
 from ssmr_ident.session import read_session
 
@@ -109,7 +109,8 @@ def recheck(folder: Path) -> int:
             raise SealBroken(f"{case}: sealed, but not among the opened cases in {folder / 'opened'}")
         files = {path.name: path.read_bytes() for path in (opened / "heldout").iterdir()}
         nonce = bytes.fromhex((opened / "nonce.txt").read_text(encoding="utf-8").strip())
-        Envelope(case, (opened / "truth.json").read_bytes(), files, nonce).opened(seal)
+        session = session_digest(folder / "sessions" / case)
+        Envelope(case, (opened / "truth.json").read_bytes(), files, session, nonce).opened(seal)
     return len(seals)
 
 
@@ -117,7 +118,8 @@ def _kept(folder: Path) -> Envelope:
     try:
         content = json.loads(zlib.decompress((folder / TRUTH).read_bytes()))
         heldout = {name: _bytes(text) for name, text in content["heldout"].items()}
-        return Envelope(content["case"], _bytes(content["truth"]), heldout, bytes.fromhex(content["nonce"]))
+        session = session_digest(folder, (TRUTH, SEAL))
+        return Envelope(content["case"], _bytes(content["truth"]), heldout, session, bytes.fromhex(content["nonce"]))
     except (zlib.error, ValueError, KeyError) as error:
         raise SealBroken(f"{folder / TRUTH}: cannot be opened ({error})") from error
 
