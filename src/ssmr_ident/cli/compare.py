@@ -34,10 +34,10 @@ def command(
     quiet: Annotated[bool, typer.Option("-q", "--quiet", help="Print nothing but errors.")] = False,
 ) -> None:
     """Simulate every recording of a session with given parameters and say how far they are apart."""
-    from ssmr_ident.cli.progress import progress
+    from ssmr_ident.cli.progress import stages
     from ssmr_ident.pipeline.compare import compare_session
 
-    with progress("simulating", hidden=quiet or as_json) as step:
+    with stages(hidden=quiet or as_json) as step:
         result = compare_session(session, params, output, step, called())
     if as_json:
         import json

@@ -51,11 +51,13 @@ def command(
         raise InputError(str(output), "its folder does not exist", "Make the folder, or write elsewhere with -o")
     with stages(hidden=quiet or as_json) as step:
         fit = fit_session(session, seed=seed, coulomb=coulomb, method=method, progress=step)
-    if output is not None:
-        write_parameters(output, fit.parameters)
-    drawn = () if figures is None else fit.write_figures(figures)
-    if figures is not None:
-        write_fit_page(fit, figures, called(), seed, session)
+        if output is not None:
+            write_parameters(output, fit.parameters)
+        if figures is not None:
+            step("drawing", 0, 1)
+            drawn = fit.write_figures(figures)
+            write_fit_page(fit, figures, called(), seed, session)
+            step("drawing", 1, 1)
     if as_json:
         typer.echo(json.dumps(fit.as_dict(), ensure_ascii=False, indent=1, allow_nan=False))
     elif not quiet:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 from ssmr_ident.campaign import load
@@ -22,7 +23,7 @@ def compare_session(
     session: Path,
     params: str = "",
     output: Path | None = None,
-    progress: Callable[[int, int], None] | None = None,
+    progress: Callable[[str, int, int], None] | None = None,
     command: str = "ssmr_ident.compare, called from Python",
 ) -> Comparison:
     """Compare a session with parameters; write plots and a table where asked for.
@@ -35,21 +36,25 @@ def compare_session(
     output : Path or None
         Folder for ``compare.csv``, one overlay per recording, and ``report.html``.
     progress : callable, optional
+        Called with what is being done, how much of it is done, and of how much.
     command : str
         The call that made it, printed at the end of the page.
     """
-    campaign = load(session)
+    step = progress or (lambda stage, done, total: None)
+    campaign = load(session, partial(step, "reading logs"))
     parameters = read_parameters(params) if params else campaign.parameters
-    result = compare(campaign, parameters, progress)
+    result = compare(campaign, parameters, partial(step, "simulating"))
     if output is not None:
-        write_comparison(result, output)
+        write_comparison(result, output, partial(step, "drawing"))
         files = file_hashes(files_read(session, params))
         write_page(output / "report.html", comparison_page(result, command, files))
     return result
 
 
-def write_comparison(result: Comparison, output: Path) -> None:
-    """``compare.csv`` and one PNG per recording."""
+def write_comparison(
+    result: Comparison, output: Path, progress: Callable[[int, int], None] = lambda done, total: None
+) -> None:
+    """``compare.csv`` and one PNG per recording; named with its ending where logs differ by that alone."""
     output.mkdir(parents=True, exist_ok=True)
     stream = io.StringIO(newline="")
     writer = csv.writer(stream)
@@ -59,6 +64,8 @@ def write_comparison(result: Comparison, output: Path) -> None:
         for name, value in row.channels.items():
             writer.writerow([row.file, row.experiment, row.metric, name, repr(value)])
     write_text(output / "compare.csv", stream.getvalue())
-    for row in result.recordings:
+    stems = [Path(row.file).stem for row in result.recordings]
+    for index, (row, stem) in enumerate(zip(result.recordings, stems, strict=True), start=1):
         figure = overlay_figure(row.prediction, f"{row.file}: {row.experiment.replace('_', ' ')}")
-        save(figure, output / Path(row.file).stem)
+        save(figure, output / (stem if stems.count(stem) == 1 else Path(row.file).name))
+        progress(index, len(stems))
