@@ -12,9 +12,10 @@ from ssmr_ident.campaign import Measurement
 from ssmr_ident.core.recording import Channel
 from ssmr_ident.diagnose.motion import main_channel, motion_of
 from ssmr_ident.diagnose.quantity import prefixed
-from ssmr_ident.diagnose.setup import Setup, trial_maker
+from ssmr_ident.diagnose.setup import Setup
 from ssmr_ident.identify.joint import JointFit
 from ssmr_ident.identify.robot_map import RobotBuilder
+from ssmr_ident.identify.trials import trial_of
 from ssmr_ident.identify.trials.decay import SCALES
 from ssmr_ident.identify.trials.trial import Trial
 
@@ -67,7 +68,10 @@ def experiments(setup: Setup, fit: JointFit) -> list[Experiment]:
         kind = (entry.experiment, entry.motion, entry.direction)
         if kind not in loudest or np.ptp(trial.target) > np.ptp(fit.trials[loudest[kind]].target):
             loudest[kind] = index
-    make = trial_maker(setup.campaign, setup.campaign.parameters)
+
+    def make(measurement: Measurement) -> Trial:
+        return trial_of(setup.campaign.session.baseline, measurement, setup.campaign.parameters)
+
     return [
         e for index in loudest.values() for e in _variants(setup, fit, index, by_name[fit.trials[index].name], make)
     ]

@@ -12,6 +12,7 @@ from ssmr_ident.diagnose.diagnosis import Located
 from ssmr_ident.diagnose.ordering import CLEAR, Ordering, ordering, state_variables
 from ssmr_ident.diagnose.residual_force import unexplained_force
 from ssmr_ident.diagnose.residual_map import Cells, axes, cells, column, counting, excess, ranked
+from ssmr_ident.diagnose.tire_force import is_robot, tire_state
 from ssmr_ident.identify.joint import JointFit
 
 Array = np.ndarray
@@ -84,8 +85,12 @@ def _state(
     inside[trial.lost :] &= counting(fit, index, channel)
     if np.count_nonzero(inside) < FEWEST:
         return None
-    variables = state_variables(trial, channel)
-    force = unexplained_force(fit, index, channel, parameters)
+    if is_robot(trial):
+        state = tire_state(fit, index, parameters, [fit.simulated[index]])
+        force, since = state.forces[0], trial.times - trial.times[0]
+        variables = {"displacement": (state.deflection, "m"), "velocity": (state.rate, "m/s"), "time": (since, "s")}
+    else:
+        force, variables = unexplained_force(fit, index, channel, parameters), state_variables(trial, channel)
     return ordering(force[inside], {name: (v[inside], unit) for name, (v, unit) in variables.items()}, seed)
 
 

@@ -8,9 +8,10 @@ import numpy as np
 
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.evidence import ForceSurface
-from ssmr_ident.diagnose.motion import motion_of
+from ssmr_ident.diagnose.motion import main_channel, motion_of
 from ssmr_ident.diagnose.residual_force import force_of, oscillator
 from ssmr_ident.diagnose.residual_map import excess
+from ssmr_ident.diagnose.tire_force import is_robot, tire_state
 from ssmr_ident.identify.joint import JointFit
 from ssmr_ident.identify.trials.trial import Trial
 
@@ -20,7 +21,7 @@ MOST = 3
 OFF_THE_ENDS = 0.04
 """Share at both ends of a recording that is left out: there a filter has seen only one side."""
 
-AT_REST = 0.02
+AT_REST = 0.05
 """Share of the largest motion below which a sample is the rest after a decay."""
 
 
@@ -39,11 +40,18 @@ def surfaces(before: JointFit, after: JointFit | None, parameters: ParameterSet)
     for index, trial in enumerate(before.trials):
         if trial.channels == ("force",):
             groups[trial.experiment, "force"].append((index, 0))
+        elif is_robot(trial):  # by the motion, not by a channel: a force is sought in all of them
+            place = tire_state(before, index, parameters, []).place
+            groups[trial.experiment, place].append((index, main_channel(trial)))
         else:
             channel = max(range(len(trial.channels)), key=lambda c: excess(before, index, c))
             groups[trial.experiment, trial.channels[channel]].append((index, channel))
-    ordered = sorted(groups.values(), key=lambda pairs: -sum(excess(before, *pair) for pair in pairs))
+    ordered = sorted(groups.values(), key=lambda pairs: -sum(_misfit(before, index) for index, _ in pairs))
     return tuple(_surface(before, after, pairs, parameters) for pairs in ordered[:MOST])
+
+
+def _misfit(fit: JointFit, index: int) -> float:
+    return sum(excess(fit, index, channel) for channel in range(len(fit.trials[index].channels)))
 
 
 def _surface(
@@ -57,6 +65,11 @@ def _surface(
             travel = float(trial.facts["travel_m"]) * (trial.times - trial.times[0]) / np.ptp(trial.times)
             where = "travel of the pulling head"
             parts.append(np.column_stack([travel, np.gradient(travel, trial.step), *rests]))
+            continue
+        if is_robot(trial):
+            state = tire_state(before, index, parameters, [fit.simulated[index] for fit in (before, after or before)])
+            where = state.place
+            parts.append(_moving(np.column_stack([state.deflection, state.rate, *state.forces]), trial))
             continue
         # both are worked out by the baseline's own mass, damper and spring: what is left is compared, not two operators
         found = oscillator(before, index, channel, parameters)
