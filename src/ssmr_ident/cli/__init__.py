@@ -17,7 +17,7 @@ from ssmr_ident.core.errors import InputError, SimulationError
 # takes twenty times as long. Set before numpy is first imported, which each verb does on its own.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-VERBS = ("inspect", "spectrum", "geometry", "new", "fit", "simulate", "compare", "effects", "demo", "proof")
+VERBS = ("inspect", "spectrum", "geometry", "new", "fit", "simulate", "compare", "diagnose", "effects", "demo", "proof")
 
 UsageError: type[Exception] = typer.BadParameter.__bases__[0]
 """Of the click that typer brings along, whichever that is."""

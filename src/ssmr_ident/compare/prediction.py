@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from ssmr_ident.campaign import Campaign, Measurement
-from ssmr_ident.compare import decay, forced, pulled, turning
+from ssmr_ident.compare import turning
 from ssmr_ident.compare.outcome import Prediction
-from ssmr_ident.core.errors import InputError
+from ssmr_ident.compare.recorded import follow, predicted
 from ssmr_ident.core.parameter import ParameterSet
+from ssmr_ident.identify.coordinates import Model
+from ssmr_ident.identify.trials import trial_of
+from ssmr_ident.physics.slots import effect_values
 
 __all__ = ["Prediction", "predict"]
 
@@ -29,22 +34,9 @@ def predict(campaign: Campaign, measurement: Measurement, parameters: ParameterS
     InputError
         The model and the experiment do not go together, or a parameter is missing.
     """
-    baseline, experiment = campaign.session.baseline, measurement.entry.experiment
-    if baseline == "sdof" and experiment in ("forced", "free_response"):
-        return forced.predict(parameters, measurement)
-    if baseline == "drag" and experiment in ("wheel_drag", "pull"):
-        return pulled.predict(parameters, measurement)
-    if baseline in ("rigid6", "decoupled"):
-        if experiment == "free_response":
-            return decay.predict(parameters, measurement, decoupled=baseline == "decoupled")
-        if experiment == "pull":
-            return pulled.predict(parameters, measurement)
-        if experiment in ("wheel_drag", "vertical_compression"):
-            return pulled.predict(parameters, measurement)
-        if experiment in ("swivel", "straight"):
-            return turning.predict(parameters, measurement)
-    raise InputError(
-        f"{campaign.session.folder / 'session.yaml'}: {measurement.name}",
-        f"baseline {baseline} has no model of {experiment}",
-        "A robot is rigid6 or decoupled, a rig is sdof, a dragged block is drag",
-    )
+    if measurement.entry.experiment in ("swivel", "straight") and campaign.session.baseline in ("rigid6", "decoupled"):
+        return turning.predict(parameters, measurement)
+    trial = trial_of(campaign.session.baseline, measurement, parameters)
+    model = Model((), (), effect_values(parameters))
+    fit = follow([trial], model, np.zeros(0))
+    return predicted(trial, *model.split(fit.point), fit.nuisances[0])

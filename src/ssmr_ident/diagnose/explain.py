@@ -1,43 +1,39 @@
-"""Refits with an effect added: first with the baseline's slopes as they were, then with all of them anew."""
+"""Refits with an effect added, and effects taken out again."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from ssmr_ident.diagnose.scan import Suspect
-from ssmr_ident.identify.joint import JointFit, Slopes, descend, evaluate
+from ssmr_ident.identify.coordinates import Model
+from ssmr_ident.identify.joint import JointFit, Slopes, evaluate
 
 Array = np.ndarray
 
-
-@dataclass(frozen=True, eq=False)
-class Explanation:
-    """A model fitted to the recordings that are fitted."""
-
-    fit: JointFit
-
-    @property
-    def ids(self) -> tuple[str, ...]:
-        return self.fit.model.ids
+SHRINKING = (1.0, 0.3, 0.1)
+"""Shares of a suspect's start that are tried."""
 
 
-def add(fit: JointFit, suspect: Suspect) -> JointFit:
-    """The model with a suspect's effect, at its probe; nothing refitted yet."""
-    model, begin = fit.model.with_effect(suspect.effect, suspect.at, suspect.sizes)
+def with_suspect(fit: JointFit, suspect: Suspect, share: float = 1.0) -> tuple[Model, Array]:
+    """The model with a suspect's effect, and a point of it at a share of the suspect's amplitude."""
+    at = {name: value * (share if name in suspect.grown else 1.0) for name, value in suspect.at.items()}
+    model, begin = fit.model.with_effect(suspect.effect, at, suspect.sizes)
     held = {**model.held, suspect.effect: {**model.held[suspect.effect], **suspect.held}}
-    model = replace(model, held=held)
-    wide = tuple(
-        Slopes(np.hstack([slopes.shared, np.zeros((len(slopes.shared), len(begin)))]), slopes.own)
-        for slopes in fit.slopes
-    )
-    return evaluate(fit.trials, model, np.concatenate([fit.point, begin]), fit.nuisances, wide)
+    return replace(model, held=held), np.concatenate([fit.point, begin])
 
 
-def refit(fit: JointFit, suspect: Suspect, independent: float, iterations: int) -> JointFit:
-    """The model with a suspect's effect, refitted."""
-    return descend(add(fit, suspect), iterations, "all", independent)
+def begin_with(fit: JointFit, suspect: Suspect) -> tuple[Model, Array]:
+    """A suspect's start, as large as it can be simulated.
+
+    Not where it fits best unrefitted: that is next to nothing, where the baseline's optimum holds the fit.
+    """
+    for share in SHRINKING:
+        model, point = with_suspect(fit, suspect, share)
+        if np.isfinite(evaluate(fit.trials, model, point, fit.nuisances).rss):
+            break
+    return model, point
 
 
 def without(fit: JointFit, effect_id: str) -> JointFit:

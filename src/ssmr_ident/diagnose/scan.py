@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ssmr_ident.core.parameter import Parameter
 from ssmr_ident.diagnose.sizes import sizes_of
 from ssmr_ident.identify.joint import JointFit, over
 from ssmr_ident.physics.effect import Effect, Sized
@@ -22,9 +23,6 @@ Array = np.ndarray
 
 SEEN = 1e-6
 """Share of the noise's variance below which a change cannot be told from rounding."""
-
-SMALLEST = 0.1
-"""Of a probe that a fit begins with; the match of a straight line says little beyond a factor of ten."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,6 +42,8 @@ class Suspect:
         Fall of n ln(RSS) that the straight line promises.
     direction : (N,) float
         Whitened change, cleared of the baseline's own directions.
+    grown : tuple of str
+        Parameters that the effect is proportional to while it is small.
     """
 
     effect: str
@@ -52,6 +52,7 @@ class Suspect:
     sizes: Mapping[str, float]
     gain: float
     direction: Array
+    grown: tuple[str, ...] = ()
 
 
 def candidates(fit: JointFit, baseline: str) -> tuple[Effect, ...]:
@@ -106,7 +107,7 @@ def _suspect(
     signed = [p for p in effect.amplitudes if p.name in at and p.lower < 0.0]
     points = [at]
     if signed:  # each on its own: their shares follow from the match
-        points = [{**at, **{p.name: p.off for p in signed if p is not chosen}} for chosen in signed]  # type: ignore[dict-item]
+        points = [{**at, **{p.name: float(p.off or 0.0) for p in signed if p is not chosen}} for chosen in signed]
     columns = []
     for point in points:
         change = _change(fit, effect.id, {**point, **held})
@@ -127,16 +128,20 @@ def _suspect(
     gain = -independent * np.log(max(1.0 - explained / fit.rss, 1e-12))
     sizes = {p.name: abs(at[p.name]) for p in signed}
     start = dict(at)
-    grown = [p for p in effect.amplitudes if p.name in at and p.lower >= 0.0 and p.off == 0.0]
-    if grown and not signed:
-        share = float(np.clip(shares[0], SMALLEST, 1.0 / SMALLEST))
-        start |= {p.name: float(np.clip(share * at[p.name], p.lower, p.upper)) for p in grown}
+    grown = [p for p in effect.parameters if p.name in at and _grows(effect, p)]
     if signed:
         start |= {
             p.name: float(np.clip(share * at[p.name], p.lower, p.upper))
             for p, share in zip(signed, shares, strict=True)
         }
-    return Suspect(effect.id, start, held, sizes, gain, cleared @ shares)
+    names = tuple(p.name for p in (*grown, *signed))
+    return Suspect(effect.id, start, held, sizes, gain, cleared @ shares, names)
+
+
+def _grows(effect: Effect, parameter: Parameter) -> bool:
+    if effect.grows:
+        return parameter.name in effect.grows
+    return parameter.off == 0.0 and parameter.lower >= 0.0
 
 
 def _change(fit: JointFit, effect_id: str, parameters: dict[str, float]) -> Array | None:
@@ -157,10 +162,11 @@ class Cleared:
 
     def __init__(self, fit: JointFit, independent: float) -> None:
         weight = independent / fit.rss
-        self._own = []
-        shared, ends = [], np.cumsum([len(r) for r in fit.residuals])
+        self._own: list[tuple[Array, Array]] = []
+        shared: list[Array] = []
+        rest: list[Array] = []
+        ends = np.cumsum([len(r) for r in fit.residuals])
         self._cuts = ends[:-1]
-        rest = []
         for slopes, residual in zip(fit.slopes, fit.residuals, strict=True):
             b = slopes.own
             gram = weight * (b.T @ b) + np.eye(b.shape[1])

@@ -11,20 +11,11 @@ from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.identify.coordinates import Model
 from ssmr_ident.identify.objective import Unknown
-from ssmr_ident.identify.robot_map import RobotBuilder, robot_unknowns, set_aside
-from ssmr_ident.identify.trials import Trial
-from ssmr_ident.identify.trials.decay import decay_trial
-from ssmr_ident.identify.trials.forced import forced_trial
-from ssmr_ident.identify.trials.pull import pull_trial
+from ssmr_ident.identify.robot_map import robot_unknowns, set_aside
+from ssmr_ident.identify.trials import Trial, trial_of
+from ssmr_ident.identify.trials.make import EXPERIMENTS
 from ssmr_ident.physics.rig import RIG_KEYS
 from ssmr_ident.physics.slots import effect_values
-
-EXPERIMENTS = {
-    "rigid6": ("free_response", "pull", "wheel_drag", "vertical_compression"),
-    "decoupled": ("free_response", "pull", "wheel_drag", "vertical_compression"),
-    "sdof": ("forced", "free_response"),
-    "drag": ("wheel_drag", "pull"),
-}
 
 KEPT_BACK = 1 / 3
 """Share of the targets that is kept back where a session has no held-out recordings."""
@@ -48,6 +39,8 @@ class Setup:
     kept_by_us : bool
         True where the session held nothing back and the tool did.
     notes : tuple of str
+    calibration : tuple of Trial
+        Made without the puzzling condition: what they tell of the baseline is known before the targets are looked at.
     """
 
     campaign: Campaign
@@ -57,6 +50,7 @@ class Setup:
     known: tuple[Unknown, ...]
     kept_by_us: bool
     notes: tuple[str, ...] = ()
+    calibration: tuple[Trial, ...] = ()
 
     @property
     def decoupled(self) -> bool:
@@ -100,17 +94,19 @@ def set_up(campaign: Campaign, parameters: ParameterSet) -> Setup:
     by_us = not heldout
     if by_us:
         targets, heldout = keep_back(targets)
-    make = trial_maker(campaign, parameters)
+
+    def make(m: Measurement) -> Trial:
+        return trial_of(baseline, m, parameters)
+
     halves: list[Trial] = []
     if not heldout:
         whole = make(targets[0])
         first, second = split_in_time(whole)
         halves, fitted = [second], [first]
-        notes.append(
-            f"{whole.name} is the only recording: it was fitted up to {second.times[0]:.4g} s and held out after"
-        )
+        cut = second.part[0] if second.part else 0.0
+        notes.append(f"{whole.name} is the only recording: it was fitted up to {cut:.4g} s and held out after")
     else:
-        fitted = [make(m) for m in (*targets, *calibration)]
+        fitted = [make(m) for m in targets]
         halves = [make(m) for m in heldout]
         if by_us:
             names = ", ".join(m.name for m in heldout)
@@ -120,7 +116,13 @@ def set_up(campaign: Campaign, parameters: ParameterSet) -> Setup:
     physics = set_aside(known, motions) if baseline == "decoupled" else known
     held = {name: dict(values) for name, values in effect_values(parameters).items()}
     model = Model(tuple(physics), (), held)
-    return Setup(campaign, tuple(fitted), tuple(halves), model, known, by_us, tuple(notes))
+    if calibration:
+        notes.append(
+            f"the baseline comes from {len(calibration)} calibration recordings; the question is what the others have "
+            "that they have not"
+        )
+    before = tuple(make(m) for m in calibration)
+    return Setup(campaign, tuple(fitted), tuple(halves), model, known, by_us, tuple(notes), before)
 
 
 def keep_back(targets: list[Measurement]) -> tuple[list[Measurement], list[Measurement]]:
@@ -149,23 +151,6 @@ def _last(group: list[Measurement]) -> list[Measurement]:
     return [middle[i] for i in dict.fromkeys(spread.tolist())]
 
 
-def trial_maker(campaign: Campaign, parameters: ParameterSet):  # type: ignore[no-untyped-def]
-    """What makes a trial of a measurement under the session's baseline."""
-    baseline = campaign.session.baseline
-    if baseline == "sdof":
-        return lambda m: forced_trial(m, parameters)
-    if baseline == "drag":
-        return lambda m: pull_trial(m, parameters)
-    builder = RobotBuilder.of(parameters)
-
-    def make(m: Measurement) -> Trial:
-        if m.entry.experiment == "free_response":
-            return decay_trial(m, builder, baseline == "decoupled")
-        return pull_trial(m, parameters)
-
-    return make
-
-
 def split_in_time(trial: Trial) -> tuple[Trial, Trial]:
     """The first two thirds of a lone recording, and the rest; both are simulated from its start."""
     count = len(trial.times)
@@ -173,7 +158,10 @@ def split_in_time(trial: Trial) -> tuple[Trial, Trial]:
     inside = np.ones((count, len(trial.channels)), dtype=bool) if trial.counts is None else trial.counts
     early, late = inside.copy(), inside.copy()
     early[cut:], late[:cut] = False, False
-    return replace(trial, counts=early), replace(trial, counts=late)
+    times = trial.times
+    # what is shortened would lose the mask
+    first = replace(trial, counts=early, shorten=None, part=(float(times[0]), float(times[cut - 1])))
+    return first, replace(trial, counts=late, shorten=None, part=(float(times[cut]), float(times[-1])))
 
 
 def unknowns_of(campaign: Campaign, parameters: ParameterSet) -> tuple[Unknown, ...]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from ssmr_ident.campaign import Campaign, Measurement
@@ -21,6 +23,7 @@ from ssmr_ident.identify.robot_map import (
     pick_mode,
     predicted_modes,
 )
+from ssmr_ident.identify.trials import Trial
 from ssmr_ident.physics.rig import RIG_KEYS, rig_from_parameters
 
 SEEN_BY = {"roll": "ay", "pitch": "ax", "yaw": "ay"}
@@ -29,22 +32,22 @@ SEEN_BY = {"roll": "ay", "pitch": "ax", "yaw": "ay"}
 MOST_MODES = 3
 
 
-def begin(setup: Setup, parameters: ParameterSet) -> JointFit:
+def begin(trials: Sequence[Trial], setup: Setup, parameters: ParameterSet) -> JointFit:
     """The better of two places: what is known beforehand, and what modes or a linear fit of the recordings say."""
     points = [np.zeros(len(setup.model.physics))]
-    guess = _guess(setup, parameters)
+    guess = _guess(trials, setup, parameters)
     if guess:
         points.append(scaled_at(setup.model.physics, guess))
     fits = []
     for point in points:
         values, effects = setup.model.split(point)
-        nuisances = [trial.begin(values, effects) for trial in setup.fitted]
-        fits.append(evaluate(setup.fitted, setup.model, point, nuisances))
+        nuisances = [trial.begin(values, effects) for trial in trials]
+        fits.append(evaluate(trials, setup.model, point, nuisances))
     return min(fits, key=lambda fit: fit.rss if np.isfinite(fit.rss) else np.inf)
 
 
-def _guess(setup: Setup, parameters: ParameterSet) -> dict[str, float]:
-    names = {trial.name for trial in setup.fitted}
+def _guess(trials: Sequence[Trial], setup: Setup, parameters: ParameterSet) -> dict[str, float]:
+    names = {trial.name for trial in trials}
     used = [m for m in setup.campaign.measurements if m.name in names]
     baseline = setup.campaign.session.baseline
     if baseline in ("rigid6", "decoupled"):
@@ -60,9 +63,9 @@ def _by_modes(setup: Setup, used: list[Measurement], parameters: ParameterSet) -
     modes: dict[str, list[Mode]] = {}
     for m in used:
         motion = m.entry.motion
-        channel = SEEN_BY.get(motion or "")
-        if motion is None or channel not in m.recording:
+        if motion is None or SEEN_BY[motion] not in m.recording:
             continue
+        channel = SEEN_BY[motion]
         try:
             fit = fit_decay(m.recording.time, m.recording[channel], max_modes=MOST_MODES, unit="m/s^2")
         except InputError:

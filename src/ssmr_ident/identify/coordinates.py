@@ -11,7 +11,6 @@ import numpy as np
 from ssmr_ident.core.parameter import Parameter
 from ssmr_ident.identify.objective import Unknown
 from ssmr_ident.physics.effects import CATALOGUE
-from ssmr_ident.physics.slots import Effects
 
 Array = np.ndarray
 
@@ -113,14 +112,6 @@ class Model:
         keep = [True] * len(self.physics) + [c.effect != effect_id for c in self.free]
         held = {name: fixed for name, fixed in self.held.items() if name != effect_id}
         return replace(self, free=tuple(c for c in self.free if c.effect != effect_id), held=held), np.array(keep)
-
-
-def as_effects(model: Model, point: Array) -> Effects:
-    return model.split(point)[1]
-
-
-def finite(value: float) -> bool:
-    return math.isfinite(value)
 
 
 def scaled_at(unknowns: Sequence[Unknown], values: Mapping[str, float]) -> Array:

@@ -12,7 +12,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TypeVar
 
@@ -24,8 +24,8 @@ from ssmr_ident.identify.trials.trial import Trial
 Array = np.ndarray
 T = TypeVar("T")
 
-SHARES = (1.0, 0.4, 0.12, 0.03)
-"""Of a Gauss-Newton step that are tried."""
+DAMPINGS = (0.01, 0.1, 0.5, 2.0, 10.0, 100.0, 1e3)
+"""Shares by which the curvature is raised in steps that are tried (Marquardt 1963)."""
 
 NUISANCE_STEP = 1e-4
 """Of differences in a nuisance, in units of its scale."""
@@ -172,31 +172,25 @@ def search_again(fit: JointFit) -> JointFit:
     return JointFit(fit.trials, fit.model, fit.point, own, simulated, residuals, fit.slopes)
 
 
-def differentiate(fit: JointFit, only_effects: bool = False, own: bool = True) -> JointFit:
+def differentiate(fit: JointFit, shared: bool = True) -> JointFit:
     """The same fit with its slopes by one-sided differences.
 
     Parameters
     ----------
     fit : JointFit
-    only_effects : bool
-        Work out the columns of effects' parameters alone and keep the others.
-    own : bool
-        Work out the nuisances' columns.
+    shared : bool
+        False leaves the model's coordinates where they are, and works out the nuisances' columns alone.
     """
     model, point = fit.model, fit.point
     steps = model.steps()
-    first = len(model.physics) if only_effects else 0
     names = [unknown.name for unknown in model.unknowns]
 
     def one(index: int) -> Slopes:
         trial, nuisance = fit.trials[index], fit.nuisances[index]
         centre = trial.whitened(fit.simulated[index])
-        shared = np.empty((len(centre), len(point)))
-        if only_effects:
-            shared[:, :first] = fit.slopes[index].shared[:, :first]
-        for column in range(first, len(point)):
+        columns = np.zeros((len(centre), len(point)))
+        for column in range(len(point) if shared else 0):
             if not trial.sees(names[column]):
-                shared[:, column] = 0.0
                 continue
             moved = point.copy()
             # towards the prior, so that a bound is not stepped over
@@ -205,20 +199,19 @@ def differentiate(fit: JointFit, only_effects: bool = False, own: bool = True) -
             values, effects = model.split(moved)
             slope = (trial.whitened(trial.run(values, effects, nuisance)) - centre) / step
             # where a step leaves what can be simulated, the fit stays along this coordinate
-            shared[:, column] = slope if np.all(np.isfinite(slope)) else 0.0
-        if not own:
-            return Slopes(shared, fit.slopes[index].own)
+            columns[:, column] = slope if np.all(np.isfinite(slope)) else 0.0
         values, effects = model.split(point)
-        columns = np.empty((len(centre), len(nuisance)))
-        for column in range(len(nuisance)):
+        own = np.zeros((len(centre), len(nuisance)))
+        for column, name in enumerate(trial.nuisances):
+            if name in trial.idle and trial.idle[name] not in model.held:
+                continue
             moved = nuisance.copy()
             moved[column] += NUISANCE_STEP * trial.coarse
             ahead = trial.whitened(trial.run(values, effects, moved))
-            columns[:, column] = (ahead - centre) / (NUISANCE_STEP * trial.coarse)
-        return Slopes(shared, columns)
+            own[:, column] = (ahead - centre) / (NUISANCE_STEP * trial.coarse)
+        return Slopes(columns, np.where(np.isfinite(own), own, 0.0))
 
-    slopes = over(fit.trials, one)
-    return JointFit(fit.trials, model, point, fit.nuisances, fit.simulated, fit.residuals, tuple(slopes))
+    return replace(fit, slopes=tuple(over(fit.trials, one)))
 
 
 def _normal(fit: JointFit, weight: float, damping: float = 0.0) -> tuple[Array, Array]:
@@ -238,10 +231,12 @@ def _normal(fit: JointFit, weight: float, damping: float = 0.0) -> tuple[Array, 
     return matrix, right
 
 
-def _step(fit: JointFit, weight: float, damping: float) -> tuple[Array, list[Array]]:
-    matrix, right = _normal(fit, weight, damping)
-    matrix[np.diag_indices_from(matrix)] *= 1.0 + damping
-    move = np.linalg.solve(matrix, right) if len(right) else right
+def _step(fit: JointFit, weight: float, damping: float, shared: bool) -> tuple[Array, list[Array]]:
+    move = np.zeros(len(fit.point))
+    if shared and len(move):
+        matrix, right = _normal(fit, weight, damping)
+        matrix[np.diag_indices_from(matrix)] *= 1.0 + damping
+        move = np.linalg.solve(matrix, right)
     own = []
     for slopes, residual, nuisance in zip(fit.slopes, fit.residuals, fit.nuisances, strict=True):
         b = slopes.own
@@ -252,49 +247,54 @@ def _step(fit: JointFit, weight: float, damping: float) -> tuple[Array, list[Arr
     return move, own
 
 
-def descend(fit: JointFit, iterations: int, fresh: str = "all", independent: float | None = None) -> JointFit:
+def descend(
+    fit: JointFit,
+    iterations: int,
+    independent: float | None = None,
+    settled: float = SETTLED,
+    shared: bool = True,
+) -> JointFit:
     """Damped Gauss-Newton.
 
     Parameters
     ----------
     fit : JointFit
-        Where to begin; with slopes unless they are made fresh.
+        Where to begin.
     iterations : int
-    fresh : {"all", "effects", "none"}
-        Which slopes are worked out anew at each iteration. Those of the baseline change little when an effect is
-        added, and cost ten times those of an effect.
     independent : float or None
         Number of independent samples; None takes each residual's own.
+    settled : float
+        Fall of the cost at which the fit is at rest.
+    shared : bool
+        False moves the nuisances alone.
     """
     damping = 0.0
     for _ in range(iterations):
-        fit = search_again(fit)
-        if fresh == "all":
-            fit = differentiate(fit)
-        elif fresh == "effects" and fit.model.free:
-            fit = differentiate(fit, only_effects=True, own=False)
+        fit = differentiate(search_again(fit), shared)
         counted = independent or fit.independent
         before = fit.cost(counted)
-        after = fit
-        for _ in range(3):
-            move, own = _step(fit, counted / fit.rss, damping)
-            for share in SHARES:
-                trial = evaluate(
-                    fit.trials,
-                    fit.model,
-                    fit.point + share * move,
-                    [n + share * o for n, o in zip(fit.nuisances, own, strict=True)],
-                    fit.slopes,
-                )
-                if trial.cost(counted) < before:
-                    after = trial
-                    break
-            if after is not fit:
-                break
-            damping = max(10.0 * damping, 1e-2)
-        damping *= 0.1
+        after, damping = _best_step(fit, counted, damping, shared)
         gain = before - after.cost(counted)
         fit = after
-        if gain < SETTLED:
+        if gain < settled:
             break
     return fit
+
+
+def _best_step(fit: JointFit, counted: float, damping: float, shared: bool) -> tuple[JointFit, float]:
+    """The lowest cost over dampings about the last one; a simulation costs a thirtieth of the slopes.
+
+    Dampings are tried from small to large until the cost rises again after it has fallen below where it was.
+    """
+    best, chosen, lowest = fit, damping, fit.cost(counted)
+    ladder = [0.0, *DAMPINGS] if damping == 0.0 else [d for d in (0.0, *DAMPINGS) if d == 0.0 or d >= 0.01 * damping]
+    for candidate in ladder:
+        move, own = _step(fit, counted / fit.rss, candidate, shared)
+        nuisances = [n + o for n, o in zip(fit.nuisances, own, strict=True)]
+        trial = evaluate(fit.trials, fit.model, fit.point + move, nuisances, fit.slopes)
+        cost = trial.cost(counted)
+        if cost < lowest:
+            best, chosen, lowest = trial, candidate, cost
+        elif best is not fit:
+            break
+    return best, chosen

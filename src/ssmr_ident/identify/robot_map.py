@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
+from threading import local
 
 import numpy as np
 from scipy.stats import t as student
@@ -94,6 +95,10 @@ def set_aside(unknowns: Sequence[Unknown], motions: Collection[str]) -> tuple[Un
     return tuple(replace(u, prior_std=None) if u.name in free else u for u in unknowns)
 
 
+_LAST = local()
+"""The robot that a thread built last: differences in the state at the release ask for the same one many times."""
+
+
 @dataclass(frozen=True)
 class RobotBuilder:
     """From parameter values to a robot.
@@ -111,6 +116,14 @@ class RobotBuilder:
         return RobotBuilder(robot_from_parameters(parameters))
 
     def __call__(self, values: Mapping[str, float]) -> Robot:
+        last = getattr(_LAST, "made", None)
+        if last is not None and last[0] is self.nominal and last[1] == values:
+            return last[2]
+        robot = self._made(values)
+        _LAST.made = (self.nominal, dict(values), robot)
+        return robot
+
+    def _made(self, values: Mapping[str, float]) -> Robot:
         robot = self.nominal
         inertia = robot.inertia.copy()
         for row, column, axis in ((0, 0, "xx"), (1, 1, "yy"), (2, 2, "zz"), (0, 2, "xz"), (0, 1, "xy"), (1, 2, "yz")):

@@ -8,6 +8,7 @@ from enum import Enum
 from typing import Any
 
 from ssmr_ident.core.parameter import Parameter
+from ssmr_ident.core.shown import Shown
 
 
 class Site(Enum):
@@ -66,7 +67,7 @@ def _product(text: str, sizes: Mapping[str, float]) -> float:
 
 
 @dataclass(frozen=True, eq=False)
-class Effect:
+class Effect(Shown):
     """One effect of the catalogue.
 
     Parameters
@@ -93,6 +94,8 @@ class Effect:
         their nominal values; plain numbers are SI.
     holds : mapping of parameter to tuple of float
         Parameters that are not fitted but tried at each of these values.
+    grows : tuple of str
+        Parameters that a small effect is proportional to, where these are not the ones that switch it off.
     """
 
     id: str
@@ -106,6 +109,7 @@ class Effect:
     rig: bool = False
     probes: tuple[Mapping[str, float | Sized], ...] = ()
     holds: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
+    grows: tuple[str, ...] = ()
 
     @property
     def amplitudes(self) -> tuple[Parameter, ...]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from weakref import WeakKeyDictionary
+
 import numpy as np
 
 from ssmr_ident.physics.robot import GRAVITY, Robot
@@ -21,6 +23,17 @@ def rest_pose(robot: Robot, cubic: float = 0.0) -> np.ndarray:
     (3,) float [m, rad, rad]
         Height of the CoM above the floor, roll and pitch.
     """
+    known = _FOUND.setdefault(robot, {})
+    if cubic not in known:
+        known[cubic] = _newton(robot, cubic)
+    return known[cubic].copy()
+
+
+_FOUND: WeakKeyDictionary[Robot, dict[float, np.ndarray]] = WeakKeyDictionary()
+"""Rest poses of robots that are still in use: one robot is let go from many starts."""
+
+
+def _newton(robot: Robot, cubic: float) -> np.ndarray:
     sink = robot.mass * GRAVITY / (4.0 * robot.stiffness[2])
     pose = np.array([robot.height - sink, 0.0, 0.0])
     for _ in range(30):

@@ -10,15 +10,17 @@ import numpy as np
 from ssmr_ident.campaign import Measurement
 from ssmr_ident.core.errors import InputError, SimulationError
 from ssmr_ident.identify.body_response import body_response, sensor_gains
-from ssmr_ident.identify.free_decays import LARGEST_ORDER, BodyDecay, body_decay
-from ssmr_ident.identify.noise import fit_noise
+from ssmr_ident.identify.decay_record import spread
+from ssmr_ident.identify.free_decays import BodyDecay, body_decay
+from ssmr_ident.identify.noise import AutoregressiveNoise
 from ssmr_ident.identify.output_error import START_SCALES
 from ssmr_ident.identify.robot_map import RobotBuilder
 from ssmr_ident.identify.trials.pure_rotation import PureRotation, seen_axis
-from ssmr_ident.identify.trials.trial import Array, Trial, Values
+from ssmr_ident.identify.trials.trial import Array, Course, Trial, Values
 from ssmr_ident.physics.linear import COORDINATES
 from ssmr_ident.physics.robot import Robot
 from ssmr_ident.physics.slots import Effects
+from ssmr_ident.signals.metrics import LOW_PASS_HZ
 from ssmr_ident.simulate.scenarios import Scenario
 from ssmr_ident.simulate.simulation import simulate
 
@@ -34,6 +36,12 @@ STEP = 5e-4
 LOUD = 1.25
 """Rms of a quarter of a second over the quiet tail's, above which a decay counts as not over yet: samples in which
 nothing moves tell nothing of the physics, and cost as much as the others."""
+
+FINE_STEP = 2e-4
+"""Of what is compared and drawn."""
+
+ROUGH_STEP = 1e-3
+"""Of parts of a recording, whose fits only lead to that of the whole."""
 
 FEWEST = 24
 """Blocks that even the shortest part of a decay keeps."""
@@ -74,10 +82,12 @@ def decay_trial(measurement: Measurement, builder: RobotBuilder, decoupled: bool
     whole = decay.nuisances()
     quiet = int((1.0 - LONGEST_QUIET) * len(decay.samples))
     rest = decay.samples - whole @ np.linalg.lstsq(whole[quiet:], decay.samples[quiet:], rcond=None)[0]
-    noises = tuple(fit_noise(rest[quiet:, c], LARGEST_ORDER, whole.shape[1]) for c in range(len(names)))
+    # second differences hardly see a motion that goes on to the end; a fitted noise model would take it for noise
+    noises = tuple(AutoregressiveNoise(np.ones(1), spread(rest[quiet:, c])) for c in range(len(names)))
     kept = _loud_until(rest, quiet, decay.step)
     model = PureRotation(names[0]) if decoupled else None
-    facts = _Facts(measurement.name, names, builder, model, whole if whole.shape[1] else np.ones((len(rest), 1)))
+    basis = whole if whole.shape[1] else np.ones((len(rest), 1))
+    facts = _Facts(measurement.name, measurement.entry.motion or "", names, STEP, builder, model, basis)
     return _trial(replace(decay, noises=noises), kept, facts)
 
 
@@ -86,7 +96,9 @@ class _Facts:
     """What a decay's trial is made of whatever its length."""
 
     name: str
+    kind: str
     channels: tuple[str, ...]
+    step: float
     builder: RobotBuilder
     model: PureRotation | None
     basis: Array
@@ -100,22 +112,30 @@ def _trial(whole: BodyDecay, kept: int, facts: _Facts) -> Trial:
     raw = decay.record.samples[skip:length].reshape(kept, decay.block, -1)
     counts = np.all(np.abs(raw) < 0.999 * builder.nominal.accelerometer.range_m_s2, axis=1)
 
-    def simulated(values: Values, effects: Effects, nuisance: Array) -> Array:
-        course = _course(builder(values), effects, nuisance, decay, length)
-        return decay.averaged(course[:, list(decay.axes)])
+    def simulated(values: Values, effects: Effects, nuisance: Array, samples: int, step: float) -> Array:
+        return _course(builder(values), effects, nuisance, decay, samples, step)[:, list(decay.axes)]
 
-    def run(values: Values, effects: Effects, nuisance: Array) -> Array:
+    def followed(values: Values, effects: Effects, nuisance: Array, samples: int, step: float) -> Array:
         if model is None:
-            return simulated(values, effects, nuisance)
-        coupled = "translation_coupling" in effects
+            return simulated(values, effects, nuisance, samples, step)
         others = {name: effect for name, effect in effects.items() if name != "translation_coupling"}
-        if coupled:
-            return simulated(values, others, nuisance)
-        pure = decay.averaged(model.responses(builder(values), length, decay.record.step) @ nuisance[:12])
+        if "translation_coupling" in effects:
+            return simulated(values, others, nuisance, samples, step)
+        pure = model.responses(builder(values), samples, decay.record.step) @ nuisance[:12]
         if not others:
             return pure
         # what an effect adds to the six degrees of freedom, added to the pure rotation
-        return pure + simulated(values, others, nuisance) - simulated(values, {}, nuisance)
+        more, plain = (simulated(values, e, nuisance, samples, step) for e in (others, {}))
+        return pure + more - plain
+
+    def run(values: Values, effects: Effects, nuisance: Array) -> Array:
+        return decay.averaged(followed(values, effects, nuisance, length, facts.step))
+
+    everything = decay.record.samples
+
+    def settled(values: Values, effects: Effects, nuisance: Array) -> Array:
+        # until the sensor's own transient is over, nobody knows what it was doing before the release
+        return followed(values, effects, nuisance, len(everything), FINE_STEP)[skip:]
 
     def begin(values: Values, effects: Effects) -> Array:
         robot = builder(values)
@@ -127,6 +147,7 @@ def _trial(whole: BodyDecay, kept: int, facts: _Facts) -> Trial:
     trial = Trial(
         facts.name,
         "free_response",
+        facts.kind,
         facts.channels,
         decay.record.start_s + decay.first + decay.step * np.arange(kept),
         decay.samples,
@@ -136,10 +157,20 @@ def _trial(whole: BodyDecay, kept: int, facts: _Facts) -> Trial:
         begin,
         STATES,
         SCALES,
+        Course(
+            decay.record.start_s + decay.record.times[skip:],
+            everything[skip:],
+            settled,
+            ("m/s^2",) * len(facts.channels),
+            LOW_PASS_HZ,
+        ),
         None if counts.all() else counts,
         {"clipped": float((~counts).sum())},
         ("cable.",),
-        shorten=lambda seconds: _trial(whole, min(kept, max(FEWEST, round(seconds / whole.step))), facts),
+        idle=dict.fromkeys(STATES[-4:], "flexible_mast"),
+        shorten=lambda seconds: _trial(
+            whole, min(kept, max(FEWEST, round(seconds / whole.step))), replace(facts, step=ROUGH_STEP)
+        ),
     )
     return trial
 
@@ -161,15 +192,15 @@ def _loud_until(rest: Array, quiet: int, step: float) -> int:
     return max(min(count, last), min(count, round(0.5 / step)))
 
 
-def _course(robot: Robot, effects: Effects, nuisance: Array, decay: BodyDecay, length: int) -> Array:
+def _course(robot: Robot, effects: Effects, nuisance: Array, decay: BodyDecay, length: int, step: float) -> Array:
     state = nuisance * SCALES
     names = (*COORDINATES, *SWAY)
     offset = dict(zip(names, map(float, (*state[:6], *state[12:14])), strict=True))
     velocity = dict(zip(names, map(float, (*state[6:12], *state[14:])), strict=True))
     scenario = Scenario("free_response", length * decay.record.step, offset=offset, velocity=velocity)
     try:
-        return simulate(robot, scenario, 1.0 / decay.record.step, step=STEP, effects=effects).values
-    except SimulationError:
+        return simulate(robot, scenario, 1.0 / decay.record.step, step=step, effects=effects).values
+    except (SimulationError, InputError):  # the second: a mast heavier than the robot
         return np.full((length, 3), math.nan)
 
 

@@ -7,15 +7,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ssmr_ident.campaign import MOTIONS, Measurement
+from ssmr_ident.campaign import MOTIONS, UNITS, Measurement
 from ssmr_ident.core.errors import InputError, SimulationError
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.identify.decay_record import spread
 from ssmr_ident.identify.noise import AutoregressiveNoise
-from ssmr_ident.identify.trials.trial import Array, Trial, Values
+from ssmr_ident.identify.trials.trial import Array, Course, Trial, Values
 from ssmr_ident.physics.rig import RIG_KEYS, Rig, rig_from_parameters
 from ssmr_ident.physics.slots import Effects
 from ssmr_ident.signals.grid import even_samples
+from ssmr_ident.signals.metrics import LOW_PASS_HZ
 from ssmr_ident.simulate.rig import band_limited, simulate_rig
 
 COLUMN = {"position": 0, "angle": 0, "velocity": 1, "angular_rate": 1, "acceleration": 2, "acceleration_2": 2}
@@ -96,7 +97,7 @@ def forced_trial(measurement: Measurement, parameters: ParameterSet) -> Trial:
     def averaged(signal: Array) -> Array:
         return signal[: count * block].reshape(count, block, -1).mean(axis=1)
 
-    def run(values: Values, effects: Effects, nuisance: Array) -> Array:
+    def whole(values: Values, effects: Effects, nuisance: Array) -> Array:
         state = nuisance * scales
         rig = builder(values)
         try:
@@ -112,10 +113,13 @@ def forced_trial(measurement: Measurement, parameters: ParameterSet) -> Trial:
                 fine=True,
             )[:, columns]
         except SimulationError:
-            return np.full((count, len(columns)), math.nan)
+            return np.full((len(measured), len(columns)), math.nan)
         if second is not None:
             motion[:, second] *= state[-1]
-        return averaged(motion)
+        return motion
+
+    def run(values: Values, effects: Effects, nuisance: Array) -> Array:
+        return averaged(whole(values, effects, nuisance))
 
     target = averaged(measured)
     noises = tuple(AutoregressiveNoise(np.ones(1), spread(target[:, c])) for c in range(len(outputs)))
@@ -126,6 +130,7 @@ def forced_trial(measurement: Measurement, parameters: ParameterSet) -> Trial:
     trial = Trial(
         measurement.name,
         measurement.entry.experiment,
+        "",
         outputs,
         even.start + (np.arange(count) + 0.5 * (block - 1) / block) * block / rate,
         target,
@@ -135,6 +140,7 @@ def forced_trial(measurement: Measurement, parameters: ParameterSet) -> Trial:
         begin,
         nuisances,
         scales,
+        Course(even.time, measured, whole, tuple(UNITS[name] for name in outputs), LOW_PASS_HZ),
     )
     return trial
 

@@ -13,7 +13,7 @@ from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.identify.decay_record import spread
 from ssmr_ident.identify.noise import AutoregressiveNoise
 from ssmr_ident.identify.robot_map import RobotBuilder
-from ssmr_ident.identify.trials.trial import Array, Trial, Values
+from ssmr_ident.identify.trials.trial import Array, Course, Trial, Values
 from ssmr_ident.physics.rig import Block, block_from_parameters
 from ssmr_ident.physics.robot import Robot
 from ssmr_ident.physics.slots import Effects
@@ -77,8 +77,11 @@ def pull_trial(measurement: Measurement, parameters: ParameterSet) -> Trial:
         except SimulationError:
             return np.full(len(travel), np.nan)
 
+    def whole(values: Values, effects: Effects, nuisance: Array) -> Array:
+        return simulated(values, effects, float(np.clip(nuisance[0], 0.0, 0.5)) * size)[:, None]
+
     def run(values: Values, effects: Effects, nuisance: Array) -> Array:
-        return averaged(simulated(values, effects, float(np.clip(nuisance[0], 0.0, 0.5)) * size))
+        return averaged(whole(values, effects, nuisance)[:, 0])
 
     def begin(values: Values, effects: Effects) -> Array:
         return np.array([find_slack(measured, travel, simulated(values, effects, 0.0)) / size])
@@ -87,6 +90,7 @@ def pull_trial(measurement: Measurement, parameters: ParameterSet) -> Trial:
     return Trial(
         measurement.name,
         measurement.entry.experiment,
+        measurement.entry.direction or "",
         ("force",),
         start + step * (block * np.arange(count) + 0.5 * (block - 1)),
         target,
@@ -94,8 +98,9 @@ def pull_trial(measurement: Measurement, parameters: ParameterSet) -> Trial:
         np.ones((count, 1)),
         run,
         begin,
-        ("slack",),
-        np.ones(1),
+        ("slack_m",),
+        np.array([size]),
+        Course(start + elapsed, measured[:, None], whole, ("N",), None),
         counts,
         {"travel_m": size},
         BLIND["wheel" if measurement.entry.experiment != "pull" else "pull"],

@@ -8,6 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
+from ssmr_ident.identify.decay_record import spread
 from ssmr_ident.identify.decay_start import mains_frequency, nuisance_columns
 from ssmr_ident.identify.noise import AutoregressiveNoise
 from ssmr_ident.physics.slots import Effects
@@ -31,12 +32,37 @@ def mains_lines(samples: Array, step: float) -> tuple[float, ...]:
 
 
 @dataclass(frozen=True, eq=False)
+class Course:
+    """A recording sample by sample, as it is compared and drawn.
+
+    Parameters
+    ----------
+    times : (m,) float [s]
+        The recording's own.
+    measured : (m, c) float
+    run : callable
+        ``run(values, effects, nuisance)``, (m, c).
+    units : tuple of str
+    low_pass_hz : float or None
+        Of the comparison; None as logged.
+    """
+
+    times: Array
+    measured: Array
+    run: Runner
+    units: tuple[str, ...]
+    low_pass_hz: float | None
+
+
+@dataclass(frozen=True, eq=False)
 class Trial:
     """A recording on the grid on which it is fitted.
 
     Parameters
     ----------
     name, experiment : str
+    kind : str
+        Motion of a decay, direction of a pull: recordings of one kind show the same.
     channels : tuple of str
     times : (n,) float [s]
         The recording's own.
@@ -53,7 +79,9 @@ class Trial:
     nuisances : tuple of str
         What is fitted per trial beside the physics: state at the release, slack, force zero.
     scales : (k,) float
-        Their prior standard deviations about 0 (or about ``begin`` where ``centred``).
+        Their prior standard deviations about 0.
+    course : Course
+        All samples, beyond those that are fitted too.
     counts : (n, c) bool
         False for samples that say nothing (a converter at its end).
     facts : mapping of str to float
@@ -62,14 +90,19 @@ class Trial:
         How names of parameters begin that this recording does not depend on.
     coarse : float
         Factor on the steps of differences: where contacts slide and stick anew, small ones see only that.
+    idle : mapping of str to str
+        Nuisances that do nothing unless an effect is active: name to the effect's id.
     searched : bool
         ``begin`` finds the nuisances by a search that does not get caught where a descent does.
     shorten : callable or None
         ``shorten(seconds)`` is the same recording up to there, for fits that are led from its beginning to its end.
+    part : (float, float) or None [s]
+        Times that count, where a lone recording is split into a part that is fitted and one that is kept back.
     """
 
     name: str
     experiment: str
+    kind: str
     channels: tuple[str, ...]
     times: Array
     target: Array
@@ -79,12 +112,15 @@ class Trial:
     begin: Callable[[Values, Effects], Array]
     nuisances: tuple[str, ...]
     scales: Array
+    course: Course
     counts: Array | None = None
     facts: Mapping[str, float] = field(default_factory=dict)
     blind: tuple[str, ...] = ()
     coarse: float = 1.0
+    idle: Mapping[str, str] = field(default_factory=dict)
     searched: bool = False
     shorten: Callable[[float], Trial] | None = None
+    part: tuple[float, float] | None = None
 
     @property
     def step(self) -> float:
@@ -142,6 +178,12 @@ class Trial:
         if self.shorten is None or seconds >= float(self.times[-1] - self.times[0]):
             return self
         return self.shorten(seconds).with_noises(self.noises)
+
+    def renoised(self, simulated: Array) -> Trial:
+        """The same with each channel's noise taken from what a simulation leaves at its fastest: white noise shows in
+        second differences, and a slow misfit hardly does."""
+        rest = self.colour(simulated)
+        return self.with_noises(tuple(AutoregressiveNoise(np.ones(1), spread(column)) for column in rest.T))
 
     def with_lines(self, residual: Array) -> Trial:
         """The same with the mains lines that stand out of a residual, (n, c), added to the basis."""

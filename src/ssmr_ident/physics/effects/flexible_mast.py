@@ -30,11 +30,12 @@ EFFECT = Effect(
     ),
     experiments=("free_response", "swivel"),
     acts={Site.BODY: force},
+    grows=("mass_kg",),
     probes=(
-        {"f_mast_Hz": 5.0, "mass_kg": 2.5, "height_above_com_m": 0.3, "damping_ratio": 0.03},
-        {"f_mast_Hz": 7.0, "mass_kg": 2.5, "height_above_com_m": 0.3, "damping_ratio": 0.03},
-        {"f_mast_Hz": 9.0, "mass_kg": 2.5, "height_above_com_m": 0.3, "damping_ratio": 0.03},
-        {"f_mast_Hz": 12.0, "mass_kg": 2.5, "height_above_com_m": 0.3, "damping_ratio": 0.03},
-        {"f_mast_Hz": 16.0, "mass_kg": 2.5, "height_above_com_m": 0.3, "damping_ratio": 0.03},
+        {"f_mast_Hz": 5.0, "mass_kg": 1.0, "height_above_com_m": 0.3, "damping_ratio": 0.03},
+        {"f_mast_Hz": 7.0, "mass_kg": 1.0, "height_above_com_m": 0.3, "damping_ratio": 0.03},
+        {"f_mast_Hz": 9.0, "mass_kg": 1.0, "height_above_com_m": 0.3, "damping_ratio": 0.03},
+        {"f_mast_Hz": 12.0, "mass_kg": 1.0, "height_above_com_m": 0.3, "damping_ratio": 0.03},
+        {"f_mast_Hz": 16.0, "mass_kg": 1.0, "height_above_com_m": 0.3, "damping_ratio": 0.03},
     ),
 )

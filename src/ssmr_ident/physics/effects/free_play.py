@@ -41,8 +41,8 @@ EFFECT = Effect(
     acts={Site.ELEMENT: force},
     rig=True,
     probes=(
-        {"gap_m": Sized(0.05, "deflection")},
-        {"gap_m": Sized(0.3, "deflection")},
+        {"gap_m": Sized(0.05, "deflection"), "rounding": 0.2},
+        {"gap_m": Sized(0.3, "deflection"), "rounding": 0.2},
     ),
     holds={"share_x": (1.0, 0.0)},
 )

@@ -1,0 +1,53 @@
+"""``ident diagnose``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+EXAMPLES = (
+    "ident diagnose data/raw/free_response -o out/diagnosis",
+    "ident diagnose my-session --params params.yaml -o diagnosis",
+    "ident diagnose my-session -o diagnosis --json",
+)
+
+
+def command(
+    session: Annotated[Path, typer.Argument(help="Session folder, or its session.yaml.")],
+    output: Annotated[
+        Path,
+        typer.Option("-o", "--output", help="Folder for diagnosis.yaml, before.yaml, after.yaml and report.html."),
+    ],
+    params: Annotated[
+        str, typer.Option("--params", "-p", help="What is known beforehand; left out: the session's own robot.")
+    ] = "",
+    as_json: Annotated[bool, typer.Option("--json", help="Print the diagnosis as JSON.")] = False,
+    quiet: Annotated[bool, typer.Option("-q", "--quiet", help="Print nothing but errors.")] = False,
+    seed: Annotated[int, typer.Option(help="Of permutation tests and simulated floors.")] = 0,
+) -> None:
+    """Say what physics the simulation leaves out, model it, and show it on recordings that were never fitted."""
+    from ssmr_ident.campaign import load
+    from ssmr_ident.cli.called import called
+    from ssmr_ident.cli.progress import stages
+    from ssmr_ident.core.errors import InputError
+    from ssmr_ident.pipeline.diagnose import diagnose, write_diagnosis
+    from ssmr_ident.session import read_parameters
+
+    if output.exists() and not output.is_dir():
+        raise InputError(str(output), "is a file, expected a folder", "Give another name with -o")
+    if not output.absolute().parent.is_dir():
+        raise InputError(str(output), "its folder does not exist", "Make the folder, or write elsewhere with -o")
+    known = read_parameters(params) if params else None
+    with stages(hidden=quiet or as_json) as step:
+        campaign = load(session, lambda done, total: step("reading the logs", done, total))
+        diagnosis = diagnose(campaign, known, seed, step)
+    write_diagnosis(diagnosis, campaign, output, called(), seed)
+    if as_json:
+        import json
+
+        typer.echo(json.dumps(diagnosis.as_dict(), ensure_ascii=False, indent=1, allow_nan=False))
+    elif not quiet:
+        print(diagnosis)
+        print(f"report: {output / 'report.html'}")

@@ -1,0 +1,162 @@
+"""From what the search found to the answer: verdict, names, numbers, sentences, and what the figures are drawn from."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ssmr_ident.core.parameter import ParameterSet
+from ssmr_ident.diagnose.diagnosis import MISSING, NOTHING, UNDETERMINED, Conflict, Diagnosis, NamedEffect, Tried, Worth
+from ssmr_ident.diagnose.discriminate import next_experiment
+from ssmr_ident.diagnose.drift import drifts
+from ssmr_ident.diagnose.engine import Outcome
+from ssmr_ident.diagnose.evidence import Evidence
+from ssmr_ident.diagnose.exported import exported
+from ssmr_ident.diagnose.locate import located
+from ssmr_ident.diagnose.residual_map import residual_maps
+from ssmr_ident.diagnose.surface import surfaces
+from ssmr_ident.diagnose.weigh import Explanation, shares
+from ssmr_ident.diagnose.words import law, missing, nothing, readable, told, undetermined
+from ssmr_ident.diagnose.worth import overlays, predictions, worth
+from ssmr_ident.identify.joint import JointFit, differentiate
+
+METRIC = "nrmse_percent"
+
+CONFLICT = 2.0
+"""Prior standard deviations from which a parameter counts as pulled away from what is known of it."""
+
+MOST_RIVALS = 2
+"""Explanations beside the best with which an answer is still one."""
+
+UNEXPLAINED = 2.0
+"""Error over the noise floor, on recordings kept back, from which something is missing even if nothing names it. The
+floor is known to some ten percent; coloured noise stays below."""
+
+
+def assembled(outcome: Outcome, parameters: ParameterSet, everything: JointFit | None, seed: int) -> Diagnosis:
+    """The diagnosis.
+
+    Parameters
+    ----------
+    outcome : Outcome
+    parameters : ParameterSet
+        What was known beforehand.
+    everything : JointFit or None
+        The chosen model fitted to all recordings but the session's own held-out ones, where the tool kept some back.
+    seed : int
+    """
+    base, best = outcome.baseline, outcome.chosen
+    named = best is not base
+    before_fit, after_fit = predictions(base.fit), predictions(best.fit)
+    before_kept, after_kept = predictions(base.kept), predictions(best.kept)
+    training = worth(before_fit, after_fit, [t.name for t in base.fit.trials])
+    heldout = worth(before_kept, after_kept, [t.name for t in base.kept.trials])
+    conflicts = conflicting(outcome)
+    effects = _named(outcome, parameters) if named else ()
+    if named:
+        verdict = MISSING if len(outcome.rivals) <= MOST_RIVALS else UNDETERMINED
+    else:
+        verdict = UNDETERMINED if heldout.before > UNEXPLAINED * heldout.noise_floor else NOTHING
+    tried = _tried(outcome)
+    scanned = len(outcome.searches[0].suspects) if outcome.searches else 0
+    if verdict == MISSING:
+        summary = missing(effects, heldout, METRIC, conflicts)
+    elif verdict == NOTHING:
+        summary = nothing(heldout, METRIC, scanned)
+    else:
+        names = [e.id for e in (best, *outcome.rivals)] if named else [t.id for t in tried if t.id != "baseline"]
+        summary = undetermined(heldout, METRIC, names)
+    places = located(base.fit, parameters, seed=seed) if verdict != NOTHING else ()
+    advice = next_experiment(outcome.setup, best.fit, [r.fit for r in outcome.rivals]) if verdict != NOTHING else ""
+    after = exported(everything or best.fit, parameters)
+    evidence = Evidence(
+        overlays=overlays(heldout.recordings, before_kept, after_kept, heldout=True),
+        maps=residual_maps(base.fit, best.fit if named else None),
+        surfaces=surfaces(base.fit, best.fit if named else None, parameters) if verdict != NOTHING else (),
+        drifts=drifts(base.fit, seed=seed) if verdict != NOTHING else (),
+    )
+    return Diagnosis(
+        session=outcome.setup.campaign.session.name,
+        verdict=verdict,
+        located=places,
+        conflicts=conflicts,
+        effects=effects if verdict != NOTHING else (),
+        tried=tried,
+        metric=METRIC,
+        training=training,
+        heldout=heldout,
+        next_experiment=advice,
+        before=exported(base.fit, parameters),
+        after=after if named else exported(base.fit, parameters),
+        summary=summary,
+        notes=(*outcome.setup.notes, *_notes(best, heldout)),
+        evidence=evidence,
+    )
+
+
+def conflicting(outcome: Outcome) -> tuple[Conflict, ...]:
+    """Parameters that the baseline's fit pulls away from what is known of them, the worst first."""
+    known = {u.name: u for u in outcome.setup.known}
+    fit = outcome.baseline.fit
+    found = []
+    for unknown, scaled in zip(fit.model.physics, fit.point, strict=True):
+        prior, value = known[unknown.name], unknown.value(float(scaled))
+        if prior.prior_std is None:
+            continue
+        sigmas = (value - prior.prior) / prior.prior_spread
+        if abs(sigmas) > CONFLICT:
+            found.append(Conflict(unknown.name, prior.prior, value, float(sigmas), unknown.unit))
+    return tuple(sorted(found, key=lambda c: -abs(c.sigmas)))
+
+
+def _named(outcome: Outcome, parameters: ParameterSet) -> tuple[NamedEffect, ...]:
+    best = outcome.chosen
+    fitted = exported(best.fit, parameters).effects
+    share = shares(outcome.found)
+    found = []
+    for effect_id in best.fit.model.ids:
+        if effect_id in outcome.setup.model.held:
+            continue
+        confidence = sum(s for name, s in share.items() if effect_id in name.split("+"))
+        others = tuple(dict.fromkeys(o for r in outcome.rivals for o in r.fit.model.ids if o not in best.fit.model.ids))
+        values = fitted[effect_id]
+        found.append(
+            NamedEffect(effect_id, told(effect_id, values), law(effect_id), values, min(confidence, 1.0), others)
+        )
+    return tuple(found)
+
+
+def _tried(outcome: Outcome) -> tuple[Tried, ...]:
+    rows = [
+        Tried(e.id, worth(p := predictions(e.kept), p, ()).before, float(outcome.found[e.id])) for e in outcome.tried
+    ]
+    return tuple(sorted(rows, key=lambda t: -t.log_evidence))
+
+
+def _notes(best: Explanation, heldout: Worth) -> tuple[str, ...]:
+    notes = []
+    clipped = sum(t.facts.get("clipped", 0.0) for t in (*best.fit.trials, *best.kept.trials))
+    if clipped:
+        notes.append(f"{clipped:.0f} samples at the end of the sensor's range did not count")
+    bounds = [c.unknown.name for c, p in zip(best.fit.model.free, best.fit.point[len(best.fit.model.physics) :],
+              strict=True) if c.value(float(p)) in (c.parameter.lower, c.parameter.upper)]  # fmt: skip
+    if bounds:
+        notes.append(f"{', '.join(bounds)} ended on a bound: the law fits, its number says little")
+    if best.fit.model.free and heldout.after > UNEXPLAINED * heldout.noise_floor:
+        notes.append(
+            f"{readable(best.id)} still leaves {heldout.after / heldout.noise_floor:.1f} times the noise floor: the "
+            "law's form, or a smaller effect beside it, is not quite the world's"
+        )
+    return tuple(notes)
+
+
+def refitted_on_all(outcome: Outcome) -> JointFit | None:
+    """The chosen model on fitted and kept recordings alike, where it was the tool that kept some back."""
+    best = outcome.chosen
+    if not outcome.setup.kept_by_us or outcome.setup.kept[0].part is not None:
+        return None
+    from ssmr_ident.identify.joint import descend, evaluate
+
+    trials = (*best.fit.trials, *best.kept.trials)
+    nuisances = (*best.fit.nuisances, *best.kept.nuisances)
+    whole = descend(evaluate(trials, best.fit.model, best.fit.point, nuisances), 3)
+    return differentiate(whole) if np.isfinite(whole.rss) else None

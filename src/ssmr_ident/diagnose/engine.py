@@ -1,0 +1,145 @@
+"""The diagnosis of decays, pulls and rigs: noise, baseline, is anything left, which, and what it is worth."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ssmr_ident.compare.recorded import follow
+from ssmr_ident.core.parameter import ParameterSet
+from ssmr_ident.diagnose.explain import without
+from ssmr_ident.diagnose.explore import LAST, Progress, Search, best_baseline, prepared, search
+from ssmr_ident.diagnose.setup import Setup
+from ssmr_ident.diagnose.weigh import CERTAIN, TIE, Explanation, evidences
+from ssmr_ident.identify.horizons import led
+from ssmr_ident.identify.joint import JointFit, descend, differentiate
+from ssmr_ident.identify.trials import Trial
+
+MOST_EFFECTS = 2
+"""Effects that are looked for together."""
+
+SECOND = 0.7
+"""Share of the first effect's unexplained variance, on recordings kept back, that may be left when a second one is
+added: the right effect in a formula that is not quite the world's leaves structure, of which any other takes a part."""
+
+RELEVANT = 0.97
+"""The same for the first effect: an effect that saves less of the variance predicts nothing better."""
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """What the search found.
+
+    Parameters
+    ----------
+    setup : Setup
+    baseline : Explanation
+    tried : tuple of Explanation
+        All, the baseline among them.
+    chosen : Explanation
+        The baseline where nothing is missing.
+    rivals : tuple of Explanation
+        Those that fit as well as the chosen one.
+    found : dict of str to float
+        Log evidence by id, the baseline's being 0.
+    searches : tuple of Search
+    """
+
+    setup: Setup
+    baseline: Explanation
+    tried: tuple[Explanation, ...]
+    chosen: Explanation
+    rivals: tuple[Explanation, ...]
+    found: dict[str, float]
+    searches: tuple[Search, ...]
+
+
+def examine(setup: Setup, parameters: ParameterSet, progress: Progress | None = None) -> Outcome:
+    """Look for what a session's baseline leaves out."""
+    if progress:
+        progress("fitting the baseline", 0, 1)
+    setup = informed(setup, parameters)
+    fit, lengths = best_baseline(setup.fitted, setup, parameters)
+    kept = prepared(follow(setup.kept, fit.model, fit.point))
+    if progress:
+        progress("fitting the baseline", 1, 1)
+    baseline = explained(kept, fit)
+    tried, searches = [baseline], []
+    chosen = baseline
+    for _ in range(MOST_EFFECTS):
+        result = search(chosen.fit, setup.campaign.session.baseline, lengths, progress)
+        searches.append(result)
+        new = [explained(kept, f) for f in result.tried]
+        if not new:
+            break
+        leader = min(new, key=lambda e: _cost(e, chosen))
+        polished = explained(kept, polish(leader.fit, lengths))
+        if polished.fit.cost(polished.fit.independent) < leader.fit.cost(polished.fit.independent):
+            new[new.index(leader)], leader = polished, polished
+        tried += new
+        if not _better(leader, chosen, first=chosen is baseline):
+            break
+        chosen = explained(kept, differentiate(leader.fit))
+        tried[tried.index(leader)] = chosen
+    chosen, tried = _backward(kept, chosen, tried)
+    found = evidences(tried)
+    top = found[chosen.id]
+    alike = [e for e in tried if e is not chosen and len(e.fit.model.ids) <= len(chosen.fit.model.ids)]
+    rivals = sorted((e for e in alike if top - found[e.id] < TIE and e is not baseline), key=lambda e: -found[e.id])
+    return Outcome(setup, baseline, tuple(tried), chosen, tuple(rivals), found, tuple(searches))
+
+
+def explained(kept: Sequence[Trial], fit: JointFit) -> Explanation:
+    """A fit beside what it predicts of the recordings that were kept back."""
+    return Explanation(fit, follow(kept, fit.model, fit.point))
+
+
+def informed(setup: Setup, parameters: ParameterSet) -> Setup:
+    """A setup whose baseline knows what its calibration recordings tell."""
+    if not setup.calibration:
+        return setup
+    fit, _ = best_baseline(setup.calibration, setup, parameters)
+    stds = np.sqrt(np.diag(fit.covariance()))
+    physics = tuple(
+        replace(u, prior=u.value(float(p)), prior_std=max(u.std(float(p), float(s)), 1e-12))
+        for u, p, s in zip(setup.model.physics, fit.point, stds, strict=True)
+    )
+    return replace(setup, model=replace(setup.model, physics=physics))
+
+
+def polish(fit: JointFit, lengths: tuple[float, ...]) -> JointFit:
+    """An explanation led through all horizons once more, from where it stands; the better of the two."""
+    if len(lengths) == 1:
+        return descend(fit, LAST)
+    again = led(fit.trials, fit.model, fit.point, lengths, 2 * LAST)
+    further = descend(fit, LAST)
+    return min((again, further), key=lambda f: f.cost(further.independent))
+
+
+def _cost(explanation: Explanation, reference: Explanation) -> float:
+    return explanation.fit.cost(reference.fit.independent)
+
+
+def _better(leader: Explanation, before: Explanation, first: bool) -> bool:
+    """Whether an explanation is certainly better, and predicts recordings better that it has not seen."""
+    found = evidences([before, leader])
+    gain = found[leader.id] - found[before.id]
+    saved = leader.kept.rss / before.kept.rss
+    return gain > CERTAIN and saved < (RELEVANT if first else SECOND)
+
+
+def _backward(
+    kept: Sequence[Trial], chosen: Explanation, tried: list[Explanation]
+) -> tuple[Explanation, list[Explanation]]:
+    """Take out of a pair the effect that the other one made superfluous."""
+    ids = chosen.fit.model.ids
+    if len(ids) < 2:
+        return chosen, tried
+    for effect_id in ids[:-1]:
+        alone = explained(kept, differentiate(descend(without(chosen.fit, effect_id), LAST)))
+        tried = [*(e for e in tried if e.id != alone.id), alone]
+        if not _better(chosen, alone, first=False):
+            return alone, tried
+    return chosen, tried

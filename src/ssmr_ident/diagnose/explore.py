@@ -1,0 +1,203 @@
+"""The search: the baseline at its best, every effect beside it, then what two effects do together."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ssmr_ident.compare.recorded import radian
+from ssmr_ident.core.parameter import ParameterSet
+from ssmr_ident.diagnose.explain import begin_with
+from ssmr_ident.diagnose.scan import Suspect, candidates, scan
+from ssmr_ident.diagnose.setup import Setup
+from ssmr_ident.diagnose.start import begin
+from ssmr_ident.identify.horizons import STEPS, horizons, led
+from ssmr_ident.identify.joint import JointFit, descend, differentiate, evaluate
+from ssmr_ident.identify.trials import Trial
+
+Progress = Callable[[str, int, int], None]
+
+PROMISING = 6.0
+"""Fall of n ln(RSS), beyond one for each parameter, from which a suspect is refitted. Noise alone passes it in 4 of
+100 effects (chi-square, one and two parameters); passing costs time and decides nothing."""
+
+LOUD = 2.0
+"""Variance over the noise's from which a residual is large: then effects are tried by simulation alone."""
+
+HEATS = ((0, 3), (12, 4), (6, 6))
+"""Rounds in which probes are tried: how many go in, and Gauss-Newton steps in each. All probes go into the first, on
+the first horizon; the others are run on the second."""
+
+SCREENED, REFITTED = 8, 3
+"""Effects that are refitted on the first horizons, and to the end."""
+
+LAST = 8
+"""Gauss-Newton steps on whole recordings."""
+
+
+@dataclass(frozen=True, eq=False)
+class Search:
+    """What was tried.
+
+    Parameters
+    ----------
+    baseline : JointFit
+        At its best, with slopes.
+    suspects : tuple of tuple of Suspect
+        Per effect, most promising first.
+    tried : tuple of JointFit
+        Models with one effect more, refitted to the end.
+    """
+
+    baseline: JointFit
+    suspects: tuple[tuple[Suspect, ...], ...]
+    tried: tuple[JointFit, ...]
+    lengths: tuple[float, ...]
+
+
+def fit_baseline(trials: Sequence[Trial], setup: Setup, parameters: ParameterSet) -> JointFit:
+    """Maximum a posteriori of the baseline, mains lines and noise taken from what it leaves."""
+    fit = begin(trials, setup, parameters)
+    fit = descend(fit, 2)
+    fit = evaluate(prepared(fit), fit.model, fit.point, fit.nuisances, fit.slopes)
+    return differentiate(descend(fit, LAST))
+
+
+def prepared(fit: JointFit) -> list[Trial]:
+    """A fit's trials with the mains lines that stand out of its residual.
+
+    Where no quiet tail tells the noise, it is what the fit leaves at its fastest.
+    """
+    found = []
+    for trial, simulated in zip(fit.trials, fit.simulated, strict=True):
+        clean = trial.with_lines(trial.colour(simulated))
+        found.append(clean if trial.shorten else clean.renoised(simulated))
+    return found
+
+
+def best_baseline(
+    trials: Sequence[Trial], setup: Setup, parameters: ParameterSet
+) -> tuple[JointFit, tuple[float, ...]]:
+    """The baseline from two roads: straight over whole recordings, and led from their beginnings where that leaves
+    more than noise."""
+    fit = fit_baseline(trials, setup, parameters)
+    lengths = tuple(horizons(fit.trials, radian(fit.trials)))
+    if fit.rss / fit.size > LOUD and len(lengths) > 1:
+        other = differentiate(led(fit.trials, fit.model, fit.point, lengths, LAST))
+        fit = min((fit, other), key=lambda f: f.cost(fit.independent))
+    return fit, lengths
+
+
+def search(
+    base: JointFit,
+    baseline: str,
+    lengths: Sequence[float],
+    progress: Progress | None = None,
+) -> Search:
+    """Every effect of the catalogue beside a model.
+
+    Parameters
+    ----------
+    base : JointFit
+        With slopes.
+    baseline : str
+        The session's.
+    lengths : sequence of float [s]
+        Horizons.
+    progress : callable, optional
+    """
+    groups = scan(base, candidates(base, baseline), base.independent)
+    if len(lengths) > 1 and base.rss / base.size > LOUD:
+        rough = _screened(base, groups, lengths, progress)
+        rest = list(lengths[1:])
+    else:
+        chosen = [g for g in groups if g[0].gain > PROMISING + len(g[0].at)][:SCREENED]
+        rough = [_best([_started(base, suspect) for suspect in _variants(group)]) for group in chosen]
+        rest = [np.inf]
+    tried = []
+    for index, fit in enumerate(rough[:REFITTED]):
+        if progress:
+            progress("refitting explanations", index, min(len(rough), REFITTED))
+        tried.append(led(base.trials, fit.model, fit.point, rest, LAST, _all_nuisances(base, fit, lengths)))
+    if progress:
+        progress("refitting explanations", 1, 1)
+    return Search(base, tuple(tuple(g) for g in groups), tuple(tried), tuple(lengths))
+
+
+def _screened(
+    base: JointFit, groups: Sequence[Sequence[Suspect]], lengths: Sequence[float], progress: Progress | None
+) -> list[JointFit]:
+    """All effects on the first horizon, the better half on the second; the most likely first.
+
+    Where much is left unexplained, what a straight line promises is no guide: an effect may bend the motion far
+    away from the baseline's.
+    """
+    loud = _loudest(base)
+    few = evaluate([base.trials[k] for k in loud], base.model, base.point, [base.nuisances[k] for k in loud])
+    first = led(few.trials, few.model, few.point, lengths[:1], STEPS, few.nuisances)
+    begun = []
+    for index, group in enumerate(groups):
+        if progress:
+            progress("trying effects", index, len(groups) + 3)
+        for suspect in group:
+            model, point = begin_with(first, suspect)
+            begun.append(led(few.trials, model, point, lengths[:1], HEATS[0][1], first.nuisances))
+    field = begun
+    for heat, (kept, steps) in enumerate(HEATS[1:]):
+        field = _ranked(field)[:kept]
+        field = [led(few.trials, f.model, f.point, lengths[1:2], steps, f.nuisances) for f in field]
+        if progress:
+            progress("trying effects", len(groups) + heat, len(groups) + 3)
+    best: dict[tuple[str, ...], JointFit] = {}
+    for fit in _ranked(field):
+        best.setdefault(fit.model.ids, fit)
+    if progress:
+        progress("trying effects", 1, 1)
+    return list(best.values())
+
+
+def _ranked(fits: Sequence[JointFit]) -> list[JointFit]:
+    finite = [f for f in fits if np.isfinite(f.rss)]
+    if not finite:
+        return []
+    counted = min(finite, key=lambda f: f.rss).independent
+    return sorted(finite, key=lambda f: f.cost(counted))
+
+
+def _loudest(base: JointFit) -> list[int]:
+    """The loudest trial of each kind."""
+    best: dict[tuple[str, str], int] = {}
+    for index, trial in enumerate(base.trials):
+        kind = (trial.experiment, trial.kind)
+        if kind not in best or np.ptp(trial.target) > np.ptp(base.trials[best[kind]].target):
+            best[kind] = index
+    return sorted(best.values())
+
+
+def _all_nuisances(base: JointFit, fit: JointFit, lengths: Sequence[float]) -> list[np.ndarray]:
+    """Nuisances for all trials: those of the fit, and for trials that it left out those that fit it best."""
+    known = {trial.name: own for trial, own in zip(fit.trials, fit.nuisances, strict=True)}
+    left = [trial for trial in base.trials if trial.name not in known]
+    if left:
+        short = led(left, fit.model, fit.point, lengths[:2], STEPS, shared=False)
+        known |= {trial.name: own for trial, own in zip(left, short.nuisances, strict=True)}
+    return [known[trial.name] for trial in base.trials]
+
+
+def _started(base: JointFit, suspect: Suspect) -> JointFit:
+    model, point = begin_with(base, suspect)
+    return descend(evaluate(base.trials, model, point, base.nuisances), 2)
+
+
+def _best(fits: Sequence[JointFit]) -> JointFit:
+    return min(fits, key=lambda f: f.rss if np.isfinite(f.rss) else np.inf)
+
+
+def _variants(group: Sequence[Suspect]) -> list[Suspect]:
+    """The best probe of an effect, and the best for each other value of what is tried and not fitted."""
+    found: dict[tuple[tuple[str, float], ...], Suspect] = {}
+    for suspect in group:
+        found.setdefault(tuple(sorted(suspect.held.items())), suspect)
+    return list(found.values())

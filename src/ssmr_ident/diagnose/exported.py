@@ -1,0 +1,78 @@
+"""A joint fit as a parameter file: values, standard deviations, sources, and effects with theirs."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ssmr_ident.core.parameter import Estimate, ParameterSet
+from ssmr_ident.identify.joint import JointFit
+from ssmr_ident.identify.robot_map import HEIGHT, SENSOR, SHIFTS
+from ssmr_ident.physics.effects import CATALOGUE
+
+SOURCE = "fit of the recordings"
+
+UNINFORMED = 0.9
+"""Posterior over prior standard deviation from which the recordings told nothing of a parameter."""
+
+
+def exported(fit: JointFit, before: ParameterSet) -> ParameterSet:
+    """The parameter set that a fit stands for.
+
+    Parameters
+    ----------
+    fit : JointFit
+        With slopes at its point.
+    before : ParameterSet
+        Whose keys, units and fixed values are kept.
+    """
+    model, point = fit.model, fit.point
+    stds = np.sqrt(np.maximum(np.diag(fit.covariance()), 0.0))
+    values, effects = model.split(point)
+    changes: dict[str, Estimate] = {}
+    contacts = np.array(before["contact_points_m"].value, float) if "contact_points_m" in before else None
+    place = np.array(before["accelerometer.position_m"].value, float) if "accelerometer.position_m" in before else None
+    widest: dict[str, list[tuple[float, float]]] = {}
+    for index, unknown in enumerate(model.physics):
+        value, std = values[unknown.name], unknown.std(float(point[index]), float(stds[index]))
+        told = float(stds[index]) < UNINFORMED
+        if unknown.name == HEIGHT and contacts is not None:
+            contacts[:, 2] -= value - unknown.prior
+            widest.setdefault("contact_points_m", []).append((std, float(told)))
+        elif unknown.name in SHIFTS and contacts is not None:
+            contacts[:, SHIFTS.index(unknown.name)] += value
+            widest.setdefault("contact_points_m", []).append((std, float(told)))
+        elif unknown.name in SENSOR and place is not None:
+            place[SENSOR.index(unknown.name)] = value
+            widest.setdefault("accelerometer.position_m", []).append((std, float(told)))
+        else:
+            old = before[unknown.name]
+            kept = None if unknown.prior_std is None and not told else std
+            changes[unknown.name] = replace(old, value=value, std=kept, source=SOURCE if told else _prior(old))
+    for path, array in (("contact_points_m", contacts), ("accelerometer.position_m", place)):
+        if path in widest and array is not None:
+            source = SOURCE if any(told for _, told in widest[path]) else _prior(before[path])
+            changes[path] = replace(before[path], value=array, std=max(s for s, _ in widest[path]), source=source)
+    return replace(before.updated(changes), effects=_effects(fit, effects, stds))
+
+
+def _effects(fit: JointFit, effects: dict[str, dict[str, float]], stds: np.ndarray) -> dict[str, dict[str, Estimate]]:
+    count = len(fit.model.physics)
+    found: dict[str, dict[str, Estimate]] = {}
+    for effect_id, values in effects.items():
+        units = {p.name: p.unit for p in CATALOGUE[effect_id].parameters}
+        found[effect_id] = {
+            name: Estimate(float(value), None, units[name], "not fitted", fixed=True) for name, value in values.items()
+        }
+    for index, coordinate in enumerate(fit.model.free):
+        name, unknown = coordinate.parameter.name, coordinate.unknown
+        value = effects[coordinate.effect][name]
+        spread = unknown.std(float(fit.point[count + index]), float(stds[count + index]))
+        bound = value in (coordinate.parameter.lower, coordinate.parameter.upper)
+        found[coordinate.effect][name] = Estimate(value, spread, unknown.unit, SOURCE, at_bound=bound)
+    return found
+
+
+def _prior(old: Estimate) -> str:
+    return old.source if old.source.startswith("prior") else f"prior: {old.source}" if old.source else "prior"

@@ -1,0 +1,84 @@
+"""How much the recordings say for one explanation against another.
+
+Two models are compared by how well each predicts at its best, in n ln(RSS) with n independent samples, by what each
+asks of the priors, and by how many parameters it has (Schwarz 1978). n is counted in the residual of the best one:
+what the best explanation leaves behind is what all are measured by, so a difference smaller than its own error
+decides nothing.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ssmr_ident.identify.joint import JointFit
+
+TIE = math.log(20.0)
+"""Difference in log evidence (odds of 20 to 1) up to which explanations count as alike."""
+
+CERTAIN = math.log(1e3)
+"""Log evidence that an effect needs over the baseline, beside Schwarz's penalty: with a dozen effects looked at, each
+with two or three parameters, noise alone gets there in fewer than 1 of 1000 sessions (docs/theory/diagnosis.md)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Explanation:
+    """A model fitted to the targets and followed on what was kept back.
+
+    Parameters
+    ----------
+    fit, kept : JointFit
+    errors : (r,) float
+        Per kept recording, whitened residual sum of squares over its samples.
+    """
+
+    fit: JointFit
+    kept: JointFit
+
+    @property
+    def id(self) -> str:
+        return "+".join(self.fit.model.ids) or "baseline"
+
+    @property
+    def errors(self) -> np.ndarray:
+        return np.array([float(r @ r) / t.size for r, t in zip(self.kept.residuals, self.kept.trials, strict=True)])
+
+    @property
+    def heldout(self) -> float:
+        """Whitened variance on what was kept back."""
+        return self.kept.rss / self.kept.size
+
+
+def log_evidence(explanation: Explanation, best: Explanation) -> float:
+    """Up to a constant, in units of the best one's independent samples; kept recordings count as well."""
+    counted, further = best.fit.independent, best.kept.independent
+    physics = len(explanation.fit.model.physics)
+    asked = float(np.sum(explanation.fit.point[:physics] ** 2))
+    parameters = len(explanation.fit.model.free) + sum(
+        not any(c.effect == name for c in explanation.fit.model.free) for name in explanation.fit.model.held
+    )
+    return -0.5 * (
+        counted * math.log(explanation.fit.rss)
+        + further * math.log(explanation.kept.rss)
+        + asked
+        + parameters * math.log(counted + further)
+    )
+
+
+def evidences(explanations: Sequence[Explanation]) -> dict[str, float]:
+    """Log evidence by id, the baseline's being 0."""
+    best = min(explanations, key=lambda e: e.fit.rss)
+    found = {e.id: log_evidence(e, best) for e in explanations}
+    reference = found.get("baseline", min(found.values()))
+    return {name: value - reference for name, value in found.items()}
+
+
+def shares(found: Mapping[str, float]) -> dict[str, float]:
+    """Posterior shares for equal prior odds."""
+    top = max(found.values())
+    weights = {name: math.exp(max(value - top, -700.0)) for name, value in found.items()}
+    total = sum(weights.values())
+    return {name: weight / total for name, weight in weights.items()}

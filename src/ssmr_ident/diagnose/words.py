@@ -1,0 +1,81 @@
+"""What a diagnosis says in sentences, with its numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from ssmr_ident.core.parameter import Estimate
+from ssmr_ident.diagnose.diagnosis import UNIT, Conflict, NamedEffect, Worth
+from ssmr_ident.physics.effects import CATALOGUE
+
+LAWS = {
+    "translation_coupling": "M q'' + D q' + K q = 0 with q = (x, y, z, roll, pitch, yaw)",
+    "nonlinear_stiffness": "F = K s + k3 s^3",
+    "dry_friction": "F = k z, dz/dt = v - |v| k z/F_c",
+    "hysteresis": "F = alpha K s + (1 - alpha) K z",
+    "quadratic_damping": "F = D v + d2 v |v|",
+    "viscoelastic_relaxation": "F = K s + D v + K_m z, dz/dt = v - z/tau",
+    "free_play": "F = K dz(s), no force for |s| < gap/2",
+    "flexible_mast": "m q'' = -m w^2 q - 2 zeta m w q' - m x_P'', w = 2 pi f_mast",
+    "com_offset": "p_i -> p_i - (offset_x, offset_y, 0)",
+    "wheel_lift": "N = max(0, K_z s_z + D_z s_z')",
+    "motor_belt": "m_rim b'' = -K_b b - D_b b' + sum of F_x over the side",
+    "cable_compliance": "1/K_total = 1/K_steel + 1/K_cable",
+    "stribeck": "mu(u) = mu_s (r + (1 - r) exp(-(u/v_s)^2)), r = kinetic_share",
+    "load_sensitive_friction": "mu(N) = mu (N/N_0)^(-exponent)",
+    "slip_coupling": "mu -> mu min(|slip|/(lambda_max |r omega|), 1)",
+    "rolling_resistance": "F_x = -c_rr N sign(v_x)",
+    "sensor_saturation": "y = max(-range, min(range, a))",
+    "sensor_bandwidth": "H(s) = 1/(1 + sqrt(2) s/w + (s/w)^2), w = 2 pi bandwidth",
+    "sensor_misalignment": "a_log = (R_z R_y R_x)^T a",
+    "load_cell_drift": "F_log = F (1 + g t) + z t",
+}
+"""Laws in plain text, for reports that cannot set formulas."""
+
+
+def readable(effect_id: str) -> str:
+    return " and ".join(part.replace("_", " ") for part in effect_id.split("+"))
+
+
+def law(effect_id: str) -> str:
+    return LAWS.get(effect_id) or CATALOGUE[effect_id].equation
+
+
+def told(effect_id: str, parameters: Mapping[str, Estimate]) -> str:
+    """The catalogue's sentence with the fitted numbers."""
+    numbers = ", ".join(f"{name} = {estimate}" for name, estimate in parameters.items() if not estimate.fixed)
+    return CATALOGUE[effect_id].sentence.rstrip(".") + (f": {numbers}." if numbers else ".")
+
+
+def missing(effects: Sequence[NamedEffect], heldout: Worth, metric: str, conflicts: Sequence[Conflict]) -> str:
+    """The verdict in one sentence."""
+    unit = UNIT[metric]
+    names = " and ".join(readable(e.id) for e in effects)
+    ties = [other for e in effects for other in e.indistinguishable_from]
+    doubt = f" (or {', '.join(map(readable, ties))}: these recordings cannot tell)" if ties else ""
+    hidden = ""
+    if conflicts:
+        worst = conflicts[0]
+        hidden = f"; it had been hidden in {worst.parameter} ({worst.sigmas:+.1f} standard deviations)"
+    return (
+        f"The model leaves out {names}{doubt}: on recordings never fitted the error falls from {heldout.before:.3g} to "
+        f"{heldout.after:.3g} {unit}, noise alone leaves {heldout.noise_floor:.3g} {unit}{hidden}."
+    )
+
+
+def nothing(heldout: Worth, metric: str, tried: int) -> str:
+    unit = UNIT[metric]
+    return (
+        f"Nothing is missing: the baseline leaves {heldout.before:.3g} {unit} on recordings never fitted, noise alone "
+        f"{heldout.noise_floor:.3g} {unit}, and none of {tried} effects looked at explains any of the rest."
+    )
+
+
+def undetermined(heldout: Worth, metric: str, tried: Sequence[str]) -> str:
+    unit = UNIT[metric]
+    names = ", ".join(map(readable, tried[:3]))
+    closest = f"; the nearest that were tried are {names}" if names else ""
+    return (
+        f"Something is missing that these recordings cannot name: the baseline leaves {heldout.before:.3g} {unit} on "
+        f"recordings never fitted where noise alone leaves {heldout.noise_floor:.3g} {unit}{closest}."
+    )

@@ -1,0 +1,126 @@
+"""What an explanation is worth in the contract's metric, beside the noise floor; and the overlays that show it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from ssmr_ident.compare.comparison import measure
+from ssmr_ident.compare.outcome import Prediction
+from ssmr_ident.compare.recorded import predicted
+from ssmr_ident.core.errors import InputError
+from ssmr_ident.diagnose.diagnosis import Worth
+from ssmr_ident.diagnose.evidence import Overlay
+from ssmr_ident.identify.decay_record import spread
+from ssmr_ident.identify.joint import JointFit
+from ssmr_ident.identify.trials.trial import Trial
+from ssmr_ident.signals.clean import MAINS_HZ, mains_line
+from ssmr_ident.signals.filters import ORDER, low_pass
+
+Array = np.ndarray
+
+DRAWN = 3
+"""Recordings of which an overlay is drawn, held-out ones first."""
+
+LONGEST = 3000
+"""Points of an overlay."""
+
+
+def predictions(fit: JointFit) -> list[Prediction]:
+    """Every recording of a fit, sample by sample; of a recording that is split in time, the part that counts."""
+    values, effects = fit.model.split(fit.point)
+    found = []
+    for trial, nuisance in zip(fit.trials, fit.nuisances, strict=True):
+        found.append(_counted(trial, predicted(trial, values, effects, nuisance)))
+    return found
+
+
+def _counted(trial: Trial, prediction: Prediction) -> Prediction:
+    if trial.part is None:
+        return prediction
+    low, high = trial.part
+    inside = (prediction.time >= low) & (prediction.time <= high)
+    return replace(
+        prediction,
+        time=prediction.time[inside],
+        measured=prediction.measured[inside],
+        simulated=prediction.simulated[inside],
+    )
+
+
+def noise_floor(prediction: Prediction) -> float:
+    """The metric that white noise and hum alone would leave, from what a prediction leaves at its fastest.
+
+    Second differences see white noise and hardly any motion; the noise below the metric's low-pass is taken to be as
+    dense as above it. The hum passes the low-pass by its gain at the mains frequency.
+    """
+    rate, rest = prediction.sample_rate, prediction.measured - prediction.simulated
+    measured, share, gain = prediction.measured, 1.0, 1.0
+    if prediction.low_pass_hz is not None and prediction.low_pass_hz < 0.45 * rate:
+        measured = low_pass(measured, rate, prediction.low_pass_hz)
+        frequency = np.linspace(0.0, 0.5 * rate, 4000)
+        share = float(np.mean(1.0 / (1.0 + (frequency / prediction.low_pass_hz) ** (2 * ORDER)) ** 2))
+        gain = 1.0 / (1.0 + (MAINS_HZ / prediction.low_pass_hz) ** (2 * ORDER))
+    scale = np.ones(measured.shape[1]) if len(set(prediction.units)) == 1 else measured.std(axis=0)
+    noise = 0.0
+    for column, size in zip(rest.T, scale, strict=True):
+        hum = 0.0
+        if rate > 2.2 * MAINS_HZ:
+            try:
+                line = mains_line(column, rate)
+            except InputError:  # too short to tell the hum from motion
+                line = None
+            if line is not None:
+                column = column - line.samples(len(column), rate)
+                hum = 0.5 * (gain * line.amplitude) ** 2
+        noise += (share * spread(column) ** 2 + hum) / size**2
+    signal = float(np.sum(((measured - measured.mean(axis=0)) / scale).var(axis=0)))
+    return 100.0 * float(np.sqrt(noise / signal))
+
+
+def worth(before: Sequence[Prediction], after: Sequence[Prediction], names: Sequence[str]) -> Worth:
+    """Means over recordings, and the 95 % interval of the improvement by bootstrap over recordings."""
+    first = np.array([measure(p)[0] for p in before])
+    second = np.array([measure(p)[0] for p in after])
+    floor = np.array([noise_floor(p) for p in after])
+    gain = first - second
+    interval = None
+    if len(gain) > 1:
+        rng = np.random.default_rng(20120510)
+        means = gain[rng.integers(0, len(gain), (2000, len(gain)))].mean(axis=1)
+        interval = (float(np.quantile(means, 0.025)), float(np.quantile(means, 0.975)))
+    return Worth(float(first.mean()), float(second.mean()), float(floor.mean()), tuple(names), interval)
+
+
+def overlays(
+    names: Sequence[str], before: Sequence[Prediction], after: Sequence[Prediction], heldout: bool
+) -> tuple[Overlay, ...]:
+    """The channel that moves most, of the recordings that gained most."""
+    gains = [measure(b)[0] - measure(a)[0] for b, a in zip(before, after, strict=True)]
+    chosen = sorted(range(len(gains)), key=lambda k: -gains[k])[:DRAWN]
+    return tuple(_overlay(names[k], before[k], after[k], heldout) for k in chosen)
+
+
+def _overlay(name: str, before: Prediction, after: Prediction, heldout: bool) -> Overlay:
+    rate = before.sample_rate
+    smooth = before.low_pass_hz is not None and before.low_pass_hz < 0.45 * rate
+    courses = [before.measured, before.simulated, after.simulated]
+    if smooth:
+        courses = [low_pass(course, rate, before.low_pass_hz) for course in courses]  # type: ignore[arg-type]
+    channel = int(np.argmax(courses[0].std(axis=0)))
+    every = max(1, len(before.time) // LONGEST)
+    measured, first, second = (course[::every, channel] for course in courses)
+    metric = (measure(before)[0], measure(after)[0], noise_floor(after))
+    return Overlay(
+        name,
+        before.names[channel],
+        before.units[channel],
+        heldout,
+        before.time[::every],
+        measured,
+        first,
+        second,
+        metric,
+    )

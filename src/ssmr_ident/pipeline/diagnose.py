@@ -1,0 +1,86 @@
+"""``ident diagnose``: from a session to what physics was left out, its files and its report."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import yaml
+
+from ssmr_ident.campaign import Campaign
+from ssmr_ident.core.atomic import write_text
+from ssmr_ident.core.parameter import ParameterSet
+from ssmr_ident.diagnose.diagnosis import Diagnosis
+from ssmr_ident.session import write_parameters
+
+TURNING = ("swivel", "straight")
+
+Progress = Callable[[str, int, int], None]
+
+
+def diagnose(
+    campaign: Campaign,
+    parameters: ParameterSet | None = None,
+    seed: int = 0,
+    progress: Progress | None = None,
+) -> Diagnosis:
+    """Locate the mismatch between recordings and baseline, name it, model it, and prove it on recordings kept back.
+
+    Parameters
+    ----------
+    campaign : Campaign
+    parameters : ParameterSet, optional
+        What is known beforehand, in place of the session's own file.
+    seed : int
+        Of permutations and simulated floors.
+    progress : callable, optional
+        Called with the name of a stage, what of it is done, and of how much.
+
+    Raises
+    ------
+    InputError
+        A recording that the baseline has no model of, or nothing to fit.
+    """
+    known = campaign.parameters if parameters is None else parameters
+    campaign = replace(campaign, parameters=known)
+    experiments = {m.entry.experiment for m in campaign.measurements}
+    if experiments & set(TURNING):
+        from ssmr_ident.diagnose.turning import diagnose_turning
+
+        return diagnose_turning(campaign, known, seed, progress)
+    from ssmr_ident.diagnose.assemble import assembled, refitted_on_all
+    from ssmr_ident.diagnose.engine import examine
+    from ssmr_ident.diagnose.setup import set_up
+
+    outcome = examine(set_up(campaign, known), known, progress)
+    return assembled(outcome, known, refitted_on_all(outcome), seed)
+
+
+def write_diagnosis(diagnosis: Diagnosis, campaign: Campaign, out: Path, command: str = "", seed: int = 0) -> None:
+    """diagnosis.yaml, before.yaml, after.yaml, report.html and its figures.
+
+    Parameters
+    ----------
+    diagnosis : Diagnosis
+    campaign : Campaign
+    out : Path
+        A folder; made where it is missing.
+    command : str
+        The call, for the report's last lines.
+    seed : int
+    """
+    from ssmr_ident.report.diagnosis_page import write_report
+
+    out.mkdir(parents=True, exist_ok=True)
+    write_parameters(out / "before.yaml", diagnosis.before)
+    write_parameters(out / "after.yaml", diagnosis.after)
+    session = campaign.session
+    files = [session.folder / "session.yaml", *(session.path(m.entry) for m in campaign.measurements)]
+    robot = Path(str(campaign.parameters.file))
+    if robot.is_file():
+        files.insert(1, robot)
+    write_report(diagnosis, out / "report.html", command, seed, [f for f in dict.fromkeys(files) if f.is_file()])
+    # last, so that who finds it finds the rest as well
+    text = yaml.safe_dump(diagnosis.as_dict(), sort_keys=False, allow_unicode=True, width=110)
+    write_text(out / "diagnosis.yaml", text)
