@@ -63,7 +63,7 @@ def test_the_missing_force_of_a_hardening_tire_follows_the_cube_of_its_deflectio
 
 def test_the_surface_of_a_robot_is_that_of_its_tires() -> None:
     (surface,) = surfaces(_turned({"nonlinear_stiffness": {"k3_N_m3": 2e8}}), None, PARAMETERS)
-    assert surface.where == "deflection of the tires along x"
+    assert surface.where == "yaw: deflection of the tires along x"
     assert surface.units == ("m", "m/s", "N")
     assert len(surface.displacement) == len(surface.before) > 50
     (clean,) = surfaces(_turned({}), None, PARAMETERS)

@@ -122,7 +122,7 @@ def _along(
 
 def _telling_motion(parts: Sequence[Part], k: int) -> list[Part]:
     """Parts of the motion that says most of a parameter."""
-    told: dict[tuple[object, ...], float] = {}
+    told: dict[tuple[str, ...], float] = {}
     for part in parts:
         told[part.motion] = told.get(part.motion, 0.0) + float(part.std[k]) ** -2.0
     return [part for part in parts if part.motion == max(told, key=lambda motion: told[motion])]

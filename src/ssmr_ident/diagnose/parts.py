@@ -54,7 +54,7 @@ class Part:
     along: dict[str, float]
     move: Array
     std: Array
-    motion: tuple[object, ...] = ()
+    motion: tuple[str, ...] = ()
 
 
 def windows(fit: JointFit, columns: Sequence[int], halved: bool = False) -> list[Part]:
@@ -74,7 +74,7 @@ def windows(fit: JointFit, columns: Sequence[int], halved: bool = False) -> list
         count = len(trial.times) - trial.lost
         since = trial.times[trial.lost :] - trial.times[0]
         state, period = _state(fit, index)
-        motion = _motion(fit, index, period)
+        motion = (trial.experiment, trial.kind)
         pieces = min(MOST, int(since[-1] / period), count // FEWEST)
         if pieces < 2:
             continue
@@ -112,21 +112,13 @@ def _state(fit: JointFit, index: int) -> tuple[dict[str, Array], float]:
     return state, (LONG if len(trial.nuisances) > FEW else 1.0) / motion.frequency
 
 
-def _motion(fit: JointFit, index: int, period: float) -> tuple[object, ...]:
-    """A robot's motions differ by channel and frequency (to a third of an octave); a rig has one."""
-    trial = fit.trials[index]
-    if len(trial.nuisances) <= FEW:
-        return (trial.experiment,)
-    return (trial.experiment, trial.channels[main_channel(trial)], round(3.0 * float(np.log2(period))))
-
-
 def _part(
     fit: JointFit,
     index: int,
     inside: Array,
     columns: Sequence[int],
     along: dict[str, float],
-    motion: tuple[object, ...],
+    motion: tuple[str, ...],
 ) -> Part:
     trial, slopes = fit.trials[index], fit.slopes[index]
     kept = np.concatenate([inside & counting(fit, index, c) for c in range(len(trial.channels))])

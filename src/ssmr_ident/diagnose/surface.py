@@ -26,7 +26,7 @@ AT_REST = 0.05
 
 
 def surfaces(before: JointFit, after: JointFit | None, parameters: ParameterSet) -> tuple[ForceSurface, ...]:
-    """Residual force of the channels with most misfit; recordings that show the same channel are put together.
+    """Residual force of the channels with most misfit; recordings that show the same are put together.
 
     Parameters
     ----------
@@ -36,16 +36,16 @@ def surfaces(before: JointFit, after: JointFit | None, parameters: ParameterSet)
     parameters : ParameterSet
         Of the session, for what is not fitted (a mass).
     """
-    groups: dict[tuple[str, str], list[tuple[int, int]]] = defaultdict(list)
+    groups: dict[tuple[str, str, str], list[tuple[int, int]]] = defaultdict(list)
     for index, trial in enumerate(before.trials):
         if trial.channels == ("force",):
-            groups[trial.experiment, "force"].append((index, 0))
+            groups[trial.experiment, trial.kind, "force"].append((index, 0))
         elif is_robot(trial):  # by the motion, not by a channel: a force is sought in all of them
             place = tire_state(before, index, parameters, []).place
-            groups[trial.experiment, place].append((index, main_channel(trial)))
+            groups[trial.experiment, trial.kind, place].append((index, main_channel(trial)))
         else:
             channel = max(range(len(trial.channels)), key=lambda c: excess(before, index, c))
-            groups[trial.experiment, trial.channels[channel]].append((index, channel))
+            groups[trial.experiment, trial.kind, trial.channels[channel]].append((index, channel))
     ordered = sorted(groups.values(), key=lambda pairs: -sum(_misfit(before, index) for index, _ in pairs))
     return tuple(_surface(before, after, pairs, parameters) for pairs in ordered[:MOST])
 
@@ -68,7 +68,7 @@ def _surface(
             continue
         if is_robot(trial):
             state = tire_state(before, index, parameters, [fit.simulated[index] for fit in (before, after or before)])
-            where = state.place
+            where = f"{trial.kind}: {state.place}"
             parts.append(_moving(np.column_stack([state.deflection, state.rate, *state.forces]), trial))
             continue
         # both are worked out by the baseline's own mass, damper and spring: what is left is compared, not two operators
