@@ -40,9 +40,9 @@ def next_experiment(setup: Setup, best: JointFit, rivals: Sequence[JointFit]) ->
     best : JointFit
         What is taken for true.
     rivals : sequence of JointFit
-        Fits of other models to the same recordings, with slopes; the first two are simulated.
+        Fits of other models to the same recordings; the first two are simulated.
     """
-    rivals = list(rivals)[:RIVALS]
+    rivals = [rival if _complete(rival) else differentiate(rival) for rival in rivals[:RIVALS]]
     if not rivals:
         return ""
     choices = experiments(setup, best)
@@ -57,6 +57,10 @@ def next_experiment(setup: Setup, best: JointFit, rivals: Sequence[JointFit]) ->
     counts = [repeats(float(d) / MARGIN) for d in nearest]
     first = min(range(len(chosen)), key=lambda k: (counts[k], chosen[k].change))
     return _sentence(chosen[first], _name(best), [_name(rival) for rival in rivals], apart[first].tolist())
+
+
+def _complete(fit: JointFit) -> bool:
+    return bool(fit.slopes) and all(slopes.shared.shape[1] == len(fit.point) for slopes in fit.slopes)
 
 
 def repeats(distance: float) -> int:
