@@ -25,7 +25,8 @@ REFINED, FREED, FREED_STRAIGHT = (
     6,
 )  # explanations that are refined, and that get the baseline set free beside them
 FINAL_SEEDS = (1, 2, 3, 4)
-LEFT = 6.0
+LAST_ROUNDS = 3  # of fitting the winner, with all of them
+LEFT = 20.0
 """What the model's own error may add to the baseline's log likelihood where nothing is missing (docs/theory)."""
 FAR = 40.0
 """Of evidence: setting the baseline free has gained 27 at most, so what lies further behind cannot come first."""
@@ -115,8 +116,7 @@ def examine(
     scale = scale_of(fitted_on)
     again = repeated(bench, calibration, targets, scale, seeds) if calibration else None
     quiet = again is not None and again.left <= LEFT
-    rounds = 2 if quiet else 4
-    anchor = anchored(bench, fitted_on, bool(calibration), scale, count.advance, rounds, seeds)
+    anchor = anchored(bench, fitted_on, bool(calibration), scale, count.advance, seeds=seeds)
     count.finish()
     seconds["baseline"] = time.perf_counter() - clock
     baseline = explained(anchor, None, {}, targets)
@@ -138,7 +138,7 @@ def examine(
     rounds = 2 if calibration else 3
     level = baseline.evidence if quiet else max(baseline.evidence, max(one.evidence for one in tried)) - FAR
     worth_it = [one for one in followed if one.evidence > level or one.anchor is not anchor]
-    count = _Counter(show, "baseline set free beside them", len(worth_it) * rounds + 2 * (rounds + 1))
+    count = _Counter(show, "baseline set free beside them", len(worth_it) * rounds + 2 * (rounds + 1) + LAST_ROUNDS)
     best = [freed(one, targets, rounds * (1 + (one.anchor is not anchor)), count.advance) for one in worth_it]
     best.sort(key=lambda one: one.evidence, reverse=True)
     if best and best[0].evidence > baseline.evidence:
@@ -146,6 +146,9 @@ def examine(
     if not calibration:  # the explanations had their baseline fitted further on the targets; so must it be
         baseline = freed(baseline, targets, 3 * rounds, lambda: None)
     finals = [_final(one, targets, seed) for one in [baseline, *_one_each(best)]]
+    first = max(range(len(finals)), key=lambda i: finals[i].evidence)
+    if first > 0:
+        finals[first] = freed(finals[first], targets, LAST_ROUNDS, count.advance)
     count.finish()
     count = _Counter(show, "grip", 1)
     grip = grip_profile(anchor, fitted_on)
