@@ -203,6 +203,7 @@ def _notes(outcome: Outcome, decision: Decision) -> tuple[str, ...]:
             f"up part of what is missing ({fit.rms_db:.1f} dB stayed); an effect must be "
             "twice as evident to be named, and what resembles a parameter of the baseline cannot be seen"
         )
+    notes += _turning_notes(outcome)
     unknown = [p.path for p in outcome.anchor.priors
                if (known := outcome.bench.parameters.get(p.path)) is not None and known.std is None]  # fmt: skip
     if unknown:
@@ -210,6 +211,21 @@ def _notes(outcome: Outcome, decision: Decision) -> tuple[str, ...]:
     if decision.reason:
         notes.append(decision.reason)
     return tuple(notes)
+
+
+def _turning_notes(outcome: Outcome) -> list[str]:
+    """How much of the yaw rate that the wheels ask for is turned, where gyroscopes measured it."""
+    ratios = []
+    for c in outcome.targets:
+        run = outcome.bench.run(c, outcome.anchor.values, {}, outcome.anchor.seeds)
+        if c.yaw_rate is not None and run is not None and c.turning:
+            ratios.append((c.yaw_rate / c.turning, run.yaw_rate / c.turning))
+    if not ratios:
+        return []
+    measured, simulated = np.mean(ratios, axis=0)
+    return [
+        f"the robot turns at {measured:.2f} of the rate that its wheels ask for, the fitted baseline at {simulated:.2f}"
+    ]
 
 
 def _lines(maps: tuple) -> tuple[str, ...]:

@@ -191,8 +191,14 @@ def pitches_heard(
             total += np.where(inside, np.interp(line, frequency, course) / harmonic, 0.0)
     chosen: list[float] = []
     for i in np.argsort(total)[::-1]:
-        if all(abs(np.log(trial[i] / other)) > 0.06 for other in chosen):
+        if _apart(float(trial[i]), chosen):
             chosen.append(float(trial[i]))
         if len(chosen) == count:
             break
+    # every second or third line of wide joints looks like all lines of narrow ones
+    chosen += [wide for pitch in chosen[:2] for wide in (2.0 * pitch, 3.0 * pitch) if _apart(wide, chosen)]
     return tuple(sorted(chosen))
+
+
+def _apart(pitch: float, others: list[float]) -> bool:
+    return all(abs(np.log(pitch / other)) > 0.06 for other in others)
