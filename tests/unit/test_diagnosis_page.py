@@ -13,10 +13,12 @@ import numpy as np
 import pytest
 from made_diagnoses import EVERY, hardening, nothing, swivel, undetermined
 
+from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.diagnose.diagnosis import Conflict, Diagnosis, Tried, Worth
 from ssmr_ident.diagnose.evidence import Evidence, ForceSurface, SpeedMap
 from ssmr_ident.report.curves import busiest_part, thinned
 from ssmr_ident.report.diagnosis_page import diagnosis_page, render_report, write_report
+from ssmr_ident.report.diagnosis_pictures import scalar
 from ssmr_ident.report.html import Number, Table
 from ssmr_ident.report.svg import inline
 
@@ -118,6 +120,15 @@ def test_absorption_account_shows_where_a_parameter_came_back_to() -> None:
     sections = {section.title: section for section in diagnosis_page(hardening(), "").sections}
     row = [getattr(cell, "text", cell) for cell in sections["What it had been hidden in"].tables[0].rows[0]]
     assert row == ["inertia_kg_m2.xx", "1.210 ± 0.050", "1.940 ± 0.020", "1.220 ± 0.020", "kg m²", "+14.6"]
+
+
+def test_a_component_of_an_array_is_found() -> None:
+    parameters = ParameterSet("robot", {"accelerometer.position_m": Estimate(np.array([0.1, 0.2, 0.3]), 0.01, "m")})
+    found = scalar(parameters, "accelerometer.position_m.z")
+    assert found is not None
+    assert (found.value, found.std) == (0.3, 0.01)
+    assert scalar(parameters, "accelerometer.position_m") is None
+    assert scalar(parameters, "accelerometer.bandwidth_hz") is None
 
 
 def test_the_end_tells_command_version_seed_and_hashes(tmp_path: Path) -> None:

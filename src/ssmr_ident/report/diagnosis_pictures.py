@@ -3,7 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
+import numpy as np
+
+from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.diagnose.diagnosis import MISSING, NOTHING, UNIT, Conflict, Diagnosis
 from ssmr_ident.diagnose.evidence import Overlay
 from ssmr_ident.report.figures_diagnosis import (
@@ -113,13 +117,23 @@ def moved(diagnosis: Diagnosis) -> tuple[Picture, ...]:
     return (Picture((drawing(moved_panel(shown, back, after), f"{alt}.", "moved"),), caption),)
 
 
+def scalar(parameters: ParameterSet, name: str) -> Estimate | None:
+    """What a set knows of a scalar, which may be a component of an array (``accelerometer.position_m.z``)."""
+    estimate = parameters.get(name)
+    if estimate is not None:
+        return estimate if isinstance(estimate.value, int | float) else None
+    whole, _, axis = name.rpartition(".")
+    estimate = parameters.get(whole)
+    if estimate is None or np.ndim(estimate.value) != 1 or axis not in ("x", "y", "z"):
+        return None
+    return replace(estimate, value=float(np.asarray(estimate.value)["xyz".index(axis)]))
+
+
 def known_std(conflict: Conflict) -> float | None:
     """Standard deviation of what was known, from how far the fit moved."""
     return abs((conflict.fitted - conflict.prior) / conflict.sigmas) if conflict.sigmas else None
 
 
 def _sigmas_after(conflict: Conflict, diagnosis: Diagnosis) -> float | None:
-    estimate, std = diagnosis.after.get(conflict.parameter), known_std(conflict)
-    if estimate is None or not std or not isinstance(estimate.value, int | float):
-        return None
-    return (float(estimate.value) - conflict.prior) / std
+    estimate, std = scalar(diagnosis.after, conflict.parameter), known_std(conflict)
+    return (float(estimate.value) - conflict.prior) / std if estimate is not None and std else None

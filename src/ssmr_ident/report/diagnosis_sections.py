@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 from ssmr_ident.core.parameter import Estimate
 from ssmr_ident.diagnose.diagnosis import MISSING, NOTHING, UNIT, Conflict, Diagnosis, NamedEffect, Worth
-from ssmr_ident.report.diagnosis_pictures import after_name, explained, known_std, moved, proof
+from ssmr_ident.report.diagnosis_pictures import after_name, explained, known_std, moved, proof, scalar
 from ssmr_ident.report.diagnosis_places import places
 from ssmr_ident.report.figures_diagnosis import evidence_text, readable
 from ssmr_ident.report.html import Cell, Number, Section, Table
@@ -78,27 +79,26 @@ def _proof(diagnosis: Diagnosis) -> Section:
     columns = (f"before [{unit}]", f"after [{unit}]") if after_name(diagnosis) else (f"model [{unit}]",)
     columns = (*columns, f"noise alone [{unit}]")
     header = ("recordings", *columns)
-    rows: list[tuple[Cell, ...]] = [
-        (name, *_metrics((w.before, w.after, w.noise_floor), diagnosis))
-        for name, w in (("fitted", diagnosis.training), ("held out, never fitted", diagnosis.heldout))
-    ]
+    both = (diagnosis.training, diagnosis.heldout)
+    metrics = _metrics([(w.before, w.after, w.noise_floor) for w in both], diagnosis)
+    names = ("fitted", "held out, never fitted")
+    rows: list[tuple[Cell, ...]] = [(name, *cells) for name, cells in zip(names, metrics, strict=True)]
     if diagnosis.heldout.improvement is not None and after_name(diagnosis):
         header = (*header, f"improvement, 95 % [{unit}]")
-        rows = [(*row, _gain(w)) for row, w in zip(rows, (diagnosis.training, diagnosis.heldout), strict=True)]
+        rows = [(*row, _gain(w)) for row, w in zip(rows, both, strict=True)]
     tables = [Table(f"{measure} Means over recordings.", header, tuple(rows))]
-    single: dict[str, tuple[Cell, ...]] = {}
-    for o in diagnosis.evidence.overlays:
-        role = "held out" if o.heldout else "fitted"
-        single[o.recording] = (o.recording, role, *_metrics(o.metric, diagnosis))
+    single = {o.recording: o for o in diagnosis.evidence.overlays}
     if len(single) > 1:
-        header = ("recording", "role", *columns)
-        tables.append(Table("The same for each recording.", header, tuple(single.values())))
+        metrics = _metrics([o.metric for o in single.values()], diagnosis)
+        roles = ["held out" if o.heldout else "fitted" for o in single.values()]
+        rows = [(*words, *cells) for *words, cells in zip(single, roles, metrics, strict=True)]
+        tables.append(Table("The same for each recording.", ("recording", "role", *columns), tuple(rows)))
     title = {
         MISSING: "Does it hold on recordings that were never fitted?",
         NOTHING: "Does the model hold on recordings that were never fitted?",
     }.get(diagnosis.verdict, "How far the model is from recordings that were never fitted")
-    names = diagnosis.heldout.recordings
-    text = (f"Kept back from the fit: {', '.join(names)}.",) if names else ()
+    kept = diagnosis.heldout.recordings
+    text = (f"Kept back from the fit: {', '.join(kept)}.",) if kept else ()
     return Section(title, text, tuple(tables), proof(diagnosis))
 
 
@@ -108,11 +108,12 @@ def _gain(worth: Worth) -> Cell:
     return Number(interval(*worth.improvement), worth.improvement[0])
 
 
-def _metrics(values: tuple[float, float, float], diagnosis: Diagnosis) -> list[Number]:
-    """Before, after, noise floor; without ``after`` where nothing was added."""
-    pairs = list(zip(alike(values), values, strict=True))
-    kept = pairs if after_name(diagnosis) else [pairs[0], pairs[2]]
-    return [Number(text, value) for text, value in kept]
+def _metrics(values: Sequence[tuple[float, float, float]], diagnosis: Diagnosis) -> list[list[Number]]:
+    """Rows of before, after, noise floor, all to the same decimal; without ``after`` where nothing was added."""
+    kept = slice(None) if after_name(diagnosis) else slice(None, None, 2)
+    texts = alike([value for row in values for value in row])
+    cells = [Number(text, value) for text, value in zip(texts, (v for row in values for v in row), strict=True)]
+    return [cells[k : k + 3][kept] for k in range(0, len(cells), 3)]
 
 
 def _where(diagnosis: Diagnosis) -> Section:
@@ -156,7 +157,7 @@ def _moved(diagnosis: Diagnosis) -> Section:
     after = after_name(diagnosis)
     rows: list[tuple[Cell, ...]] = []
     for c in diagnosis.conflicts:
-        before = diagnosis.before.get(c.parameter)
+        before = scalar(diagnosis.before, c.parameter)
         row: list[Cell] = [c.parameter, Number(measured(c.prior, known_std(c)), c.prior)]
         row.append(Number(measured(c.fitted, before.std if before else None), c.fitted))
         if after:
@@ -172,8 +173,8 @@ def _moved(diagnosis: Diagnosis) -> Section:
 
 
 def _after(conflict: Conflict, diagnosis: Diagnosis) -> Number:
-    after = diagnosis.after.get(conflict.parameter)
-    if after is None or not isinstance(after.value, int | float):
+    after = scalar(diagnosis.after, conflict.parameter)
+    if after is None:
         return Number(NONE, math.nan)
     return Number(measured(float(after.value), after.std), float(after.value))
 

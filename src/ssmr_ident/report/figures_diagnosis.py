@@ -193,6 +193,8 @@ def drift_panel(drift: Drift) -> Figure:
         elinewidth=0.8,
     )  # fmt: skip
     axes.set_xlabel(f"{drift.along} [{unit(drift.unit) or NONE}]")
+    if set(drift.position) <= {-1.0, 1.0}:  # two sides, no scale
+        axes.set_xticks([-1, 1], ["−", "+"])
     axes.set_ylabel("relative to the whole fit [–]")
     axes.set_title(f"{drift.parameter}   p = {number(drift.p_value, 2)}", loc="left")
     axes.margins(x=0.06, y=0.12)

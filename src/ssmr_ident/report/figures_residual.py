@@ -161,7 +161,7 @@ def _scaled(surface: ForceSurface) -> tuple[tuple[np.ndarray, str], tuple[np.nda
 
 
 def _reach(values: np.ndarray) -> tuple[float, float]:
-    """Lowest and highest, without the outermost thousandth: single points would stretch the picture."""
-    outside = 0.001 if len(values) > 1000 else 0.0
+    """Lowest and highest, without the outermost hundredth: single points would stretch the picture."""
+    outside = 0.005 if len(values) > 1000 else 0.0
     low, high = np.quantile(values, (outside, 1 - outside))
     return (float(low), float(high)) if high > low else (float(low) - 0.5, float(high) + 0.5)

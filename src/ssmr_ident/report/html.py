@@ -44,7 +44,7 @@ class Table:
 
     def numeric(self, column: int) -> bool:
         """Whether a column is set as numbers."""
-        cells = [cell for row in self.rows if (cell := row[column])]
+        cells = [cell for row in self.rows if (cell := row[column]) not in ("", "–")]
         numbers = [isinstance(cell, Number) or bool(_BEGINS_WITH_NUMBER.match(cell)) for cell in cells]
         return column > 0 and sum(numbers) > len(numbers) / 2
 
