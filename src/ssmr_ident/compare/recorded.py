@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -18,22 +19,40 @@ LAST = 10
 """Gauss-Newton steps on the whole recording."""
 
 
-def follow(trials: Sequence[Trial], model: Model, point: Array) -> JointFit:
+def follow(trials: Sequence[Trial], model: Model, point: Array, near: Sequence[Array] | None = None) -> JointFit:
     """A model held where it is, with the nuisances of each recording at their best.
 
-    Small motions give the start of a decay. Where the recording is bent away from them, the start is led through
-    growing horizons instead; the better of the two counts.
+    Small motions give the start of a decay. Where effects bend the motion away from them, three more roads are tried:
+    from the start that fits without the effects, through growing horizons, and from a start that is known to be near.
+    Each recording takes its own best.
+
+    Parameters
+    ----------
+    trials : sequence of Trial
+    model : Model
+    point : (p,) float
+    near : sequence of (k,) float, optional
+        Nuisances of a similar model.
     """
     values, effects = model.split(point)
-    straight = evaluate(trials, model, point, [t.begin(values, effects) for t in trials])
-    fit = led(trials, model, point, [np.inf], LAST, straight.nuisances, shared=False)
+    starts = [[t.begin(values, effects) for t in trials]]
     lengths = horizons(trials, radian(trials))
-    if len(lengths) > 1 and effects:
-        other = led(trials, model, point, lengths, LAST, shared=False)
-        sums = [[float(r @ r) for r in f.residuals] for f in (fit, other)]
-        chosen = [fit if not b < a else other for a, b in zip(*sums, strict=True)]
-        return evaluate(trials, model, point, [f.nuisances[k] for k, f in enumerate(chosen)])
-    return fit
+    bent = bool(effects) and any(trial.quiet for trial in trials)
+    if near is not None:
+        starts.append(list(near))
+    elif bent:
+        plain = replace(model, held={}, free=())
+        starts.append(list(_at_rest(trials, plain, point[: len(model.physics)], starts[0]).nuisances))
+    fits = [_at_rest(trials, model, point, start) for start in starts]
+    if bent and len(lengths) > 1:
+        fits.append(led(trials, model, point, lengths, LAST, shared=False))
+    sums = np.array([[float(r @ r) for r in f.residuals] for f in fits])
+    chosen = np.argmin(np.where(np.isfinite(sums), sums, np.inf), axis=0)
+    return evaluate(trials, model, point, [fits[f].nuisances[k] for k, f in enumerate(chosen)])
+
+
+def _at_rest(trials: Sequence[Trial], model: Model, point: Array, start: Sequence[Array]) -> JointFit:
+    return led(trials, model, point, [np.inf], LAST, start, shared=False)
 
 
 def radian(trials: Sequence[Trial]) -> float:

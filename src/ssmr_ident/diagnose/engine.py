@@ -24,6 +24,9 @@ SECOND = 0.7
 """Share of the first effect's unexplained variance, on recordings kept back, that may be left when a second one is
 added: the right effect in a formula that is not quite the world's leaves structure, of which any other takes a part."""
 
+AWAY = 3.0
+"""Standard deviations from off."""
+
 RELEVANT = 0.97
 """The same for the first effect: an effect that saves less of the variance predicts nothing better."""
 
@@ -71,19 +74,20 @@ def examine(setup: Setup, parameters: ParameterSet, progress: Progress | None = 
     for _ in range(MOST_EFFECTS):
         result = search(chosen.fit, setup.campaign.session.baseline, lengths, progress)
         searches.append(result)
-        new = [explained(kept, f) for f in result.tried]
+        new = [explained(kept, f, chosen.kept) for f in result.tried]
         if not new:
             break
         leader = min(new, key=lambda e: _cost(e, chosen))
-        polished = explained(kept, polish(leader.fit, lengths))
+        polished = explained(kept, polish(leader.fit, lengths), leader.kept)
         if polished.fit.cost(polished.fit.independent) < leader.fit.cost(polished.fit.independent):
             new[new.index(leader)], leader = polished, polished
         tried += new
-        if not _better(leader, chosen, first=chosen is baseline):
+        found_fit = differentiate(leader.fit)
+        if not _better(leader, chosen, first=chosen is baseline) or not significant(found_fit):
             break
-        chosen = explained(kept, differentiate(leader.fit))
+        chosen = replace(leader, fit=found_fit)
         tried[tried.index(leader)] = chosen
-    chosen, tried = _backward(kept, chosen, tried)
+    chosen, tried = _backward(kept, lengths, chosen, tried)
     found = evidences(tried)
     top = found[chosen.id]
     alike = [e for e in tried if e is not chosen and len(e.fit.model.ids) <= len(chosen.fit.model.ids)]
@@ -91,9 +95,12 @@ def examine(setup: Setup, parameters: ParameterSet, progress: Progress | None = 
     return Outcome(setup, baseline, tuple(tried), chosen, tuple(rivals), found, tuple(searches))
 
 
-def explained(kept: Sequence[Trial], fit: JointFit) -> Explanation:
-    """A fit beside what it predicts of the recordings that were kept back."""
-    return Explanation(fit, follow(kept, fit.model, fit.point))
+def explained(kept: Sequence[Trial], fit: JointFit, near: JointFit | None = None) -> Explanation:
+    """A fit beside what it predicts of the recordings that were kept back.
+
+    ``near`` is another model's prediction of them, whose nuisances are a start as well.
+    """
+    return Explanation(fit, follow(kept, fit.model, fit.point, None if near is None else near.nuisances))
 
 
 def informed(setup: Setup, parameters: ParameterSet) -> Setup:
@@ -130,15 +137,31 @@ def _better(leader: Explanation, before: Explanation, first: bool) -> bool:
     return gain > CERTAIN and saved < (RELEVANT if first else SECOND)
 
 
+def significant(fit: JointFit) -> bool:
+    """Whether every effect's own amplitude is away from off by more than its uncertainty allows."""
+    stds = np.sqrt(np.maximum(np.diag(fit.covariance()), 0.0))[len(fit.model.physics) :]
+    point = fit.point[len(fit.model.physics) :]
+    for coordinate, scaled, std in zip(fit.model.free, point, stds, strict=True):
+        unknown = coordinate.unknown
+        if coordinate.parameter.off is None:
+            continue
+        # a logarithm that is known to a third is three standard deviations away from nothing
+        size = abs(float(scaled)) / std if not unknown.logarithmic else 1.0 / (std * unknown.spread)
+        alone = sum(c.effect == coordinate.effect and c.parameter.off is not None for c in fit.model.free) == 1
+        if alone and size < AWAY:
+            return False
+    return True
+
+
 def _backward(
-    kept: Sequence[Trial], chosen: Explanation, tried: list[Explanation]
+    kept: Sequence[Trial], lengths: tuple[float, ...], chosen: Explanation, tried: list[Explanation]
 ) -> tuple[Explanation, list[Explanation]]:
     """Take out of a pair the effect that the other one made superfluous."""
     ids = chosen.fit.model.ids
     if len(ids) < 2:
         return chosen, tried
     for effect_id in ids[:-1]:
-        alone = explained(kept, differentiate(descend(without(chosen.fit, effect_id), LAST)))
+        alone = explained(kept, differentiate(polish(without(chosen.fit, effect_id), lengths)), chosen.kept)
         tried = [*(e for e in tried if e.id != alone.id), alone]
         if not _better(chosen, alone, first=False):
             return alone, tried

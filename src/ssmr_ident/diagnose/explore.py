@@ -73,7 +73,7 @@ def prepared(fit: JointFit) -> list[Trial]:
     found = []
     for trial, simulated in zip(fit.trials, fit.simulated, strict=True):
         clean = trial.with_lines(trial.colour(simulated))
-        found.append(clean if trial.shorten else clean.renoised(simulated))
+        found.append(clean if trial.quiet else clean.renoised(simulated))
     return found
 
 
@@ -145,9 +145,10 @@ def _screened(
             model, point = begin_with(first, suspect)
             begun.append(led(few.trials, model, point, lengths[:1], HEATS[0][1], first.nuisances))
     field = begun
+    second = lengths[1:2] if len(lengths) > 2 else lengths[:1]
     for heat, (kept, steps) in enumerate(HEATS[1:]):
         field = _ranked(field)[:kept]
-        field = [led(few.trials, f.model, f.point, lengths[1:2], steps, f.nuisances) for f in field]
+        field = [led(few.trials, f.model, f.point, second, steps, f.nuisances) for f in field]
         if progress:
             progress("trying effects", len(groups) + heat, len(groups) + 3)
     best: dict[tuple[str, ...], JointFit] = {}
@@ -167,13 +168,15 @@ def _ranked(fits: Sequence[JointFit]) -> list[JointFit]:
 
 
 def _loudest(base: JointFit) -> list[int]:
-    """The loudest trial of each kind."""
-    best: dict[tuple[str, str], int] = {}
+    """The loudest trial of each kind; of a rig's, which are all of one kind, the quietest as well."""
+    kinds: dict[tuple[str, str], list[int]] = {}
     for index, trial in enumerate(base.trials):
-        kind = (trial.experiment, trial.kind)
-        if kind not in best or np.ptp(trial.target) > np.ptp(base.trials[best[kind]].target):
-            best[kind] = index
-    return sorted(best.values())
+        kinds.setdefault((trial.experiment, trial.kind), []).append(index)
+    chosen = set()
+    for members in kinds.values():
+        ordered = sorted(members, key=lambda k: float(np.ptp(base.trials[k].target)))
+        chosen |= {ordered[-1]} if base.trials[members[0]].kind else {ordered[-1], ordered[0]}
+    return sorted(chosen)
 
 
 def _all_nuisances(base: JointFit, fit: JointFit, lengths: Sequence[float]) -> list[np.ndarray]:

@@ -21,6 +21,9 @@ from ssmr_ident.physics.effects import CATALOGUE
 
 Array = np.ndarray
 
+ROUNDING = 1e-10
+"""Share of a direction's own curvature below which what is left of it is rounding."""
+
 SEEN = 1e-6
 """Share of the noise's variance below which a change cannot be told from rounding."""
 
@@ -115,17 +118,16 @@ def _suspect(
             return None
         columns.append(change)
     raw = np.column_stack(columns)
-    cleared = clear(raw)
-    # a direction that the baseline makes as well is rounding once it is cleared
-    if np.any(np.sum(cleared**2, axis=0) < 1e-8 * np.sum(raw**2, axis=0)):
+    gram, slope, cleared = clear(raw)
+    # a direction that the baseline makes as well, and may, is rounding once it is cleared
+    if np.any(np.diag(gram) < ROUNDING * clear.weight * np.sum(raw**2, axis=0)):
         return None
-    gram = cleared.T @ cleared
     gram[np.diag_indices_from(gram)] *= 1.0 + 1e-9
-    shares = np.linalg.solve(gram, cleared.T @ clear.residual)
+    shares = np.linalg.solve(gram, slope)
     if not signed:
         shares = np.maximum(shares, 0.0)
-    explained = float(2.0 * shares @ (cleared.T @ clear.residual) - shares @ gram @ shares)
-    gain = -independent * np.log(max(1.0 - explained / fit.rss, 1e-12))
+    fall = float(2.0 * shares @ slope - shares @ gram @ shares)
+    gain = -independent * np.log(max(1.0 - fall / independent, 1e-12))
     sizes = {p.name: abs(at[p.name]) for p in signed}
     start = dict(at)
     grown = [p for p in effect.parameters if p.name in at and _grows(effect, p)]
@@ -158,32 +160,48 @@ def _change(fit: JointFit, effect_id: str, parameters: dict[str, float]) -> Arra
 
 
 class Cleared:
-    """Takes out of a change what the baseline's parameters (within their priors) and nuisances can make as well."""
+    """What the baseline's parameters and nuisances leave of a change, all of them refitted within their priors.
+
+    The posterior about the fit is a quadratic form; the Schur complement of everything that the baseline can move is
+    what a further coordinate has to itself. Where a prior holds a parameter back against the recordings, a direction
+    like its own gains what the prior charges: an offset far beyond what the file says of it is an effect.
+    """
 
     def __init__(self, fit: JointFit, independent: float) -> None:
-        weight = independent / fit.rss
-        self._own: list[tuple[Array, Array]] = []
+        self.weight = independent / fit.rss
+        self._own: list[tuple[Array, Array, Array]] = []
         shared: list[Array] = []
-        rest: list[Array] = []
         ends = np.cumsum([len(r) for r in fit.residuals])
         self._cuts = ends[:-1]
-        for slopes, residual in zip(fit.slopes, fit.residuals, strict=True):
-            b = slopes.own
-            gram = weight * (b.T @ b) + np.eye(b.shape[1])
-            self._own.append((b, np.linalg.solve(gram, weight * b.T)))
-            shared.append(self._without_own(len(shared), slopes.shared))
-            rest.append(self._without_own(len(rest), residual))
-        a = np.concatenate(shared)
-        self._shared = a
-        self._solver = np.linalg.solve(weight * (a.T @ a) + np.eye(a.shape[1]), weight * a.T)
-        # at the optimum the gradient is balanced by the priors: what is matched is the residual itself
         self.residual = np.concatenate(fit.residuals)
+        count = len(fit.point)
+        matrix, right = np.eye(count), -fit.point.copy()
+        for slopes, residual, nuisance in zip(fit.slopes, fit.residuals, fit.nuisances, strict=True):
+            a, b = slopes.shared, slopes.own
+            gram = np.linalg.inv(self.weight * (b.T @ b) + np.eye(b.shape[1]))
+            side = self.weight * (b.T @ residual) - nuisance
+            self._own.append((b, gram, side))
+            cross = self.weight * (b.T @ a)
+            matrix += self.weight * (a.T @ a) - cross.T @ gram @ cross
+            right += self.weight * (a.T @ residual) - cross.T @ gram @ side
+            shared.append(a)
+        self._shared, self._matrix, self._right = shared, matrix, right
 
-    def _without_own(self, index: int, columns: Array) -> Array:
-        b, solver = self._own[index]
-        return columns - b @ (solver @ columns)
-
-    def __call__(self, columns: Array) -> Array:
-        parts = [self._without_own(index, part) for index, part in enumerate(np.split(columns, self._cuts))]
-        stacked = np.concatenate(parts)
-        return stacked - self._shared @ (self._solver @ stacked)
+    def __call__(self, columns: Array) -> tuple[Array, Array, Array]:
+        """Curvature and slope of the log posterior (times two) along new coordinates, and their cleared columns."""
+        parts = np.split(columns, self._cuts)
+        size = columns.shape[1]
+        gram, slope = np.zeros((size, size)), np.zeros(size)
+        mixed = np.zeros((len(self._matrix), size))
+        residuals = np.split(self.residual, self._cuts)
+        for part, a, residual, (b, inverse, side) in zip(parts, self._shared, residuals, self._own, strict=True):
+            cross = self.weight * (b.T @ part)
+            gram += self.weight * (part.T @ part) - cross.T @ inverse @ cross
+            slope += self.weight * (part.T @ residual) - cross.T @ inverse @ side
+            mixed += self.weight * (a.T @ part) - self.weight * (a.T @ b) @ inverse @ cross
+        solved = np.linalg.solve(self._matrix, mixed)
+        cleared = []
+        for part, a, (b, inverse, _) in zip(parts, self._shared, self._own, strict=True):
+            rest = part - a @ solved
+            cleared.append(rest - b @ (inverse @ (self.weight * (b.T @ rest))))
+        return gram - mixed.T @ solved, slope - solved.T @ self._right, np.concatenate(cleared)

@@ -19,6 +19,9 @@ Array = np.ndarray
 FIRST = 16.0
 """Radians of the motion in the first horizon: two and a half periods."""
 
+DRIVEN = 60.0
+"""Radians of the motion in the part of a driven recording that effects are tried on."""
+
 GROWTH = 2.0
 STEPS = 8
 """Gauss-Newton steps on each horizon but the last, at the most."""
@@ -32,6 +35,9 @@ def horizons(trials: Sequence[Trial], time: float) -> list[float]:
     if not any(trial.shorten for trial in trials):
         return [np.inf]
     longest = max(float(t.times[-1] - t.times[0]) for t in trials)
+    if any(trial.experiment == "forced" for trial in trials):
+        # the force keeps the phase: a part is only a shorter recording
+        return [max(DRIVEN * time, longest / 8.0), np.inf] if longest > 4.0 * DRIVEN * time else [np.inf]
     found, length = [], FIRST * time
     while length < 0.75 * longest:
         found.append(length)

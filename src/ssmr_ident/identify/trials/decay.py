@@ -167,6 +167,7 @@ def _trial(whole: BodyDecay, kept: int, facts: _Facts) -> Trial:
         None if counts.all() else counts,
         {"clipped": float((~counts).sum())},
         ("cable.",),
+        quiet=True,
         idle=dict.fromkeys(STATES[-4:], "flexible_mast"),
         shorten=lambda seconds: _trial(
             whole, min(kept, max(FEWEST, round(seconds / whole.step))), replace(facts, step=ROUGH_STEP)

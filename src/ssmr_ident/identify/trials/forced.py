@@ -26,6 +26,16 @@ LOWEST_RATE_HZ, RATE_PER_FREQUENCY = 250.0, 12.0
 """Block averages keep at least this rate, and this many blocks in a period of the rig."""
 
 OVERSAMPLING = 4
+"""Of the force, for what is compared and drawn."""
+
+FINE, ROUGH = 100.0, 40.0
+"""Integration steps in a period of the rig: in fits of whole recordings, and of their beginnings. The rig itself is
+propagated exactly; effects kick it with an error of (2 pi / steps)^2 / 24."""
+
+FEWEST = 64
+"""Blocks that even the shortest part of a recording keeps."""
+
+BANDWIDTH = "accelerometer.bandwidth_hz"
 
 FREQUENCY_REACH = 0.5
 """Share by which a rig's natural frequency may lie above the file's and still be sampled well."""
@@ -75,74 +85,88 @@ def forced_trial(measurement: Measurement, parameters: ParameterSet) -> Trial:
     even = even_samples(recording.time, np.column_stack([recording[name] for name in wanted]))
     measured, rate = even.samples[:, : len(outputs)], even.sample_rate
     force = even.samples[:, -1] if drive else np.zeros(len(measured))
-    bandwidth = parameters.number("accelerometer.bandwidth_hz", math.inf)
+    bandwidth = parameters.number(BANDWIDTH, math.inf)
     if bandwidth >= 0.5 * rate:
         # the force comes through a sensor and a converter of the same kind: what both delay alike cancels
         bandwidth = math.inf
     natural = math.sqrt(max(builder.nominal.stiffness, 0.0) / builder.nominal.mass) / (2.0 * math.pi)
     needed = max(LOWEST_RATE_HZ, RATE_PER_FREQUENCY * (1.0 + FREQUENCY_REACH) * natural)
     block = max(1, int(rate / needed))
-    count = len(measured) // block
     slow = math.isfinite(bandwidth)
-    factor = max(OVERSAMPLING, math.ceil(8.0 * bandwidth / rate)) if slow else OVERSAMPLING
-    fine = band_limited(force, factor)
     columns = [COLUMN[name] for name in outputs]
     second = outputs.index("acceleration_2") if "acceleration_2" in outputs and len(outputs) > 1 else None
     nuisances = ("start_position", "start_velocity", *(("force_zero",) if drive else ()))
     nuisances += ("gain_2",) if second is not None else ()
     scales = _scales(builder.nominal, measured, outputs, force, rate)[: 3 if drive else 2]
     scales = np.append(scales, 1.0) if second is not None else scales
-    free = not drive
+    least = 8.0 * bandwidth / rate if slow else 1.0
 
-    def averaged(signal: Array) -> Array:
-        return signal[: count * block].reshape(count, block, -1).mean(axis=1)
+    def finer(wanted: float, samples: int) -> tuple[int, Array]:
+        factor = max(1, math.ceil(least), math.ceil(wanted))
+        return factor, force[:samples] if factor == 1 else band_limited(force[:samples], factor)
 
-    def whole(values: Values, effects: Effects, nuisance: Array) -> Array:
+    def motion(values: Values, effects: Effects, nuisance: Array, factor: int, fine: Array, samples: int) -> Array:
         state = nuisance * scales
-        rig = builder(values)
         try:
-            motion = simulate_rig(
-                rig,
-                fine if free else fine + state[2],
+            run = simulate_rig(
+                builder(values),
+                fine + state[2] if drive else fine,
                 rate,
                 float(state[0]),
                 float(state[1]),
                 oversampling=factor,
-                bandwidth_hz=values.get("accelerometer.bandwidth_hz", bandwidth) if slow else math.inf,
+                bandwidth_hz=values.get(BANDWIDTH, bandwidth) if slow else math.inf,
                 effects=effects,
                 fine=True,
             )[:, columns]
         except SimulationError:
-            return np.full((len(measured), len(columns)), math.nan)
+            return np.full((samples, len(columns)), math.nan)
         if second is not None:
-            motion[:, second] *= state[-1]
-        return motion
+            run[:, second] *= state[-1]
+        return run
 
-    def run(values: Values, effects: Effects, nuisance: Array) -> Array:
-        return averaged(whole(values, effects, nuisance))
+    def assembled(count: int, steps_a_period: float) -> Trial:
+        samples = count * block
+        factor, fine = finer(steps_a_period * natural / rate, samples)
 
-    target = averaged(measured)
-    noises = tuple(AutoregressiveNoise(np.ones(1), spread(target[:, c])) for c in range(len(outputs)))
+        def averaged(signal: Array) -> Array:
+            return signal[:samples].reshape(count, block, -1).mean(axis=1)
 
-    def begin(values: Values, effects: Effects) -> Array:
-        return linear_start(trial, lambda nuisance: run(values, {}, nuisance), second)
+        def run(values: Values, effects: Effects, nuisance: Array) -> Array:
+            return averaged(motion(values, effects, nuisance, factor, fine, samples))
 
-    trial = Trial(
-        measurement.name,
-        measurement.entry.experiment,
-        "",
-        outputs,
-        even.start + (np.arange(count) + 0.5 * (block - 1) / block) * block / rate,
-        target,
-        noises,
-        np.ones((count, 1)),
-        run,
-        begin,
-        nuisances,
-        scales,
-        Course(even.time, measured, whole, tuple(UNITS[name] for name in outputs), LOW_PASS_HZ),
+        def begin(values: Values, effects: Effects) -> Array:
+            return linear_start(trial, lambda nuisance: run(values, {}, nuisance), second)
+
+        target = averaged(measured)
+        trial = Trial(
+            measurement.name,
+            measurement.entry.experiment,
+            "",
+            outputs,
+            even.start + (np.arange(count) + 0.5 * (block - 1) / block) * block / rate,
+            target,
+            tuple(AutoregressiveNoise(np.ones(1), spread(target[:, c])) for c in range(len(outputs))),
+            np.ones((count, 1)),
+            run,
+            begin,
+            nuisances,
+            scales,
+            course,
+            shorten=lambda seconds: assembled(max(FEWEST, min(whole, round(seconds * rate / block))), ROUGH),
+        )
+        return trial
+
+    everything = finer(OVERSAMPLING, len(measured))
+    course = Course(
+        even.time,
+        measured,
+        lambda values, effects, nuisance: motion(values, effects, nuisance, *everything, len(measured)),
+        tuple(UNITS[name] for name in outputs),
+        LOW_PASS_HZ,
     )
-    return trial
+    whole = len(measured) // block
+    return assembled(whole, FINE)
 
 
 def linear_start(trial: Trial, run, second: int | None = None) -> Array:  # type: ignore[no-untyped-def]

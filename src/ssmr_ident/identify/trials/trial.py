@@ -98,6 +98,8 @@ class Trial:
         ``shorten(seconds)`` is the same recording up to there, for fits that are led from its beginning to its end.
     part : (float, float) or None [s]
         Times that count, where a lone recording is split into a part that is fitted and one that is kept back.
+    quiet : bool
+        The noise was taken from a stretch in which nothing moves.
     """
 
     name: str
@@ -121,6 +123,7 @@ class Trial:
     searched: bool = False
     shorten: Callable[[float], Trial] | None = None
     part: tuple[float, float] | None = None
+    quiet: bool = False
 
     @property
     def step(self) -> float:
@@ -177,7 +180,8 @@ class Trial:
         """Its first part, with the noise that it has; itself where it cannot be shortened."""
         if self.shorten is None or seconds >= float(self.times[-1] - self.times[0]):
             return self
-        return self.shorten(seconds).with_noises(self.noises)
+        short = self.shorten(seconds)
+        return replace(short, noises=self.noises, basis=self.basis[: len(short.times)])
 
     def renoised(self, simulated: Array) -> Trial:
         """The same with each channel's noise taken from what a simulation leaves at its fastest: white noise shows in
