@@ -29,6 +29,7 @@ _DOOR = {
     "fit_decay": ("identify.decay", "fit_decay"),
     "fit_session": ("pipeline.fit", "fit_session"),
     "compare_session": ("pipeline.compare", "compare_session"),
+    "diagnose_session": ("pipeline.diagnose", "diagnose_session"),
     "plot": ("pipeline.plot", "plot"),
 }
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import yaml
 
-from ssmr_ident.campaign import Campaign
+from ssmr_ident.campaign import Campaign, load
 from ssmr_ident.core.atomic import write_text
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.diagnosis import Diagnosis
@@ -55,6 +55,13 @@ def diagnose(
 
     outcome = examine(set_up(campaign, known), known, progress)
     return assembled(outcome, known, refitted_on_all(outcome), seed)
+
+
+def diagnose_session(
+    path: str | Path, parameters: ParameterSet | None = None, seed: int = 0, progress: Progress | None = None
+) -> Diagnosis:
+    """Read a session folder and diagnose it; see ``diagnose``."""
+    return diagnose(load(path), parameters, seed, progress)
 
 
 def write_diagnosis(diagnosis: Diagnosis, campaign: Campaign, out: Path, command: str = "", seed: int = 0) -> None:

@@ -96,10 +96,12 @@ def read_session(path: str | Path) -> Session:
         folder, a log that is not there.
     """
     path = Path(path)
+    if not path.exists():
+        raise InputError(str(path), "no such session", "Give a folder with a session.yaml, or the path of one")
     file = path / "session.yaml" if path.is_dir() else path
     if path.is_dir() and not file.is_file():
         raise InputError(
-            str(path), "has no session.yaml", "Write one (see docs/howto/session.md) or name another folder"
+            str(path), "has no session.yaml", f"Let one be written: ident new {path}; or name another folder"
         )
     content = load_mapping(file)
     _no_unknown(str(file), content, {"schema", "name", "robot", "baseline", "recordings"})
