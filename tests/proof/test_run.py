@@ -13,6 +13,7 @@ from typer.testing import CliRunner
 from ssmr_ident.cli import app
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.proof.against import against
+from ssmr_ident.proof.kept import write_kept
 from ssmr_ident.proof.page import write_proof_page
 from ssmr_ident.proof.recorded import Extent
 from ssmr_ident.proof.run import STAGES, Proof, prove
@@ -54,6 +55,15 @@ def test_the_page_stands_alone(proof: Proof) -> None:
         assert word in page
     text = re.sub(r"<(svg|script).*?</\1>", "", page, flags=re.DOTALL)
     assert not re.search(r"\bnan\b", text)
+
+
+def test_what_is_kept_names_its_command_and_every_case(proof: Proof) -> None:
+    text = write_kept(proof, "ident proof --seed 41").read_text(encoding="utf-8")
+    assert "ident proof --seed 41" in text
+    assert sum(line.startswith("| session-") for line in text.splitlines()) == CASES
+    assert (
+        len({line.count("|") for line in text.split("Hidden down")[1].split("##")[0].splitlines() if "|" in line}) == 1
+    )
 
 
 def test_the_same_seed_gives_the_same_sessions(

@@ -59,6 +59,7 @@ def _proved(
 
     from ssmr_ident.cli.progress import stages
     from ssmr_ident.proof.against import against, peer_rows, peer_section
+    from ssmr_ident.proof.kept import write_kept
     from ssmr_ident.proof.page import write_proof_page
     from ssmr_ident.proof.run import prove
 
@@ -74,9 +75,10 @@ def _proved(
         scores = against(proof.rows, output / "sessions", jobs, step) if peers else ()
         step("page", 0, 1)
         page = write_proof_page(proof, call, (peer_section(scores),) if peers else ())
+        write_kept(proof, call, scores)
         step("page", 1, 1)
     text = f"{proof}\n" + "\n".join("  " + "  ".join(score.cells()) for score in scores)
-    text += f"\ntable: {output / 'proof.csv'}\npage:  {page}\nagain: {call}"
+    text += f"\ntable: {output / 'proof.csv'}, {output / 'proof.md'}\npage:  {page}\nagain: {call}"
     rows = [row.as_dict() for row in proof.rows]
     return {"seed": seed, "cases": rows, "peers": peer_rows(scores), "page": str(page)}, text
 

@@ -175,7 +175,7 @@ def _emptied(out: Path) -> None:
             raise InputError(str(out), "holds something that is no proof", "Name a new folder with -o")
         for name in ("sessions", "answers", "opened"):
             shutil.rmtree(out / name, ignore_errors=True)
-        for name in ("seals.csv", "proof.csv", "proof.html"):
+        for name in ("seals.csv", "proof.csv", "proof.html", "proof.md"):
             (out / name).unlink(missing_ok=True)
     (out / "sessions").mkdir(parents=True, exist_ok=True)
     (out / "answers").mkdir(exist_ok=True)
