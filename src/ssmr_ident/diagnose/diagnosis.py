@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -12,6 +13,8 @@ from ssmr_ident.diagnose.evidence import Evidence
 
 SCHEMA = "ssmr-ident/diagnosis/1"
 MISSING, NOTHING, UNDETERMINED = "missing_physics", "nothing_missing", "undetermined"
+WIDTH = 110
+"""Letters in a line of the printed diagnosis."""
 UNIT = {"nrmse_percent": "%", "log_psd_db": "dB"}
 
 
@@ -199,7 +202,13 @@ class Diagnosis(Shown):
         lines += [f"  note: {note}" for note in self.notes]
         if self.next_experiment:
             lines.append(f"  next: {self.next_experiment}")
-        return "\n".join(lines)
+        return "\n".join(part for line in lines for part in _folded(line))
+
+
+def _folded(line: str) -> list[str]:
+    """A line of at most ``WIDTH`` letters, and what goes on below it."""
+    indent = len(line) - len(line.lstrip())
+    return textwrap.wrap(line, WIDTH, subsequent_indent=" " * (indent + 4), break_long_words=False) or [line]
 
 
 def _worth(worth: Worth) -> dict[str, Any]:
