@@ -68,8 +68,8 @@ def test_fit_of_a_robot(call: list[str]) -> None:
     check("fit", answer_of("fit", str(RAW / call[0]), *call[1:]))
 
 
-def test_new_fit_and_compare_of_a_rig(tmp_path: Path) -> None:
-    """A rig's log simulated, described by ``ident new``, fitted, compared: four answers."""
+def test_the_whole_way_of_a_rig(tmp_path: Path) -> None:
+    """A rig's log simulated, described by ``ident new``, fitted, compared, diagnosed: five answers."""
     (tmp_path / "rig.yaml").write_text(
         "mass_kg: {value: 8.0, unit: kg}\nstiffness_N_m: {value: 20000, unit: N/m}\n"
         "damping_N_s_m: {value: 50, unit: N s/m}\n"
@@ -83,6 +83,9 @@ def test_new_fit_and_compare_of_a_rig(tmp_path: Path) -> None:
     check("new", answer_of("new", str(logs)))
     check("fit", answer_of("fit", str(logs), "-o", str(tmp_path / "p.yaml")))
     check("compare", answer_of("compare", str(logs), "--params", str(tmp_path / "p.yaml")))
+    told = answer_of("diagnose", str(logs), "-o", str(tmp_path / "out"))
+    check("diagnosis", told)
+    assert told == yaml.safe_load((tmp_path / "out" / "diagnosis.yaml").read_text(encoding="utf-8"))
 
 
 def test_new_with_questions(tmp_path: Path) -> None:
