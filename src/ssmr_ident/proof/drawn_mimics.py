@@ -1,4 +1,8 @@
-"""Physics dressed as other physics: sizes chosen so that one effect looks like another, or like a parameter."""
+"""Physics dressed as other physics: sizes chosen so that one effect looks like another, or like a parameter.
+
+A loop that yields early and a slider behind a soft spring are one element, its corners more or less round: either
+name is right for both.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +21,7 @@ def loop_like_friction(random: np.random.Generator, strength: float) -> Hidden:
     how = "F = alpha K s + (1 - alpha) K z, dz/dt = v (1 - (z/y)^2) while z grows, v while it shrinks; y is small"
     laws = {"loop_share": share, "loop_yield": reach}
     parameters = {"alpha": 1.0 - share, "yield_m": reach}
-    return Hidden("hysteresis", "early yield", parameters, how, Change(laws), strength)
+    return Hidden("hysteresis", "early yield", parameters, how, Change(laws), strength, ("dry_friction",))
 
 
 def friction_like_loop(random: np.random.Generator, strength: float) -> Hidden:
@@ -26,7 +30,7 @@ def friction_like_loop(random: np.random.Generator, strength: float) -> Hidden:
     how = "a slider that bears F_c, behind a soft spring"
     laws = {"friction": force, "friction_stiffness": stiffness}
     parameters = {"F_c_N": force, "element_stiffness_N_m": stiffness}
-    return Hidden("dry_friction", "soft slider", parameters, how, Change(laws), strength)
+    return Hidden("dry_friction", "soft slider", parameters, how, Change(laws), strength, ("hysteresis",))
 
 
 def quick_relaxation(random: np.random.Generator, strength: float) -> Hidden:
