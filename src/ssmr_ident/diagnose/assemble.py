@@ -27,9 +27,9 @@ CONFLICT = 2.0
 MOST_RIVALS = 2
 """Explanations beside the best with which an answer is still one."""
 
-UNEXPLAINED = 2.0
+UNEXPLAINED = 1.6
 """Error over the noise floor, on recordings kept back, from which something is missing even if nothing names it. The
-floor is known to some ten percent; coloured noise stays below."""
+floor is known to some ten percent; what coloured noise does to it is in docs/theory/diagnosis.md."""
 
 
 def assembled(outcome: Outcome, parameters: ParameterSet, everything: JointFit | None, seed: int) -> Diagnosis:
@@ -120,7 +120,9 @@ def _named(outcome: Outcome, parameters: ParameterSet) -> tuple[NamedEffect, ...
         others = tuple(dict.fromkeys(o for r in outcome.rivals for o in r.fit.model.ids if o not in best.fit.model.ids))
         values = fitted[effect_id]
         found.append(
-            NamedEffect(effect_id, told(effect_id, values), law(effect_id), values, min(confidence, 1.0), others)
+            NamedEffect(
+                effect_id, told(effect_id, values), law(effect_id, values), values, min(confidence, 1.0), others
+            )
         )
     return tuple(found)
 

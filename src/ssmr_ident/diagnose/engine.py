@@ -79,7 +79,7 @@ def examine(setup: Setup, parameters: ParameterSet, progress: Progress | None = 
             break
         leader = min(new, key=lambda e: _cost(e, chosen))
         polished = explained(kept, polish(leader.fit, lengths), leader.kept)
-        if polished.fit.cost(polished.fit.independent) < leader.fit.cost(polished.fit.independent):
+        if polished.fit.cost(polished.fit.counted) < leader.fit.cost(polished.fit.counted):
             new[new.index(leader)], leader = polished, polished
         tried += new
         found_fit = differentiate(leader.fit)
@@ -122,18 +122,18 @@ def polish(fit: JointFit, lengths: tuple[float, ...]) -> JointFit:
         return descend(fit, LAST)
     again = led(fit.trials, fit.model, fit.point, lengths, 2 * LAST)
     further = descend(fit, LAST)
-    return min((again, further), key=lambda f: f.cost(further.independent))
+    return min((again, further), key=lambda f: f.cost(further.counted))
 
 
 def _cost(explanation: Explanation, reference: Explanation) -> float:
-    return explanation.fit.cost(reference.fit.independent)
+    return explanation.fit.cost(reference.fit.counted)
 
 
 def _better(leader: Explanation, before: Explanation, first: bool) -> bool:
     """Whether an explanation is certainly better, and predicts recordings better that it has not seen."""
     found = evidences([before, leader])
     gain = found[leader.id] - found[before.id]
-    saved = leader.kept.rss / before.kept.rss
+    saved = float(np.exp(np.mean(np.log(leader.kept.parts / before.kept.parts))))
     return gain > CERTAIN and saved < (RELEVANT if first else SECOND)
 
 

@@ -84,9 +84,9 @@ def best_baseline(
     more than noise."""
     fit = fit_baseline(trials, setup, parameters)
     lengths = tuple(horizons(fit.trials, radian(fit.trials)))
-    if fit.rss / fit.size > LOUD and len(lengths) > 1:
+    if float(np.max(fit.parts / [t.size for t in fit.trials])) > LOUD and len(lengths) > 1:
         other = differentiate(led(fit.trials, fit.model, fit.point, lengths, LAST))
-        fit = min((fit, other), key=lambda f: f.cost(fit.independent))
+        fit = min((fit, other), key=lambda f: f.cost(fit.counted))
     return fit, lengths
 
 
@@ -108,8 +108,8 @@ def search(
         Horizons.
     progress : callable, optional
     """
-    groups = scan(base, candidates(base, baseline), base.independent)
-    if len(lengths) > 1 and base.rss / base.size > LOUD:
+    groups = scan(base, candidates(base, baseline))
+    if len(lengths) > 1 and float(np.max(base.parts / [t.size for t in base.trials])) > LOUD:
         rough = _screened(base, groups, lengths, progress)
         rest = list(lengths[1:])
     else:
@@ -163,7 +163,7 @@ def _ranked(fits: Sequence[JointFit]) -> list[JointFit]:
     finite = [f for f in fits if np.isfinite(f.rss)]
     if not finite:
         return []
-    counted = min(finite, key=lambda f: f.rss).independent
+    counted = min(finite, key=lambda f: float(np.log(f.parts).sum())).counted
     return sorted(finite, key=lambda f: f.cost(counted))
 
 

@@ -72,7 +72,7 @@ def candidates(fit: JointFit, baseline: str) -> tuple[Effect, ...]:
     )
 
 
-def scan(fit: JointFit, effects: Sequence[Effect], independent: float) -> list[list[Suspect]]:
+def scan(fit: JointFit, effects: Sequence[Effect]) -> list[list[Suspect]]:
     """Per effect its suspects, the most promising probe first; effects that change nothing are left out.
 
     Parameters
@@ -80,10 +80,8 @@ def scan(fit: JointFit, effects: Sequence[Effect], independent: float) -> list[l
     fit : JointFit
         With slopes.
     effects : sequence of Effect
-    independent : float
-        Samples that count as independent.
     """
-    clear = Cleared(fit, independent)
+    clear = Cleared(fit)
     sizes = sizes_of(fit)
     found = []
     for effect in effects:
@@ -92,7 +90,7 @@ def scan(fit: JointFit, effects: Sequence[Effect], independent: float) -> list[l
             at = {name: p.value(sizes) if isinstance(p, Sized) else float(p) for name, p in probe.items()}
             at = {p.name: float(np.clip(at[p.name], p.lower, p.upper)) for p in effect.parameters if p.name in at}
             if all(np.isfinite(list(at.values()))):
-                suspect = _suspect(fit, clear, effect, at, held, independent)
+                suspect = _suspect(fit, clear, effect, at, held)
                 if suspect is not None:
                     suspects.append(suspect)
         if suspects:
@@ -105,7 +103,7 @@ def _combinations(holds: Mapping[str, Sequence[float]]) -> list[dict[str, float]
 
 
 def _suspect(
-    fit: JointFit, clear: Cleared, effect: Effect, at: dict[str, float], held: dict[str, float], independent: float
+    fit: JointFit, clear: Cleared, effect: Effect, at: dict[str, float], held: dict[str, float]
 ) -> Suspect | None:
     signed = [p for p in effect.amplitudes if p.name in at and p.lower < 0.0]
     points = [at]
@@ -120,14 +118,14 @@ def _suspect(
     raw = np.column_stack(columns)
     gram, slope, cleared = clear(raw)
     # a direction that the baseline makes as well, and may, is rounding once it is cleared
-    if np.any(np.diag(gram) < ROUNDING * clear.weight * np.sum(raw**2, axis=0)):
+    if np.any(np.diag(gram) < ROUNDING * float(np.min(clear.weights)) * np.sum(raw**2, axis=0)):
         return None
     gram[np.diag_indices_from(gram)] *= 1.0 + 1e-9
     shares = np.linalg.solve(gram, slope)
     if not signed:
         shares = np.maximum(shares, 0.0)
     fall = float(2.0 * shares @ slope - shares @ gram @ shares)
-    gain = -independent * np.log(max(1.0 - fall / independent, 1e-12))
+    gain = -fit.independent * float(np.log(max(1.0 - fall / fit.independent, 1e-12)))
     sizes = {p.name: abs(at[p.name]) for p in signed}
     start = dict(at)
     grown = [p for p in effect.parameters if p.name in at and _grows(effect, p)]
@@ -167,8 +165,8 @@ class Cleared:
     like its own gains what the prior charges: an offset far beyond what the file says of it is an effect.
     """
 
-    def __init__(self, fit: JointFit, independent: float) -> None:
-        self.weight = independent / fit.rss
+    def __init__(self, fit: JointFit) -> None:
+        self.weights = fit.weights
         self._own: list[tuple[Array, Array, Array]] = []
         shared: list[Array] = []
         ends = np.cumsum([len(r) for r in fit.residuals])
@@ -176,14 +174,14 @@ class Cleared:
         self.residual = np.concatenate(fit.residuals)
         count = len(fit.point)
         matrix, right = np.eye(count), -fit.point.copy()
-        for slopes, residual, nuisance in zip(fit.slopes, fit.residuals, fit.nuisances, strict=True):
+        for w, slopes, residual, nuisance in zip(self.weights, fit.slopes, fit.residuals, fit.nuisances, strict=True):
             a, b = slopes.shared, slopes.own
-            gram = np.linalg.inv(self.weight * (b.T @ b) + np.eye(b.shape[1]))
-            side = self.weight * (b.T @ residual) - nuisance
+            gram = np.linalg.inv(w * (b.T @ b) + np.eye(b.shape[1]))
+            side = w * (b.T @ residual) - nuisance
             self._own.append((b, gram, side))
-            cross = self.weight * (b.T @ a)
-            matrix += self.weight * (a.T @ a) - cross.T @ gram @ cross
-            right += self.weight * (a.T @ residual) - cross.T @ gram @ side
+            cross = w * (b.T @ a)
+            matrix += w * (a.T @ a) - cross.T @ gram @ cross
+            right += w * (a.T @ residual) - cross.T @ gram @ side
             shared.append(a)
         self._shared, self._matrix, self._right = shared, matrix, right
 
@@ -194,14 +192,15 @@ class Cleared:
         gram, slope = np.zeros((size, size)), np.zeros(size)
         mixed = np.zeros((len(self._matrix), size))
         residuals = np.split(self.residual, self._cuts)
-        for part, a, residual, (b, inverse, side) in zip(parts, self._shared, residuals, self._own, strict=True):
-            cross = self.weight * (b.T @ part)
-            gram += self.weight * (part.T @ part) - cross.T @ inverse @ cross
-            slope += self.weight * (part.T @ residual) - cross.T @ inverse @ side
-            mixed += self.weight * (a.T @ part) - self.weight * (a.T @ b) @ inverse @ cross
+        together = zip(self.weights, parts, self._shared, residuals, self._own, strict=True)
+        for w, part, a, residual, (b, inverse, side) in together:
+            cross = w * (b.T @ part)
+            gram += w * (part.T @ part) - cross.T @ inverse @ cross
+            slope += w * (part.T @ residual) - cross.T @ inverse @ side
+            mixed += w * (a.T @ part) - w * (a.T @ b) @ inverse @ cross
         solved = np.linalg.solve(self._matrix, mixed)
         cleared = []
-        for part, a, (b, inverse, _) in zip(parts, self._shared, self._own, strict=True):
+        for w, part, a, (b, inverse, _) in zip(self.weights, parts, self._shared, self._own, strict=True):
             rest = part - a @ solved
-            cleared.append(rest - b @ (inverse @ (self.weight * (b.T @ rest))))
+            cleared.append(rest - b @ (inverse @ (w * (b.T @ rest))))
         return gram - mixed.T @ solved, slope - solved.T @ self._right, np.concatenate(cleared)

@@ -1,9 +1,9 @@
 """How much the recordings say for one explanation against another.
 
-Two models are compared by how well each predicts at its best, in n ln(RSS) with n independent samples, by what each
-asks of the priors, and by how many parameters it has (Schwarz 1978). n is counted in the residual of the best one:
-what the best explanation leaves behind is what all are measured by, so a difference smaller than its own error
-decides nothing.
+Two models are compared by how well each predicts every recording at its best, in n ln(RSS) with n independent samples,
+by what each asks of the priors, and by how many parameters it has (Schwarz 1978). n is counted in the residual of the
+best one: what the best explanation leaves behind is what all are measured by, so a difference smaller than its own
+error decides nothing.
 """
 
 from __future__ import annotations
@@ -54,23 +54,23 @@ class Explanation:
 
 def log_evidence(explanation: Explanation, best: Explanation) -> float:
     """Up to a constant, in units of the best one's independent samples; kept recordings count as well."""
-    counted, further = best.fit.independent, best.kept.independent
+    counted, further = best.fit.counted, best.kept.counted
     physics = len(explanation.fit.model.physics)
     asked = float(np.sum(explanation.fit.point[:physics] ** 2))
     parameters = len(explanation.fit.model.free) + sum(
         not any(c.effect == name for c in explanation.fit.model.free) for name in explanation.fit.model.held
     )
     return -0.5 * (
-        counted * math.log(explanation.fit.rss)
-        + further * math.log(explanation.kept.rss)
+        float(counted @ np.log(explanation.fit.parts))
+        + float(further @ np.log(explanation.kept.parts))
         + asked
-        + parameters * math.log(counted + further)
+        + parameters * math.log(float(counted.sum() + further.sum()))
     )
 
 
 def evidences(explanations: Sequence[Explanation]) -> dict[str, float]:
     """Log evidence by id, the baseline's being 0."""
-    best = min(explanations, key=lambda e: e.fit.rss)
+    best = min(explanations, key=lambda e: float(np.mean(np.log(e.fit.parts))))
     found = {e.id: log_evidence(e, best) for e in explanations}
     reference = found.get("baseline", min(found.values()))
     return {name: value - reference for name, value in found.items()}

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from ssmr_ident.core.parameter import Estimate
 from ssmr_ident.diagnose.diagnosis import UNIT, Conflict, NamedEffect, Worth
-from ssmr_ident.physics.effects import CATALOGUE
+from ssmr_ident.physics.effects import CATALOGUE, unlisted
 
 LAWS = {
     "translation_coupling": "M q'' + D q' + K q = 0 with q = (x, y, z, roll, pitch, yaw)",
@@ -37,7 +37,10 @@ def readable(effect_id: str) -> str:
     return " and ".join(part.replace("_", " ") for part in effect_id.split("+"))
 
 
-def law(effect_id: str) -> str:
+def law(effect_id: str, parameters: Mapping[str, Estimate]) -> str:
+    """The law as plain text."""
+    if effect_id == "unlisted":
+        return unlisted.law({name: float(e.value) for name, e in parameters.items()})
     return LAWS.get(effect_id) or CATALOGUE[effect_id].equation
 
 

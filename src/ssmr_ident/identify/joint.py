@@ -1,8 +1,9 @@
 """All recordings of a session fitted together, each with nuisances of its own.
 
-The cost is that of residuals whose size is unknown, n ln(RSS), beside the priors: where the model leaves structure
-behind, all samples count for less, and what is known beforehand is not outvoted by a misfit. n is the number of
-samples that are independent of each other. Nuisances are eliminated recording by recording (Schur complement), so
+The cost is that of residuals whose size is unknown in every recording, Σ n ln(RSS), beside the priors: where the model
+leaves structure behind, samples count for less; what is known beforehand is not outvoted by a misfit, nor are
+recordings that it explains by one that it does not. n is the number of samples that are independent of each other.
+Nuisances are eliminated recording by recording (Schur complement), so
 cost grows linearly with the number of recordings.
 Source: Gelman et al., Bayesian Data Analysis (2013), sections 2.7 and 14.2 (normal data of unknown variance).
 """
@@ -93,28 +94,44 @@ class JointFit:
         return sum(trial.size for trial in self.trials)
 
     @cached_property
-    def independent(self) -> float:
-        """Samples that are independent of each other, by the residual's own correlation in time."""
-        return sum(
-            worth(trial.by_channel(r)[:, c])
-            for trial, r in zip(self.trials, self.residuals, strict=True)
-            for c in range(len(trial.channels))
+    def parts(self) -> Array:
+        """(t,) float, sum of squared whitened residuals of each trial."""
+        return np.array([float(r @ r) for r in self.residuals])
+
+    @cached_property
+    def counted(self) -> Array:
+        """(t,) float, samples of each trial that are independent of each other, by its residual's correlation."""
+        return np.array(
+            [
+                sum(worth(trial.by_channel(r)[:, c]) for c in range(len(trial.channels)))
+                for trial, r in zip(self.trials, self.residuals, strict=True)
+            ]
         )
+
+    @property
+    def independent(self) -> float:
+        return float(self.counted.sum())
+
+    @property
+    def weights(self) -> Array:
+        """(t,) float by which squares of each trial count, its own misfit being the measure."""
+        return self.counted / self.parts
 
     @property
     def penalty(self) -> float:
         """What the priors charge."""
         return float(self.point @ self.point) + sum(float(n @ n) for n in self.nuisances)
 
-    def cost(self, independent: float) -> float:
-        """Twice the negative log posterior, for a given number of independent samples."""
+    def cost(self, counted: Array) -> float:
+        """Twice the negative log posterior, for given numbers of independent samples, (t,) float."""
         if not np.isfinite(self.rss):
             return np.inf
-        return independent * np.log(self.rss / self.size) + self.penalty
+        sizes = np.array([trial.size for trial in self.trials])
+        return float(counted @ np.log(self.parts / sizes)) + self.penalty
 
     def covariance(self) -> Array:
         """Of the scaled coordinates, nuisances integrated out; (p, p)."""
-        matrix, _ = _normal(self, self.independent / self.rss)
+        matrix, _ = _normal(self, self.weights)
         return np.linalg.inv(matrix)
 
 
@@ -214,11 +231,11 @@ def differentiate(fit: JointFit, shared: bool = True) -> JointFit:
     return replace(fit, slopes=tuple(over(fit.trials, one)))
 
 
-def _normal(fit: JointFit, weight: float, damping: float = 0.0) -> tuple[Array, Array]:
+def _normal(fit: JointFit, weights: Array, damping: float = 0.0) -> tuple[Array, Array]:
     """Matrix and right side in the shared coordinates, nuisances eliminated."""
     count = len(fit.point)
     matrix, right = np.eye(count), -fit.point.copy()
-    for slopes, residual, nuisance in zip(fit.slopes, fit.residuals, fit.nuisances, strict=True):
+    for weight, slopes, residual, nuisance in zip(weights, fit.slopes, fit.residuals, fit.nuisances, strict=True):
         a, b = slopes.shared, slopes.own
         own = weight * (b.T @ b) + np.eye(len(nuisance))
         if damping:
@@ -231,14 +248,14 @@ def _normal(fit: JointFit, weight: float, damping: float = 0.0) -> tuple[Array, 
     return matrix, right
 
 
-def _step(fit: JointFit, weight: float, damping: float, shared: bool) -> tuple[Array, list[Array]]:
+def _step(fit: JointFit, weights: Array, damping: float, shared: bool) -> tuple[Array, list[Array]]:
     move = np.zeros(len(fit.point))
     if shared and len(move):
-        matrix, right = _normal(fit, weight, damping)
+        matrix, right = _normal(fit, weights, damping)
         matrix[np.diag_indices_from(matrix)] *= 1.0 + damping
         move = np.linalg.solve(matrix, right)
     own = []
-    for slopes, residual, nuisance in zip(fit.slopes, fit.residuals, fit.nuisances, strict=True):
+    for weight, slopes, residual, nuisance in zip(weights, fit.slopes, fit.residuals, fit.nuisances, strict=True):
         b = slopes.own
         gram = weight * (b.T @ b) + np.eye(len(nuisance))
         gram[np.diag_indices_from(gram)] *= 1.0 + damping
@@ -250,7 +267,6 @@ def _step(fit: JointFit, weight: float, damping: float, shared: bool) -> tuple[A
 def descend(
     fit: JointFit,
     iterations: int,
-    independent: float | None = None,
     settled: float = SETTLED,
     shared: bool = True,
 ) -> JointFit:
@@ -261,8 +277,6 @@ def descend(
     fit : JointFit
         Where to begin.
     iterations : int
-    independent : float or None
-        Number of independent samples; None takes each residual's own.
     settled : float
         Fall of the cost at which the fit is at rest.
     shared : bool
@@ -271,7 +285,7 @@ def descend(
     damping = 0.0
     for _ in range(iterations):
         fit = differentiate(search_again(fit), shared)
-        counted = independent or fit.independent
+        counted = fit.counted
         before = fit.cost(counted)
         after, damping = _best_step(fit, counted, damping, shared)
         gain = before - after.cost(counted)
@@ -281,7 +295,7 @@ def descend(
     return fit
 
 
-def _best_step(fit: JointFit, counted: float, damping: float, shared: bool) -> tuple[JointFit, float]:
+def _best_step(fit: JointFit, counted: Array, damping: float, shared: bool) -> tuple[JointFit, float]:
     """The lowest cost over dampings about the last one; a simulation costs a thirtieth of the slopes.
 
     Dampings are tried from small to large until the cost rises again after it has fallen below where it was.
@@ -289,7 +303,7 @@ def _best_step(fit: JointFit, counted: float, damping: float, shared: bool) -> t
     best, chosen, lowest = fit, damping, fit.cost(counted)
     ladder = [0.0, *DAMPINGS] if damping == 0.0 else [d for d in (0.0, *DAMPINGS) if d == 0.0 or d >= 0.01 * damping]
     for candidate in ladder:
-        move, own = _step(fit, counted / fit.rss, candidate, shared)
+        move, own = _step(fit, counted / fit.parts, candidate, shared)
         nuisances = [n + o for n, o in zip(fit.nuisances, own, strict=True)]
         trial = evaluate(fit.trials, fit.model, fit.point + move, nuisances, fit.slopes)
         cost = trial.cost(counted)

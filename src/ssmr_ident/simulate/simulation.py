@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ssmr_ident.core.errors import SimulationError
+from ssmr_ident.core.errors import InputError, SimulationError
 from ssmr_ident.core.recording import Channel, Provenance, Recording
 from ssmr_ident.core.shown import Shown
 from ssmr_ident.physics.effect import Site
@@ -109,6 +109,8 @@ def simulate(
         An unknown effect or parameter.
     """
     active = checked(effects or {})
+    if "unlisted" in active and not CATALOGUE["unlisted"].is_off(active["unlisted"]):
+        raise InputError("effects: unlisted", "acts on a rig with one mass, not on a robot", "Leave it out")
     e = effect_vector(active)
     for effect_id, values in active.items():
         change = CATALOGUE[effect_id].acts.get(Site.ROBOT)

@@ -27,7 +27,7 @@ FITTED = (
     "inertia_kg_m2.xx", "inertia_kg_m2.yy", "inertia_kg_m2.zz",
 )  # fmt: skip
 _DIFFERENCE = 0.7  # standard deviations of the prior; spectra of chaotic runs are no smooth functions of less
-_ROUNDS = 4
+ROUNDS = 4
 
 
 @dataclass(frozen=True)
@@ -86,10 +86,15 @@ class Anchor:
     fit: Score
     seeds: tuple[int, ...] = SEEDS
     shares: tuple[float, ...] = field(default=(1.0, 0.5, 0.0))
+    fixed: Mapping[str, float] = field(default_factory=dict)
+
+    def at(self, z: np.ndarray) -> dict[str, float]:
+        """Parameters at ``z`` standard deviations from the priors, and those that are held elsewhere."""
+        return {**values_at(self.priors, z), **self.fixed}
 
     @property
     def values(self) -> dict[str, float]:
-        return values_at(self.priors, self.z)
+        return self.at(self.z)
 
     def log_density(self, run: Run, condition: Condition) -> np.ndarray:
         return run.look.log_density(self.scale, condition.noise)
@@ -208,15 +213,20 @@ def anchored(
     calibrated: bool,
     scale: np.ndarray,
     advance: Callable[[], None],
-    rounds: int = _ROUNDS,
+    rounds: int = ROUNDS,
     seeds: tuple[int, ...] = SEEDS,
+    fixed: Mapping[str, float] | None = None,
+    starts: tuple[np.ndarray, ...] = (),
 ) -> Anchor:
-    """Fit the baseline: sliding speed and floor over a grid, then everything within its prior by Gauss-Newton."""
+    """Fit the baseline: sliding speed and floor over a grid, then everything within its prior by Gauss-Newton.
+
+    ``fixed`` are parameters held at values of their own; ``starts``, in standard deviations, take the grid's place.
+    """
     priors = priors_of(bench.parameters)
-    free = Anchor(bench, scale, priors, np.zeros(len(priors)), (), Score(-np.inf, 0.0, 0.0), seeds)
+    free = Anchor(bench, scale, priors, np.zeros(len(priors)), (), Score(-np.inf, 0.0, 0.0), seeds, fixed=fixed or {})
 
     def value(z: np.ndarray) -> Score | None:
-        found = free.score(fitted_on, {}, values_at(priors, z))
+        found = free.score(fitted_on, {}, free.at(z))
         if found is None:
             return None
         one = found[0]
@@ -225,15 +235,15 @@ def anchored(
     best_z = np.zeros(len(priors))
     index = {p.path: i for i, p in enumerate(priors)}
     best: Score | None = None
-    grid = []
-    for speed in (-1.8, -0.9, 0.0, 0.9, 1.8):
+    grid = list(starts)
+    for speed in () if starts else (-1.8, -0.9, 0.0, 0.9, 1.8):
         for floor in (-1.5, 0.0, 1.5):
             z = np.zeros(len(priors))
             for path, shift in (("tire.sliding_speed_m_s", speed), ("floor.height_m", floor)):
                 if path in index:
                     z[index[path]] = shift
             grid.append(z)
-    bench.prefetch((c, values_at(priors, z), {}, seed) for z in grid for c in fitted_on for seed in seeds)
+    bench.prefetch((c, free.at(z), {}, seed) for z in grid for c in fitted_on for seed in seeds)
     for z in grid:
         found = value(z)
         if found is not None and (best is None or found.log_likelihood > best.log_likelihood):
@@ -245,18 +255,16 @@ def anchored(
             break
     if best is None:
         raise FloatingPointError("no values within the priors make a robot that can be simulated")
-    return Anchor(bench, scale, priors, best_z, fitted_on if calibrated else (), best, seeds)
+    return Anchor(bench, scale, priors, best_z, fitted_on if calibrated else (), best, seeds, fixed=fixed or {})
 
 
 def _gauss_newton(free, conditions, priors, z, now, value, advance):
     def residual(at: np.ndarray) -> np.ndarray | None:
-        blocks = free.blocks(conditions, {}, 0.0, values_at(priors, at))
+        blocks = free.blocks(conditions, {}, 0.0, free.at(at))
         return None if blocks is None else np.concatenate([b.residual for b in blocks])
 
     ahead = [z + _DIFFERENCE * (np.arange(len(z)) == i) for i in range(len(z))]
-    free.bench.prefetch(
-        (c, values_at(priors, at), {}, seed) for at in [z, *ahead] for c in conditions for seed in free.seeds
-    )
+    free.bench.prefetch((c, free.at(at), {}, seed) for at in [z, *ahead] for c in conditions for seed in free.seeds)
     base = residual(z)
     advance()
     if base is None or now is None:

@@ -79,6 +79,10 @@ def parameter_set(outcome: Outcome, anchor: Anchor, best: Explained | None) -> P
         value = anchor.values[prior.path]
         source = f"fitted to {fitted_on}; std is the prior's"
         changes[prior.path] = Estimate(value, prior.std * value, unit, source, at_bound=abs(z) > CONFLICT)
+    for path, value in anchor.fixed.items():
+        low, high = outcome.grip.lower, outcome.grip.upper
+        std = None if low is None or high is None else (high - low) / 3.92
+        changes[path] = Estimate(value, std, "1", f"profile over {fitted_on}")
     effects: dict[str, Mapping[str, Estimate]] = dict(known.effects)
     if best is not None:
         spreads = _spreads(best)
@@ -160,6 +164,10 @@ def _conflicts(anchor: Anchor) -> tuple[Conflict, ...]:
         Conflict(prior.path, prior.value, values[prior.path], float(z), "" if path not in known else known[path].unit)
         for prior, z, path in zip(anchor.priors, anchor.z, values, strict=True)
         if abs(z) > CONFLICT
+    ) + tuple(
+        Conflict(path, float(known[path].value), value, (value - float(known[path].value)) / float(known[path].std or 1.0), known[path].unit)
+        for path, value in anchor.fixed.items()
+        if path in known and known[path].std and abs(value - float(known[path].value)) > CONFLICT * float(known[path].std or 1.0)
     )  # fmt: skip
 
 

@@ -11,11 +11,11 @@ import numpy as np
 from ssmr_ident.campaign import Campaign
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import ParameterSet
-from ssmr_ident.diagnose.turning.anchor import SEEDS, Anchor, anchored, scale_of
+from ssmr_ident.diagnose.turning.anchor import ROUNDS, SEEDS, Anchor, anchored, scale_of
 from ssmr_ident.diagnose.turning.bench import Bench
 from ssmr_ident.diagnose.turning.candidates import Candidate, candidates, pitches_heard
 from ssmr_ident.diagnose.turning.conditions import Condition, conditions_of, held_back
-from ssmr_ident.diagnose.turning.grip import GripProfile, grip_profile
+from ssmr_ident.diagnose.turning.grip import PATH, TRIED, GripProfile, grip_profile
 from ssmr_ident.diagnose.turning.likelihood import Score
 from ssmr_ident.diagnose.turning.search import Explained, explained, freed, polished, refined, screened
 
@@ -112,12 +112,17 @@ def examine(
     fitted_on = calibration or targets
     seeds = tuple(1000 * seed + s for s in (SEEDS if len(targets) < MANY else SEEDS[:1]))
 
-    count = _Counter(show, "baseline", 10)
+    count = _Counter(show, "baseline", 1 + ROUNDS)
     scale = scale_of(fitted_on)
     again = repeated(bench, calibration, targets, scale, seeds) if calibration else None
     quiet = again is not None and again.left <= LEFT
     anchor = anchored(bench, fitted_on, bool(calibration), scale, count.advance, seeds=seeds)
     count.finish()
+    count = _Counter(show, "lambda_max", len(TRIED))
+    grip = grip_profile(anchor, fitted_on, count.advance)
+    # on the targets themselves a larger lambda_max may be the very effect that is looked for
+    if calibration and grip.lower is not None and grip.anchor is not None and PATH in known:
+        anchor = grip.anchor
     seconds["baseline"] = time.perf_counter() - clock
     baseline = explained(anchor, None, {}, targets)
     assert baseline is not None
@@ -149,9 +154,6 @@ def examine(
     first = max(range(len(finals)), key=lambda i: finals[i].evidence)
     if first > 0:
         finals[first] = freed(finals[first], targets, LAST_ROUNDS, count.advance)
-    count.finish()
-    count = _Counter(show, "grip", 1)
-    grip = grip_profile(anchor, fitted_on)
     count.finish()
     rest = [one for one in _one_each(tried) if one.id not in {other.id for other in finals}]
     ranked = sorted(finals[1:], key=lambda one: one.evidence, reverse=True)

@@ -2,26 +2,36 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ssmr_ident.core.shown import Shown
-from ssmr_ident.diagnose.turning.anchor import Anchor
+from ssmr_ident.diagnose.turning.anchor import Anchor, anchored
 from ssmr_ident.diagnose.turning.conditions import Condition
 
-TRIED = (0.02, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.85, 1.0)
+PATH = "tire.lambda_max"
+TRIED = (0.1, 0.4, 0.5, 0.6, 0.7, 0.85, 1.0)
+HARMLESS = 0.3
+"""Up to it nothing changes in a swivel: the wheels slip by more than that all the time."""
+ROUNDS_EACH = 2
+SCATTER = 2.0
+"""Of log likelihoods by the chance of simulated runs: where lambda_max does nothing they differed by up to 6."""
+SURE = 2.0  # standard deviations of chance
 FOREIGN_DB = 3.5
 """Own error of a baseline from which on it is no model of this robot; fits to robots that it describes leave 3 dB."""
+RUNS = 4  # simulated per value and condition
+SURE = 2.0  # standard deviations of chance
 DROP = 1.92  # of the log likelihood at the ends of a 95 % interval
 
 
 @dataclass(frozen=True, eq=False)
 class GripProfile(Shown):
-    """Log likelihood over lambda_max, everything else at the baseline's values.
+    """Log likelihood over lambda_max, everything else refitted at each value.
 
     ``lower`` is None where every smaller value fits as well, ``upper`` where every larger one does; ``own_error_db``
-    is the tau of the baseline.
+    is the tau of the baseline, and ``anchor`` the baseline with the best value.
     """
 
     tried: np.ndarray
@@ -30,6 +40,7 @@ class GripProfile(Shown):
     lower: float | None
     upper: float | None
     own_error_db: float = 0.0
+    anchor: Anchor | None = None
 
     def __str__(self) -> str:
         if self.own_error_db > FOREIGN_DB:
@@ -38,7 +49,7 @@ class GripProfile(Shown):
                 "for reasons of its own, so no interval is given"
             )
         if self.lower is None and self.upper is None:
-            return "lambda_max: these recordings cannot tell it; every value from 0.02 to 1 fits as well"
+            return "lambda_max: these recordings cannot tell it; every value up to 1 fits as well"
         if self.lower is None:
             return f"lambda_max: below {self.upper:.2g} (95 %), and these recordings cannot tell smaller values apart"
         if self.upper is None:
@@ -46,25 +57,45 @@ class GripProfile(Shown):
         return f"lambda_max: {self.best:.2g}, between {self.lower:.2g} and {self.upper:.2g} (95 %)"
 
 
-def grip_profile(anchor: Anchor, fitted_on: tuple[Condition, ...]) -> GripProfile:
-    """Profile lambda_max on the recordings that the baseline was fitted on."""
-    tried = np.array(TRIED)
-    direct = Anchor(anchor.bench, anchor.scale, anchor.priors, anchor.z, (), anchor.fit, anchor.seeds)
-    effects = [{"slip_coupling": {"weight": 1.0, "lambda_max": value}} for value in TRIED]
-    anchor.bench.prefetch(
-        (c, anchor.values, effect, seed) for effect in effects for c in fitted_on for seed in anchor.seeds
-    )
-    values = []
-    for effect in effects:
-        found = direct.score(fitted_on, effect)
-        values.append(-np.inf if found is None else found[0].log_likelihood)
-    return profile(tried, np.array(values), anchor.fit.tau_db)
+def grip_profile(anchor: Anchor, fitted_on: tuple[Condition, ...], advance: Callable[[], None]) -> GripProfile:
+    """Profile lambda_max on the recordings that the baseline was fitted on: everything else is refitted at each value.
+
+    What is refitted makes up for much of a wrong lambda_max; held at one fit's values the interval would be far too
+    narrow, and in the wrong place.
+    """
+    bench, own = anchor.bench, anchor.bench.parameters.number(PATH, 0.0)
+    fits = []
+    for value in TRIED:
+        if value == TRIED[0] and 0.0 <= own <= HARMLESS:
+            fits.append(anchor)
+        else:
+            starts = (anchor.z, np.zeros_like(anchor.z))
+            fits.append(
+                anchored(
+                    bench, fitted_on, bool(anchor.calibration), anchor.scale, lambda: None, ROUNDS_EACH, anchor.seeds,
+                    {PATH: value}, starts,
+                )
+            )  # fmt: skip
+        advance()
+    found = profile(np.array(TRIED), np.array([fit.fit.log_likelihood for fit in fits]), 0.0, SCATTER)
+    best = fits[int(np.argmax(found.log_likelihood))]
+    return replace(found, own_error_db=best.fit.tau_db, anchor=best)
 
 
-def profile(tried: np.ndarray, log_likelihood: np.ndarray, own_error_db: float = 0.0) -> GripProfile:
-    """The interval where the log likelihood is within 1.92 of its best, between the values tried."""
+def profile(
+    tried: np.ndarray, log_likelihood: np.ndarray, own_error_db: float = 0.0, scatter: float = 0.0
+) -> GripProfile:
+    """The interval where the log likelihood is within 1.92 of its best, and what chance adds, between the values tried.
+
+    Parameters
+    ----------
+    tried, log_likelihood : (n,) float
+    own_error_db : float [dB]
+    scatter : float
+        Standard deviation of a log likelihood by the chance of simulated runs.
+    """
     best = int(np.argmax(log_likelihood))
-    limit = log_likelihood[best] - DROP
+    limit = log_likelihood[best] - DROP - SURE * np.sqrt(2.0) * scatter
 
     def crossing(inside: int, outside: int) -> float:
         a, b = log_likelihood[inside], log_likelihood[outside]

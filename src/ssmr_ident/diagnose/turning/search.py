@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.optimize import minimize
 
-from ssmr_ident.diagnose.turning.anchor import Anchor, values_at
+from ssmr_ident.diagnose.turning.anchor import Anchor
 from ssmr_ident.diagnose.turning.candidates import Candidate, Values
 from ssmr_ident.diagnose.turning.conditions import Condition
 from ssmr_ident.diagnose.turning.likelihood import NEPER_DB, Score
@@ -182,7 +182,7 @@ def _together(now: Explained, targets: tuple[Condition, ...], advance: Callable[
 
     def split(at: np.ndarray):
         effects = {} if candidate is None else candidate.effects(candidate.values(at[size:]))
-        return values_at(anchor.priors, at[:size]), effects
+        return anchor.at(at[:size]), effects
 
     def jobs(at: np.ndarray):
         values, effects = split(at)

@@ -43,8 +43,8 @@ Force = Callable[[Values, Effects, Array, float, float | None], Array]
 the integration, None for the simulator's own choice."""
 
 QUICK = 5e-4
-"""Integration step of fits [s]: a pull's force then differs by 0.01 to 0.2 N rms from that of the simulator's own choice,
-a load cell's noise being some 0.5 N."""
+"""Integration step of fits [s]: a pull's force then differs by 0.01 to 0.2 N rms from that of the simulator's own
+choice, a load cell's noise being some 0.5 N."""
 
 
 def pull_trial(measurement: Measurement, parameters: ParameterSet) -> Trial:

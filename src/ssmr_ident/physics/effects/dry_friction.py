@@ -43,9 +43,8 @@ EFFECT = Effect(
     acts={Site.ELEMENT: force, Site.STATE: advance},
     rig=True,
     probes=(
-        {"F_c_N": Sized(0.03, "force"), "element_stiffness_N_m": Sized(3.0, "stiffness")},
-        {"F_c_N": Sized(0.03, "force"), "element_stiffness_N_m": Sized(30.0, "stiffness")},
-        {"F_c_N": Sized(0.15, "force"), "element_stiffness_N_m": Sized(3.0, "stiffness")},
-        {"F_c_N": Sized(0.15, "force"), "element_stiffness_N_m": Sized(30.0, "stiffness")},
+        {"F_c_N": Sized(0.005, "force"), "element_stiffness_N_m": Sized(10.0, "stiffness")},
+        {"F_c_N": Sized(0.03, "force"), "element_stiffness_N_m": Sized(10.0, "stiffness")},
+        {"F_c_N": Sized(0.15, "force"), "element_stiffness_N_m": Sized(10.0, "stiffness")},
     ),
 )
