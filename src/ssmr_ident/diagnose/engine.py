@@ -6,11 +6,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.stats import chi2
 
 from ssmr_ident.compare.recorded import follow
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.explain import without
-from ssmr_ident.diagnose.explore import LAST, Progress, Search, best_baseline, prepared, search
+from ssmr_ident.diagnose.explore import LAST, LOUD, Progress, Search, best_baseline, prepared, search
 from ssmr_ident.diagnose.setup import Setup
 from ssmr_ident.diagnose.weigh import CERTAIN, TIE, Explanation, evidences
 from ssmr_ident.identify.horizons import led
@@ -24,8 +25,8 @@ SECOND = 0.7
 """Share of the first effect's unexplained variance, on recordings kept back, that may be left when a second one is
 added: the right effect in a formula that is not quite the world's leaves structure, of which any other takes a part."""
 
-AWAY = 3.0
-"""Standard deviations from off."""
+CHANCE = 0.0027
+"""Probability, that of three standard deviations, with which an amplitude may be as far from off by chance."""
 
 RELEVANT = 0.97
 """The same for the first effect: an effect that saves less of the variance predicts nothing better."""
@@ -72,7 +73,7 @@ def examine(setup: Setup, parameters: ParameterSet, progress: Progress | None = 
     tried, searches = [baseline], []
     chosen = baseline
     for _ in range(MOST_EFFECTS):
-        result = search(chosen.fit, setup.campaign.session.baseline, lengths, progress)
+        result = search(chosen.fit, setup.campaign.session.baseline, lengths, chosen is not baseline, progress)
         searches.append(result)
         new = [explained(kept, f, chosen.kept) for f in result.tried]
         if not new:
@@ -118,10 +119,10 @@ def informed(setup: Setup, parameters: ParameterSet) -> Setup:
 
 def polish(fit: JointFit, lengths: tuple[float, ...]) -> JointFit:
     """An explanation led through all horizons once more, from where it stands; the better of the two."""
-    if len(lengths) == 1:
-        return descend(fit, LAST)
-    again = led(fit.trials, fit.model, fit.point, lengths, 2 * LAST)
     further = descend(fit, LAST)
+    if len(lengths) == 1 or float(np.median(further.parts / [t.size for t in further.trials])) < LOUD:
+        return further
+    again = led(fit.trials, fit.model, fit.point, lengths, LAST)
     return min((again, further), key=lambda f: f.cost(further.counted))
 
 
@@ -138,17 +139,16 @@ def _better(leader: Explanation, before: Explanation, first: bool) -> bool:
 
 
 def significant(fit: JointFit) -> bool:
-    """Whether every effect's own amplitude is away from off by more than its uncertainty allows."""
-    stds = np.sqrt(np.maximum(np.diag(fit.covariance()), 0.0))[len(fit.model.physics) :]
-    point = fit.point[len(fit.model.physics) :]
-    for coordinate, scaled, std in zip(fit.model.free, point, stds, strict=True):
-        unknown = coordinate.unknown
-        if coordinate.parameter.off is None:
-            continue
-        # a logarithm that is known to a third is three standard deviations away from nothing
-        size = abs(float(scaled)) / std if not unknown.logarithmic else 1.0 / (std * unknown.spread)
-        alone = sum(c.effect == coordinate.effect and c.parameter.off is not None for c in fit.model.free) == 1
-        if alone and size < AWAY:
+    """Whether every effect's own amplitudes are away from off by more than their uncertainty allows (Wald's test)."""
+    first = len(fit.model.physics)
+    covariance, point = fit.covariance()[first:, first:], fit.point[first:]
+    for effect_id in {c.effect for c in fit.model.free}:
+        own = [k for k, c in enumerate(fit.model.free) if c.effect == effect_id and c.parameter.off is not None]
+        away = np.array(
+            # off is infinitely far in a logarithm; one that is known to a third is three deviations from nothing
+            [1.0 / fit.model.free[k].unknown.spread if fit.model.free[k].unknown.logarithmic else point[k] for k in own]
+        )
+        if own and float(away @ np.linalg.solve(covariance[np.ix_(own, own)], away)) < chi2.isf(CHANCE, len(own)):
             return False
     return True
 

@@ -26,6 +26,13 @@ PROMISING = 6.0
 LOUD = 2.0
 """Variance over the noise's from which a residual is large: then effects are tried by simulation alone."""
 
+CLOSE = 1.5
+"""Difference in the logarithm of the unexplained variance, before refits have come to rest, up to which an effect may
+still overtake another: a factor of 4.5."""
+
+WIDE = 4.0
+"""The same for the median recording when an effect has been found already."""
+
 HEATS = ((0, 3), (12, 4), (6, 6))
 """Rounds in which probes are tried: how many go in, and Gauss-Newton steps in each. All probes go into the first, on
 the first horizon; the others are run on the second."""
@@ -85,7 +92,7 @@ def best_baseline(
     fit = fit_baseline(trials, setup, parameters)
     lengths = tuple(horizons(fit.trials, radian(fit.trials)))
     if float(np.max(fit.parts / [t.size for t in fit.trials])) > LOUD and len(lengths) > 1:
-        other = differentiate(led(fit.trials, fit.model, fit.point, lengths, LAST))
+        other = differentiate(led(fit.trials, fit.model, fit.point, lengths, LAST // 2))
         fit = min((fit, other), key=lambda f: f.cost(fit.counted))
     return fit, lengths
 
@@ -94,6 +101,7 @@ def search(
     base: JointFit,
     baseline: str,
     lengths: Sequence[float],
+    beside: bool = False,
     progress: Progress | None = None,
 ) -> Search:
     """Every effect of the catalogue beside a model.
@@ -106,17 +114,26 @@ def search(
         The session's.
     lengths : sequence of float [s]
         Horizons.
+    beside : bool
+        The model has an effect already, and a second one is looked for.
     progress : callable, optional
     """
     groups = scan(base, candidates(base, baseline))
-    if len(lengths) > 1 and float(np.max(base.parts / [t.size for t in base.trials])) > LOUD:
+    misfit = base.parts / [t.size for t in base.trials]
+    # one recording that stands out may be the only one in which a wheel lifts; beside an effect that explains the
+    # others it is more likely the effect's own formula
+    loud = float(np.median(misfit)) > WIDE if beside else float(np.max(misfit)) > LOUD
+    rest = [np.inf]
+    if loud and len(lengths) > 1:
         rough = _screened(base, groups, lengths, progress)
         rest = list(lengths[1:])
+    elif loud:
+        rough = _raced(base, groups, progress)
     else:
-        chosen = [g for g in groups if g[0].gain > PROMISING + len(g[0].at)][:SCREENED]
-        rough = [_best([_started(base, suspect) for suspect in _variants(group)]) for group in chosen]
-        rest = [np.inf]
+        chosen = [g for g in groups if g[0].gain > PROMISING + len(g[0].at)][: REFITTED if beside else SCREENED]
+        rough = _ranked([_best([_started(base, suspect) for suspect in _variants(group)]) for group in chosen])
     tried = []
+    rough = _close(rough)
     for index, fit in enumerate(rough[:REFITTED]):
         if progress:
             progress("refitting explanations", index, min(len(rough), REFITTED))
@@ -124,6 +141,32 @@ def search(
     if progress:
         progress("refitting explanations", 1, 1)
     return Search(base, tuple(tuple(g) for g in groups), tuple(tried), tuple(lengths))
+
+
+def _close(ranked: Sequence[JointFit]) -> list[JointFit]:
+    """Those that a refit to the end may still bring before the first one."""
+    if not ranked:
+        return []
+    counted = ranked[0].counted
+    far = CLOSE * float(counted.sum())
+    return [f for f in ranked if f.cost(counted) < ranked[0].cost(counted) + far]
+
+
+def _raced(base: JointFit, groups: Sequence[Sequence[Suspect]], progress: Progress | None) -> list[JointFit]:
+    """All effects on whole recordings, a few steps each; the most likely first, each effect once."""
+    field = []
+    for index, group in enumerate(groups):
+        if progress:
+            progress("trying effects", index, len(groups))
+        for suspect in group:
+            model, point = begin_with(base, suspect)
+            field.append(descend(evaluate(base.trials, model, point, base.nuisances), 2))
+    if progress:
+        progress("trying effects", 1, 1)
+    best: dict[tuple[str, ...], JointFit] = {}
+    for fit in _ranked([descend(f, 2) for f in _ranked(field)[: HEATS[2][0]]]):
+        best.setdefault(fit.model.ids, fit)
+    return list(best.values())
 
 
 def _screened(

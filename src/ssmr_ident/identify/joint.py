@@ -34,6 +34,9 @@ NUISANCE_STEP = 1e-4
 SETTLED = 0.1
 """Fall of the cost (twice a log-likelihood) at which a fit is at rest."""
 
+SLOW = 1e-4
+"""The same per independent sample: where a model leaves structure, its optimum is flat beyond what that is worth."""
+
 _POOL = ThreadPoolExecutor(max_workers=max(1, min(8, os.cpu_count() or 1)))
 
 
@@ -290,7 +293,7 @@ def descend(
         after, damping = _best_step(fit, counted, damping, shared)
         gain = before - after.cost(counted)
         fit = after
-        if gain < settled:
+        if gain < max(settled, SLOW * float(counted.sum())):
             break
     return fit
 

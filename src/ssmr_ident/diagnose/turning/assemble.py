@@ -158,17 +158,23 @@ def _worth(
     )  # fmt: skip
 
 
+def _unit(known: ParameterSet, path: str) -> str:
+    return known[path].unit if path in known else NEW_UNITS.get(path, "")
+
+
 def _conflicts(anchor: Anchor) -> tuple[Conflict, ...]:
-    values, known = anchor.values, anchor.bench.parameters
-    return tuple(
-        Conflict(prior.path, prior.value, values[prior.path], float(z), "" if path not in known else known[path].unit)
-        for prior, z, path in zip(anchor.priors, anchor.z, values, strict=True)
-        if abs(z) > CONFLICT
-    ) + tuple(
-        Conflict(path, float(known[path].value), value, (value - float(known[path].value)) / float(known[path].std or 1.0), known[path].unit)
-        for path, value in anchor.fixed.items()
-        if path in known and known[path].std and abs(value - float(known[path].value)) > CONFLICT * float(known[path].std or 1.0)
-    )  # fmt: skip
+    known, values = anchor.bench.parameters, anchor.values
+    found = [
+        Conflict(prior.path, prior.value, values[prior.path], float(z), _unit(known, prior.path))
+        for prior, z in zip(anchor.priors, anchor.z, strict=True)
+    ]  # fmt: skip
+    for path, value in anchor.fixed.items():
+        if path in known and known[path].std:
+            prior = float(known[path].value)
+            found.append(
+                Conflict(path, prior, value, (value - prior) / float(known[path].std or 1.0), known[path].unit)
+            )
+    return tuple(one for one in found if abs(one.sigmas) > CONFLICT)
 
 
 def _summary(outcome: Outcome, decision: Decision, best: Explained | None, heldout: Worth) -> str:

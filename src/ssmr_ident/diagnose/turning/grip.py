@@ -99,7 +99,8 @@ def profile(
 
     def crossing(inside: int, outside: int) -> float:
         a, b = log_likelihood[inside], log_likelihood[outside]
-        share = 1.0 if not np.isfinite(b) else float(np.clip((a - limit) / (a - b), 0.0, 1.0))
+        # a peak between values tried is no sharper than they lie apart
+        share = 1.0 if not np.isfinite(b) else float(np.clip((a - limit) / (a - b), 0.5, 1.0))
         return float(tried[inside] + share * (tried[outside] - tried[inside]))
 
     allowed = np.flatnonzero(log_likelihood >= limit)

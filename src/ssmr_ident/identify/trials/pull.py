@@ -34,8 +34,8 @@ COARSE = 10.0
 """On the steps of differences: a percent of a stiffness, and a thousandth of the travel."""
 
 BLIND = {
-    "pull": ("inertia_", "accelerometer."),
-    "wheel": ("inertia_", "accelerometer.", "contact_shift", "height"),
+    "pull": ("inertia_", "accelerometer.", "tire.damping_"),
+    "wheel": ("inertia_", "accelerometer.", "contact_shift", "height", "tire.damping_"),
 }
 
 Force = Callable[[Values, Effects, Array, float, float | None], Array]

@@ -36,8 +36,8 @@ EFFECT = Effect(
     acts={Site.ELEMENT: force, Site.STATE: advance},
     rig=True,
     probes=(
-        {"K_m_N_m": Sized(0.2, "stiffness"), "tau_s": Sized(0.3, "time")},
-        {"K_m_N_m": Sized(0.2, "stiffness"), "tau_s": Sized(2.0, "time")},
-        {"K_m_N_m": Sized(0.2, "stiffness"), "tau_s": Sized(0.2, "duration")},
+        {"K_m_N_m": Sized(0.2, "stiffness"), "tau_s": Sized(1.0, "time")},
+        {"K_m_N_m": Sized(0.2, "stiffness"), "tau_s": Sized(0.05, "duration")},
+        {"K_m_N_m": Sized(0.2, "stiffness"), "tau_s": Sized(0.3, "duration")},
     ),
 )
