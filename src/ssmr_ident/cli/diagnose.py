@@ -33,6 +33,7 @@ def command(
     from ssmr_ident.cli.progress import stages
     from ssmr_ident.core.errors import InputError
     from ssmr_ident.pipeline.diagnose import diagnose, write_diagnosis
+    from ssmr_ident.pipeline.files_read import files_read
     from ssmr_ident.session import read_parameters
 
     if output.exists() and not output.is_dir():
@@ -43,7 +44,7 @@ def command(
     with stages(hidden=quiet or as_json) as step:
         campaign = load(session, lambda done, total: step("reading the logs", done, total))
         diagnosis = diagnose(campaign, known, seed, step)
-    write_diagnosis(diagnosis, campaign, output, called(), seed)
+    write_diagnosis(diagnosis, campaign, output, called(), seed, files_read(session, params))
     if as_json:
         import json
 

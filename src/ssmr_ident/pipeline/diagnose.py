@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,6 +12,7 @@ from ssmr_ident.campaign import Campaign, load
 from ssmr_ident.core.atomic import write_text
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.diagnosis import Diagnosis
+from ssmr_ident.pipeline.files_read import files_read
 from ssmr_ident.session import write_parameters
 
 TURNING = ("swivel", "straight")
@@ -64,7 +65,14 @@ def diagnose_session(
     return diagnose(load(path), parameters, seed, progress)
 
 
-def write_diagnosis(diagnosis: Diagnosis, campaign: Campaign, out: Path, command: str = "", seed: int = 0) -> None:
+def write_diagnosis(
+    diagnosis: Diagnosis,
+    campaign: Campaign,
+    out: Path,
+    command: str = "",
+    seed: int = 0,
+    files: Sequence[Path] = (),
+) -> None:
     """diagnosis.yaml, before.yaml, after.yaml, report.html and its figures.
 
     Parameters
@@ -76,18 +84,15 @@ def write_diagnosis(diagnosis: Diagnosis, campaign: Campaign, out: Path, command
     command : str
         The call, for the report's last lines.
     seed : int
+    files : sequence of Path
+        What was read, for their SHA-256; empty takes the session's file, robot and logs.
     """
     from ssmr_ident.report.diagnosis_page import write_report
 
     out.mkdir(parents=True, exist_ok=True)
     write_parameters(out / "before.yaml", diagnosis.before)
     write_parameters(out / "after.yaml", diagnosis.after)
-    session = campaign.session
-    files = [session.folder / "session.yaml", *(session.path(m.entry) for m in campaign.measurements)]
-    robot = Path(str(campaign.parameters.file))
-    if robot.is_file():
-        files.insert(1, robot)
-    write_report(diagnosis, out / "report.html", command, seed, [f for f in dict.fromkeys(files) if f.is_file()])
+    write_report(diagnosis, out / "report.html", command, seed, files or files_read(campaign.session.folder))
     # last, so that who finds it finds the rest as well
     text = yaml.safe_dump(diagnosis.as_dict(), sort_keys=False, allow_unicode=True, width=110)
     write_text(out / "diagnosis.yaml", text)

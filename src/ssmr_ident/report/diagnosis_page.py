@@ -9,7 +9,7 @@ from pathlib import Path
 from ssmr_ident.core.atomic import write_text
 from ssmr_ident.diagnose.diagnosis import MISSING, NOTHING, UNIT, Diagnosis, NamedEffect
 from ssmr_ident.report.diagnosis_pictures import after_name
-from ssmr_ident.report.diagnosis_sections import sections
+from ssmr_ident.report.diagnosis_sections import needed, sections
 from ssmr_ident.report.figures_diagnosis import readable
 from ssmr_ident.report.html import Fact, Page, Verdict, file_hashes, render_page, write_page
 from ssmr_ident.report.numbers import alike, interval, measured, number, share
@@ -168,7 +168,7 @@ def _tied(diagnosis: Diagnosis) -> bool:
 
 def _law(effect: NamedEffect) -> str:
     """Formula and values; three of them at most, the table below holds all."""
-    scalars = [(name, e) for name, e in effect.parameters.items() if isinstance(e.value, int | float)][:3]
+    scalars = [(name, e) for name, e in needed(effect).items() if isinstance(e.value, int | float)][:3]
     values = [f"{name} = {measured(float(e.value), e.std, e.unit)}" for name, e in scalars]
     return ",   ".join((effect.equation, *values))
 

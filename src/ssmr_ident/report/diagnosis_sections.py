@@ -35,15 +35,26 @@ def _effects(diagnosis: Diagnosis) -> Section:
     rows: list[tuple[Cell, ...]] = []
     for effect in diagnosis.effects:
         paragraphs.append(_described(effect))
-        for name, estimate in effect.parameters.items():
+        for name, estimate in needed(effect).items():
             rows.append((readable(effect.id), name, *_estimated(estimate)))
     header = ("effect", "parameter", "value ± std", "95 % interval", "unit")
     caption = (
         "Fitted parameters of the physics added, ± their standard deviation; the interval is ±1.96 standard deviations."
     )
-    if any(estimate.std is None for effect in diagnosis.effects for estimate in effect.parameters.values()):
+    if any(len(needed(effect)) < len(effect.parameters) for effect in diagnosis.effects):
+        caption += " Terms that the recordings do not need are zero and not listed."
+    if any(estimate.std is None for effect in diagnosis.effects for estimate in needed(effect).values()):
         caption += " None stands where the fit leaves structure behind, so that one would promise too much."
     return Section(title, tuple(paragraphs), (Table(caption, header, tuple(rows)),) if rows else ())
+
+
+def needed(effect: NamedEffect) -> dict[str, Estimate]:
+    """Its parameters without terms set to zero, as a search for an unlisted law leaves them."""
+
+    def zero(estimate: Estimate) -> bool:
+        return estimate.std is None and isinstance(estimate.value, int | float) and estimate.value == 0
+
+    return {name: e for name, e in effect.parameters.items() if not zero(e)}
 
 
 def _described(effect: NamedEffect) -> str:
