@@ -119,6 +119,8 @@ def _named(outcome: Outcome, parameters: ParameterSet) -> tuple[NamedEffect, ...
         confidence = sum(s for name, s in share.items() if effect_id in name.split("+"))
         others = tuple(dict.fromkeys(o for r in outcome.rivals for o in r.fit.model.ids if o not in best.fit.model.ids))
         values = fitted[effect_id]
+        if effect_id == "unlisted":
+            values = {name: estimate for name, estimate in values.items() if not estimate.fixed}
         found.append(
             NamedEffect(
                 effect_id, told(effect_id, values), law(effect_id, values), values, min(confidence, 1.0), others

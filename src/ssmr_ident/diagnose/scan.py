@@ -66,6 +66,8 @@ def candidates(fit: JointFit, baseline: str) -> tuple[Effect, ...]:
         for effect in CATALOGUE.values()
         if experiments & set(effect.experiments)
         and effect.id not in fit.model.held
+        # a smooth force beside a listed effect would only mend that effect's formula
+        and (effect.id != "unlisted" or not fit.model.free)
         and (effect.rig or baseline != "sdof")
         and (effect.id != "translation_coupling" or baseline == "decoupled")
         and effect.probes

@@ -34,6 +34,7 @@ REFINE_FAR = 100.0
 """The same for refining a candidate's own parameters from the start of its search."""
 DISTORTED_DB = 2.0
 """Own error of a baseline fitted on the targets from which on it may have been bent by what is missing."""
+CLOSE = 30.0  # of evidence behind the first: who comes first may still be a matter of where the search began
 MANY = 3  # target conditions from which on one run each has to do while searching
 Progress = Callable[[str, int, int], None]
 
@@ -146,14 +147,14 @@ def examine(
     count = _Counter(show, "baseline set free beside them", len(worth_it) * rounds + 2 * (rounds + 1) + LAST_ROUNDS)
     best = [freed(one, targets, rounds * (1 + (one.anchor is not anchor)), count.advance) for one in worth_it]
     best.sort(key=lambda one: one.evidence, reverse=True)
-    if best and best[0].evidence > baseline.evidence:
-        best[0] = polished(best[0], starts[best[0].id], targets, rounds + 1, count.advance)
+    for i in _ahead(best[:2], baseline):
+        best[i] = polished(best[i], starts[best[i].id], targets, rounds + 1, count.advance)
     if not calibration:  # the explanations had their baseline fitted further on the targets; so must it be
         baseline = freed(baseline, targets, 3 * rounds, lambda: None)
     finals = [_final(one, targets, seed) for one in [baseline, *_one_each(best)]]
-    first = max(range(len(finals)), key=lambda i: finals[i].evidence)
-    if first > 0:
-        finals[first] = freed(finals[first], targets, LAST_ROUNDS, count.advance)
+    finals[1:] = sorted(finals[1:], key=lambda one: one.evidence, reverse=True)
+    for i in _ahead(finals[1:3], finals[0]):
+        finals[i + 1] = freed(finals[i + 1], targets, LAST_ROUNDS, count.advance)
     count.finish()
     rest = [one for one in _one_each(tried) if one.id not in {other.id for other in finals}]
     ranked = sorted(finals[1:], key=lambda one: one.evidence, reverse=True)
@@ -189,6 +190,14 @@ def _tried(
     count.finish()
     tried.sort(key=lambda one: one.evidence, reverse=True)
     return tried, {pair[0].id: pair[-1] for pair in pairs}
+
+
+def _ahead(ranked: list[Explained], baseline: Explained) -> list[int]:
+    """Which of the first two are to be fitted to the end: ahead of the baseline, and near the first."""
+    return [
+        i for i, one in enumerate(ranked)
+        if one.evidence > baseline.evidence and one.evidence > ranked[0].evidence - CLOSE
+    ]  # fmt: skip
 
 
 def _one_each(explanations: list[Explained]) -> list[Explained]:

@@ -14,8 +14,9 @@ from ssmr_ident.diagnose.turning.grip import FOREIGN_DB
 
 GAIN = (6.0, 12.0)
 """Evidence over the baseline that an explanation needs, with and without calibration recordings."""
-TIE = 6.0
-"""Evidence within which explanations fit alike."""
+TIE, TIE_SHARE = 6.0, 0.05
+"""Evidence within which explanations fit alike, and the share of the best one's: how many values of a spectrum are
+independent where a model errs is a guess, and evidence is in proportion to it."""
 MOST = 3  # that are named together
 SHARE = 1.0 / 3.0
 """Of the misfit beyond chance that an explanation has to take away."""
@@ -92,7 +93,7 @@ def decide(found: Findings) -> Decision:
         return Decision(MISSING, (UNLISTED,), confidence, "no listed effect takes a third of the change away")
     if not found.calibrated and best.tau_db > FOREIGN_DB:
         return Decision(UNDETERMINED, (), confidence, "whatever is added, the model stays far from these spectra")
-    alike = [one.id for one in ranked if one.gain > best.gain - TIE]
+    alike = [one.id for one in ranked if one.gain > best.gain - max(TIE, TIE_SHARE * best.gain)]
     alike.sort(key=lambda name: name == UNLISTED)  # only where every listed effect falls behind
     named = tuple(alike[:MOST])
     return Decision(MISSING, named, confidence, "")

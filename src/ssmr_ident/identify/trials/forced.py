@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.signal import lfilter
 
 from ssmr_ident.campaign import MOTIONS, UNITS, Measurement
 from ssmr_ident.core.errors import InputError, SimulationError
@@ -24,6 +25,9 @@ INPUTS = ("force", "torque")
 
 LOWEST_RATE_HZ, RATE_PER_FREQUENCY = 250.0, 12.0
 """Block averages keep at least this rate, and this many blocks in a period of the rig."""
+
+LOOSE_RATE_HZ = 50.0
+"""Rate at which the path of a mass without a spring is compared: slow enough that its encoder's steps average out."""
 
 OVERSAMPLING = 4
 """Of the force, for what is compared and drawn."""
@@ -90,7 +94,8 @@ def forced_trial(measurement: Measurement, parameters: ParameterSet) -> Trial:
         # the force comes through a sensor and a converter of the same kind: what both delay alike cancels
         bandwidth = math.inf
     natural = math.sqrt(max(builder.nominal.stiffness, 0.0) / builder.nominal.mass) / (2.0 * math.pi)
-    needed = max(LOWEST_RATE_HZ, RATE_PER_FREQUENCY * (1.0 + FREQUENCY_REACH) * natural)
+    loose = builder.nominal.stiffness == 0.0 and COLUMN[outputs[0]] == 0
+    needed = LOOSE_RATE_HZ if loose else max(LOWEST_RATE_HZ, RATE_PER_FREQUENCY * (1.0 + FREQUENCY_REACH) * natural)
     block = max(1, int(rate / needed))
     slow = math.isfinite(bandwidth)
     columns = [COLUMN[name] for name in outputs]
@@ -146,7 +151,7 @@ def forced_trial(measurement: Measurement, parameters: ParameterSet) -> Trial:
             outputs,
             even.start + (np.arange(count) + 0.5 * (block - 1) / block) * block / rate,
             target,
-            tuple(AutoregressiveNoise(np.ones(1), spread(target[:, c])) for c in range(len(outputs))),
+            tuple(_noise(target[:, c], loose and COLUMN[name] == 0) for c, name in enumerate(outputs)),
             np.ones((count, 1)),
             run,
             begin,
@@ -167,6 +172,13 @@ def forced_trial(measurement: Measurement, parameters: ParameterSet) -> Trial:
     )
     whole = len(measured) // block
     return assembled(whole, FINE)
+
+
+def _noise(samples: Array, loose: bool) -> AutoregressiveNoise:
+    """White, or where nothing holds the mass white in its second difference: a small error of force carries a free mass
+    away for good, so its path is compared by its curvature."""
+    bend = np.array([1.0, -2.0, 1.0]) if loose else np.ones(1)
+    return AutoregressiveNoise(bend, spread(lfilter(bend, [1.0], samples)[len(bend) - 1 :]))
 
 
 def linear_start(trial: Trial, run, second: int | None = None) -> Array:  # type: ignore[no-untyped-def]

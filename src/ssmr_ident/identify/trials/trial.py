@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
+from scipy.signal import lfilter
 
 from ssmr_ident.identify.decay_record import spread
 from ssmr_ident.identify.decay_start import mains_frequency, nuisance_columns
@@ -187,7 +188,12 @@ class Trial:
         """The same with each channel's noise taken from what a simulation leaves at its fastest: white noise shows in
         second differences, and a slow misfit hardly does."""
         rest = self.colour(simulated)
-        return self.with_noises(tuple(AutoregressiveNoise(np.ones(1), spread(column)) for column in rest.T))
+        return self.with_noises(
+            tuple(
+                AutoregressiveNoise(noise.filter, spread(lfilter(noise.filter, [1.0], column)[noise.order :]))
+                for noise, column in zip(self.noises, rest.T, strict=True)
+            )
+        )
 
     def with_lines(self, residual: Array) -> Trial:
         """The same with the mains lines that stand out of a residual, (n, c), added to the basis."""

@@ -49,5 +49,6 @@ EFFECT = Effect(
     probes=(
         {"alpha": 0.85, "yield_m": Sized(0.1, "deflection")},
         {"alpha": 0.85, "yield_m": Sized(0.5, "deflection")},
+        {"alpha": 0.5, "yield_m": Sized(0.5, "deflection")},
     ),
 )
