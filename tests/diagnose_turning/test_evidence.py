@@ -85,6 +85,8 @@ def test_grip_interval_is_open_where_the_data_cannot_tell():
     assert 0.3 < flat.upper < 0.5
     assert "cannot tell smaller" in str(flat)
     assert "cannot tell it" in str(profile(tried, np.zeros(6)))
+    noisy = np.array([-6.0, -3.0, -5.0, 0.0, -60.0, -90.0])
+    assert profile(tried, noisy, scatter=2.0).lower is None
     inside = profile(tried, -(((tried - 0.5) / 0.05) ** 2) / 2)
     assert inside.lower < 0.5 < inside.upper
 
