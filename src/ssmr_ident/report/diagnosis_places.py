@@ -79,7 +79,7 @@ def _drifts(diagnosis: Diagnosis) -> tuple[Picture, ...]:
         "would give the same value (dashed line). Bars are 95 % intervals; p is how often chance alone orders the "
         "points so well."
     )
-    caption = " ".join((caption, *dict.fromkeys(d.reading for d in drifts if d.reading)))
+    caption = " ".join((caption, *dict.fromkeys(f"{d.reading.rstrip('.')}." for d in drifts if d.reading)))
     return (Picture(tuple(drawings), caption, "Are the model's constants constant?"),)
 
 
