@@ -25,6 +25,9 @@ SECOND = 0.7
 """Share of the first effect's unexplained variance, on recordings kept back, that may be left when a second one is
 added: the right effect in a formula that is not quite the world's leaves structure, of which any other takes a part."""
 
+ALIKE = 2.0
+"""Unexplained variance over that of the best explanation, up to which another counts as near as it."""
+
 CHANCE = 0.0027
 """Probability, that of three standard deviations, with which an amplitude may be as far from off by chance."""
 
@@ -92,7 +95,10 @@ def examine(setup: Setup, parameters: ParameterSet, progress: Progress | None = 
     found = evidences(tried)
     top = found[chosen.id]
     alike = [e for e in tried if e is not chosen and len(e.fit.model.ids) <= len(chosen.fit.model.ids)]
-    rivals = sorted((e for e in alike if top - found[e.id] < TIE and e is not baseline), key=lambda e: -found[e.id])
+    rivals = sorted(
+        (e for e in alike if e is not baseline and (top - found[e.id] < TIE or _as_near(e, chosen))),
+        key=lambda e: -found[e.id],
+    )
     return Outcome(setup, baseline, tuple(tried), chosen, tuple(rivals), found, tuple(searches))
 
 
@@ -136,6 +142,18 @@ def _better(leader: Explanation, before: Explanation, first: bool) -> bool:
     gain = found[leader.id] - found[before.id]
     saved = float(np.exp(np.mean(np.log(leader.kept.parts / before.kept.parts))))
     return gain > CERTAIN and saved < (RELEVANT if first else SECOND)
+
+
+def _as_near(rival: Explanation, chosen: Explanation) -> bool:
+    """Whether neither of two laws is the world's, and one is about as near to it as the other.
+
+    Where the best law leaves more than the noise, its formula is wrong by that much; a rival whose error is no more
+    than that again cannot be told from it by how well it fits.
+    """
+    left = chosen.kept.parts / [t.size for t in chosen.kept.trials]
+    if float(np.median(left)) < LOUD or len(rival.fit.model.ids) != len(chosen.fit.model.ids):
+        return False
+    return float(np.exp(np.mean(np.log(rival.kept.parts / chosen.kept.parts)))) < ALIKE
 
 
 def significant(fit: JointFit) -> bool:

@@ -181,7 +181,7 @@ def _noise(samples: Array, loose: bool) -> AutoregressiveNoise:
     return AutoregressiveNoise(bend, spread(lfilter(bend, [1.0], samples)[len(bend) - 1 :]))
 
 
-def linear_start(trial: Trial, run, second: int | None = None) -> Array:  # type: ignore[no-untyped-def]
+def linear_start(trial: Trial, run, second: int | None = None) -> Array:
     """Nuisances that enter linearly, by least squares with their priors."""
     size = len(trial.scales)
     base = np.zeros(size)
