@@ -109,8 +109,8 @@ def set_up(campaign: Campaign, parameters: ParameterSet) -> Setup:
         fitted = [make(m) for m in targets]
         halves = [make(m) for m in heldout]
         if by_us:
-            names = ", ".join(m.name for m in heldout)
-            notes.append(f"the session holds nothing back, so {names} were kept back from the fits that decided")
+            names, verb = ", ".join(m.name for m in heldout), "was" if len(heldout) == 1 else "were"
+            notes.append(f"the session holds nothing back, so {names} {verb} kept back from the fits that decided")
     known = unknowns_of(campaign, parameters)
     motions = {m.entry.motion for m in (*targets, *calibration) if m.entry.motion}
     physics = set_aside(known, motions) if baseline == "decoupled" else known
@@ -134,9 +134,17 @@ def keep_back(targets: list[Measurement]) -> tuple[list[Measurement], list[Measu
     for m in targets:
         kinds.setdefault((m.entry.experiment, m.entry.motion, m.entry.direction), []).append(m)
     kept = [m for group in kinds.values() for m in _last(group)]
+    if not kept:
+        # pairs: the quieter one of as many kinds as make up the share, at least one
+        pairs = [sorted(group, key=_loudness)[0] for group in kinds.values() if len(group) > 1]
+        kept = pairs[: max(1, round(KEPT_BACK * len(targets)))]
     if not kept and len(targets) > 1:
-        kept = targets[-max(1, round(KEPT_BACK * len(targets))) :]
+        kept = [min(targets, key=_loudness)]
     return [m for m in targets if m not in kept], [m for m in targets if m in kept]
+
+
+def _loudness(m: Measurement) -> float:
+    return max(float(np.std(c.samples)) for c in m.recording.channels)
 
 
 def _last(group: list[Measurement]) -> list[Measurement]:
@@ -144,8 +152,7 @@ def _last(group: list[Measurement]) -> list[Measurement]:
     count = int(KEPT_BACK * len(group) + 1e-9)
     if not count:
         return []
-    loudness = {id(m): max(float(np.std(c.samples)) for c in m.recording.channels) for m in group}
-    ordered = sorted(group, key=lambda m: loudness[id(m)])
+    ordered = sorted(group, key=_loudness)
     middle = ordered[1:-1] or ordered[:-1]
     spread = np.linspace(0, len(middle) - 1, min(count, len(middle))).round().astype(int)
     return [middle[i] for i in dict.fromkeys(spread.tolist())]
