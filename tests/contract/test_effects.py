@@ -30,15 +30,21 @@ IDS = (
     "viscoelastic_relaxation", "flexible_mast", "free_play", "com_offset", "wheel_lift", "motor_belt",
     "cable_compliance", "stribeck", "load_sensitive_friction", "slip_coupling", "rolling_resistance",
     "ground_roughness", "ground_joints", "wheel_eccentricity", "coriolis", "sensor_saturation",
-    "sensor_bandwidth", "sensor_misalignment", "load_cell_drift",
+    "sensor_bandwidth", "sensor_misalignment", "load_cell_drift", "unlisted",
 )  # fmt: skip
-UNITS = {"1", "N", "N/m", "N/m^3", "N s/m", "N s^2/m^2", "N/s", "1/s", "m", "m/s", "m/s^2", "s", "kg", "Hz", "rad"}
+UNITS = {
+    "1", "N", "N/m", "N/m^2", "N/m^3", "N s/m", "N s/m^2", "N s/m^3", "N s^2/m^2", "N s^3/m^3", "N/s", "1/s", "m",
+    "m/s", "m/s^2", "s", "kg", "Hz", "rad",
+}  # fmt: skip
 EXPERIMENTS = {"free_response", "pull", "wheel_drag", "vertical_compression", "swivel", "straight", "forced"}
 NO_SLOT = {
     "ground_roughness.length_m": "shapes the random floor before the run",
     "ground_roughness.seed": "shapes the random floor before the run",
     "translation_coupling.active": "the simulator is always coupled; its off is the linear model of pure rotations",
 }
+SHOWN = {"unlisted": {"c_abs_v_N_s_m": 5.0}}
+"""Values in place of nominal ones. The smooth force is off at nominal: a search holds the terms that it does not fit
+at their nominal values, and there these have to do nothing."""
 QUANTUM = 5.0 / 2**12 * (3.4 * 9.8 / 5.0)  # m/s^2 per code of a 12-bit converter: what a log can show
 FORCE_FLOOR = 0.1  # N; the hundredth part of a tooth of the thesis' pulls
 
@@ -58,7 +64,7 @@ def test_the_catalogue_holds_the_fixed_ids_and_no_other() -> None:
 
 def test_the_fixed_ids_are_those_of_the_specification(shared: Path) -> None:
     table = (shared / "spec" / "effects.md").read_text(encoding="utf-8")
-    assert sorted(re.findall(r"^\| `(\w+)` \|", table, re.MULTILINE)) == sorted([*IDS, "unlisted"])
+    assert sorted(re.findall(r"^\| `(\w+)` \|", table, re.MULTILINE)) == sorted(IDS)
 
 
 @EACH
@@ -79,13 +85,23 @@ def test_the_declaration_is_complete(effect: Effect) -> None:
         suffix = {"N/m": "N_m", "1": "", "m/s^2": "m_s2"}.get(parameter.unit)
         assert suffix is None or parameter.name.endswith(suffix), "the key names the unit"
     nominal = effect.values()
-    assert not effect.is_off(nominal)
+    assert effect.is_off(nominal) == (effect.id in SHOWN)
+    assert not effect.is_off(effect.values(SHOWN.get(effect.id)))
     assert effect.is_off({**nominal, **{p.name: p.off for p in effect.amplitudes}})
 
 
 @EACH
 def test_every_parameter_reaches_the_code(effect: Effect) -> None:
     names = [parameter.name for parameter in effect.parameters]
+    if effect.id == "unlisted":  # a vector of its own beside the slots
+        sizes = {"deflection": 5e-3, "speed": 0.2, "force": 20.0}
+        motions = [_rig_motion({})]
+        for name, probe in zip(names, effect.probes, strict=True):
+            assert list(probe) == [name]
+            motions.append(_rig_motion({effect.id: {name: probe[name].value(sizes)}}))
+        for one, other in itertools.combinations(motions, 2):
+            assert np.abs(one - other)[:, 2].max() > QUANTUM, "two terms do the same"
+        return
     for site in (Site.ROBOT, Site.PULL, Site.OUTPUT):
         if site in effect.acts:
             change = effect.acts[site]
@@ -161,7 +177,7 @@ def test_nominal_leaves_a_trace_that_an_instrument_shows(effect: Effect, robot: 
         coupled, pure = (predicted_modes(robot, decoupled)["roll"][0] for decoupled in (False, True))
         assert coupled < 0.8 * pure
         return
-    on = {effect.id: effect.values()}
+    on = {effect.id: effect.values(SHOWN.get(effect.id))}
     traces = {}
     for experiment, scenarios in _experiments(robot, long=True).items():
         if experiment in effect.experiments:

@@ -7,6 +7,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 from scipy.optimize import brentq
 from scipy.special import ellipk
@@ -93,6 +94,45 @@ def test_quadratic_damping_leads_from_one_turning_point_to_the_next() -> None:
         left = (1 + 2 * b * now) * math.exp(-2 * b * now)
         root = brentq(lambda x, left=left: (1 - 2 * b * x) * math.exp(2 * b * x) - left, 1e-7, 0.9999 * now)
         assert later == pytest.approx(root, rel=5e-4)
+
+
+@law("unlisted")
+def test_a_damper_that_only_works_one_way_gives_back_what_it_took() -> None:
+    """m x'' + c|x'| + k x = 0 is a linear swing of damping ∓c: down it grows by e^(pi xi/√(1 - xi²)), up it shrinks."""
+    c = 60.0
+    xi = c / (2.0 * math.sqrt(STIFFNESS * MASS))
+    tops = _extremes(_swing({"unlisted": {"c_abs_v_N_s_m": c}}, 5e-3))
+    growth = math.exp(math.pi * xi / math.sqrt(1.0 - xi**2))
+    assert len(tops) > 20
+    assert growth > 1.2
+    assert tops[0::2] == pytest.approx(-5e-3 * growth, rel=5e-5)
+    assert tops[1::2] == pytest.approx(5e-3, rel=5e-5)
+
+
+@law("unlisted")
+@pytest.mark.parametrize("seed", range(3))
+def test_the_smooth_force_moves_a_shaken_mass_as_an_adaptive_solver_has_it(seed: int) -> None:
+    """All eight terms at once, up to 5 N each, the formula written out again."""
+    random = np.random.default_rng(seed)
+    names = "abs_v_N_s_m abs_s_N_m s2_N_m2 v2_N_s2_m2 sv_N_s_m2 s2v_N_s_m3 v3_N_s3_m3 s_abs_v_N_s_m2".split()
+    s, v = 5e-3, 0.2
+    a, b, c, d, e, f, g, h = random.uniform(-5.0, 5.0, 8) / [v, s, s**2, v**2, s * v, s**2 * v, v**3, s * v]
+    push = lambda t: 60.0 * np.sin(2 * np.pi * 5.0 * t) * np.sin(2 * np.pi * 0.9 * t)  # noqa: E731
+
+    def rate(t: float, state: np.ndarray) -> tuple[float, float]:
+        x, u = state
+        extra = a * abs(u) + b * abs(x) + c * x**2 + d * u**2 + e * x * u + f * x**2 * u + g * u**3 + h * x * abs(u)
+        return u, (push(t) - 120.0 * u - STIFFNESS * x - extra) / MASS
+
+    time = np.arange(2000) / 2000.0
+    exact = solve_ivp(rate, (0.0, 1.0), (2e-3, 0.0), t_eval=time, rtol=1e-9, atol=1e-12, max_step=1e-3).y
+    values = dict(zip((f"c_{name}" for name in names), (a, b, c, d, e, f, g, h), strict=True))
+    rig = Rig(MASS, 120.0, STIFFNESS)
+    found, plain = (simulate_rig(rig, push(time), 2000.0, 2e-3, effects=x) for x in ({"unlisted": values}, {}))
+    for column in (0, 1):
+        size = np.abs(exact[column]).max()
+        assert np.abs(found[:, column] - exact[column]).max() < 2e-4 * size
+        assert np.abs(plain[:, column] - exact[column]).max() > 0.03 * size
 
 
 @law("free_play")

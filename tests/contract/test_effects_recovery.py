@@ -95,6 +95,12 @@ CASES = {
     "hysteresis": Case(_rig, ACCELERATION_NOISE, ("alpha",), {"alpha": 0.7}),
     "quadratic_damping": Case(_rig, ACCELERATION_NOISE, ("d2_N_s2_m2",), {}),
     "viscoelastic_relaxation": Case(_rig, ACCELERATION_NOISE, ("K_m_N_m",), {}),
+    "unlisted": Case(
+        _rig,
+        ACCELERATION_NOISE,
+        ("c_abs_v_N_s_m", "c_s2_N_m2", "c_sv_N_s_m2"),
+        {"c_abs_v_N_s_m": 40.0, "c_s2_N_m2": 6e5, "c_sv_N_s_m2": 1e4},
+    ),
     "free_play": Case(_rig, ACCELERATION_NOISE, ("gap_m",), {}),
     "sensor_bandwidth": Case(_rig, ACCELERATION_NOISE, ("bandwidth_hz",), {}),
     "sensor_saturation": Case(_rig, ACCELERATION_NOISE, ("range_m_s2",), {"range_m_s2": 4.0}),
