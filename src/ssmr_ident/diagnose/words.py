@@ -34,7 +34,8 @@ LAWS = {
 
 
 def readable(effect_id: str) -> str:
-    return " and ".join(part.replace("_", " ") for part in effect_id.split("+"))
+    names = {"unlisted": "a force that no listed effect makes"}
+    return " and ".join(names.get(part, part.replace("_", " ")) for part in effect_id.split("+"))
 
 
 def law(effect_id: str, parameters: Mapping[str, Estimate]) -> str:
