@@ -1,0 +1,133 @@
+"""Joint fits: what correlated samples are worth, and that eliminating nuisances leaves the full least squares."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.linalg import block_diag
+from scipy.signal import lfilter
+
+from ssmr_ident.identify.coordinates import Model
+from ssmr_ident.identify.joint import JointFit, descend, differentiate, evaluate, worth
+from ssmr_ident.identify.noise import AutoregressiveNoise
+from ssmr_ident.identify.objective import Unknown
+from ssmr_ident.identify.trials import Trial
+from ssmr_ident.identify.trials.trial import Course
+
+NAMES = ("a", "b", "c")
+MODEL = Model(tuple(Unknown(name, "1", 0.0, 2.0, positive=False) for name in NAMES))
+
+
+def test_white_samples_are_worth_themselves() -> None:
+    shares = [worth(np.random.default_rng(seed).standard_normal(4000)) / 4000 for seed in range(20)]
+    assert min(shares) > 0.85
+    assert np.mean(shares) == pytest.approx(1.0, abs=0.05)
+
+
+@pytest.mark.parametrize("phi", [0.5, 0.8, 0.95])
+def test_correlated_samples_are_worth_what_bartlett_says(phi: float) -> None:
+    """AR(1) has rho_k = phi^k, so 1 + 2 sum rho² = (1 + phi²)/(1 - phi²), whatever the sign of phi.
+
+    What chance adds to a sum of squares is taken off as that of white noise; in correlated noise it is more, so the
+    count may err, to the careful side, by a factor of up to 1/(1 + 2·0.22).
+    """
+    count, exact = 40_000, (1.0 - phi**2) / (1.0 + phi**2)
+    whites = [np.random.default_rng(seed).standard_normal(count) for seed in range(10)]
+    for sign in (1.0, -1.0):
+        share = np.mean([worth(lfilter([1.0], [1.0, -sign * phi], white)) / count for white in whites])
+        assert 0.66 * exact < share < 1.06 * exact
+
+
+def test_what_is_masked_or_short_or_silent_is_counted_as_it_is() -> None:
+    white = np.random.default_rng(1).standard_normal(2000)
+    masked = np.concatenate([white, np.zeros(3000)])
+    assert worth(masked) == worth(white)
+    assert worth(white[:5]) == 5.0
+    assert worth(np.zeros(100)) <= 100.0
+    assert worth(3e-7 * white) == pytest.approx(worth(white))
+
+
+def _trial(shared: np.ndarray, own: np.ndarray, target: np.ndarray, scale: float, name: str) -> Trial:
+    """A recording that is linear in everything: basis-free but for its zero."""
+
+    def run(values: dict[str, float], effects: object, nuisance: np.ndarray) -> np.ndarray:
+        return (shared @ [values[n] for n in NAMES] + own @ nuisance)[:, None]
+
+    count = len(target)
+    times = np.arange(count) / 100.0
+    return Trial(
+        name, "forced", "", ("position",), times, target[:, None], (AutoregressiveNoise(np.ones(1), scale),),
+        np.ones((count, 1)), run, lambda values, effects: np.zeros(own.shape[1]),
+        tuple(f"n{i}" for i in range(own.shape[1])), np.ones(own.shape[1]),
+        Course(times, target[:, None], run, ("m",), None),
+    )  # fmt: skip
+
+
+def _linear(seed: int = 4) -> tuple[JointFit, list[np.ndarray], list[np.ndarray], list[np.ndarray]]:
+    """Three recordings with nuisances of their own, whitened blocks beside them, and a fit that stands at the prior."""
+    random = np.random.default_rng(seed)
+    truth = np.array([1.5, -0.7, 0.4])
+    trials, shared, own, targets = [], [], [], []
+    for index, (count, nuisances, noise) in enumerate(((300, 2, 0.1), (200, 1, 0.3), (400, 3, 0.05))):
+        a, b = random.standard_normal((count, 3)), random.standard_normal((count, nuisances))
+        b[:, 0] += a[:, 0]  # a nuisance that looks like the physics
+        y = a @ truth + b @ random.standard_normal(nuisances) + noise * random.standard_normal(count) + 7.0
+        trials.append(_trial(a, b, y, noise, f"{index}.csv"))
+        centre = [block - block.mean(axis=0) for block in (2.0 * a, b, y)]  # coordinates are in units of the prior's 2
+        for kept, block in zip((shared, own, targets), centre, strict=True):
+            kept.append(block / noise)
+    fit = evaluate(trials, MODEL, np.zeros(3), [np.zeros(len(t.nuisances)) for t in trials])
+    return fit, shared, own, targets
+
+
+def _full(
+    fit: JointFit, shared: list[np.ndarray], own: list[np.ndarray], targets: list[np.ndarray], weights: np.ndarray
+):  # type: ignore[no-untyped-def]
+    """All coordinates at once, priors as rows: solution and covariance."""
+    roots = np.sqrt(weights)
+    rows = np.hstack(
+        [np.vstack([w * a for w, a in zip(roots, shared, strict=True)]),
+         block_diag(*(w * b for w, b in zip(roots, own, strict=True)))]
+    )  # fmt: skip
+    size = rows.shape[1]
+    stacked = np.vstack([rows, np.eye(size)])
+    right = np.concatenate([*(w * y for w, y in zip(roots, targets, strict=True)), np.zeros(size)])
+    return np.linalg.lstsq(stacked, right)[0], np.linalg.inv(stacked.T @ stacked)
+
+
+def test_one_step_with_nuisances_eliminated_is_the_full_least_squares_solution() -> None:
+    fit, *blocks = _linear()
+    expected, covariance = _full(fit, *blocks, fit.weights)
+    # one iteration: Gauss-Newton is exact for what is linear
+    found = descend(fit, 1)
+    solution = np.concatenate([found.point, *found.nuisances])
+    assert solution == pytest.approx(expected, rel=1e-6, abs=1e-8)
+    assert differentiate(fit).covariance() == pytest.approx(covariance[:3, :3], rel=1e-6)
+
+
+def test_a_descent_ends_where_each_recordings_own_misfit_is_its_measure() -> None:
+    """The fixed point of reweighting: solving anew with the weights at the end changes nothing, and truth is near."""
+    fit, *blocks = _linear(5)
+    found = differentiate(descend(fit, 30, settled=1e-9))
+    for _ in range(3):  # descents stop at a fall of the cost that says nothing; a few steps more are the limit
+        found = differentiate(descend(found, 1, settled=0.0))
+    expected, covariance = _full(found, *blocks, found.weights)
+    spread = np.sqrt(np.diag(covariance)[:3])
+    assert np.all(np.abs(found.point - expected[:3]) < 1e-3 * spread)
+    assert np.all(np.abs(2.0 * found.point - [1.5, -0.7, 0.4]) < 4.0 * 2.0 * spread)
+    assert found.parts / [t.size for t in found.trials] == pytest.approx(np.ones(3), abs=0.25)
+
+
+def test_a_recording_that_the_model_does_not_explain_does_not_outvote_the_others() -> None:
+    """A thousandfold misfit in one recording moves the answer by what that recording alone could have told."""
+    fit, *_ = _linear(6)
+    clean = descend(fit, 20)
+    spread = np.sqrt(np.diag(differentiate(clean).covariance()))
+    trials = list(fit.trials)
+    noise = 50.0 * np.random.default_rng(3).standard_normal(trials[1].target.shape)
+    trials[1] = replace(trials[1], target=trials[1].target + noise)
+    spoilt = descend(evaluate(trials, MODEL, np.zeros(3), fit.nuisances), 20)
+    assert np.all(np.abs(spoilt.point - clean.point) < 3.0 * spread)
+    assert spoilt.weights[1] < 1e-3 * spoilt.weights[0]
