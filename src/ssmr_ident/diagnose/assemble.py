@@ -55,7 +55,8 @@ def assembled(outcome: Outcome, parameters: ParameterSet, everything: JointFit |
     if named:
         verdict = MISSING if len(outcome.rivals) <= MOST_RIVALS else UNDETERMINED
     else:
-        verdict = UNDETERMINED if heldout.before > UNEXPLAINED * heldout.noise_floor else NOTHING
+        left = max(w.before / w.noise_floor for w in (training, heldout))
+        verdict = UNDETERMINED if left > UNEXPLAINED else NOTHING
     tried = _tried(outcome)
     scanned = len(outcome.searches[0].suspects) if outcome.searches else 0
     if verdict == MISSING:

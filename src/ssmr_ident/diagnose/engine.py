@@ -25,6 +25,10 @@ SECOND = 0.7
 """Share of the first effect's unexplained variance, on recordings kept back, that may be left when a second one is
 added: the right effect in a formula that is not quite the world's leaves structure, of which any other takes a part."""
 
+UNHARMED, STRONG = 1.02, 0.5
+"""Where no recording kept back shows an effect: the variance that it may add to them, and the share that it must leave
+in the recording that shows it best."""
+
 ALIKE = 2.0
 """Unexplained variance over that of the best explanation, up to which another counts as near as it."""
 
@@ -139,9 +143,14 @@ def _cost(explanation: Explanation, reference: Explanation) -> float:
 def _better(leader: Explanation, before: Explanation, first: bool) -> bool:
     """Whether an explanation is certainly better, and predicts recordings better that it has not seen."""
     found = evidences([before, leader])
-    gain = found[leader.id] - found[before.id]
+    if found[leader.id] - found[before.id] <= CERTAIN:
+        return False
     saved = float(np.exp(np.mean(np.log(leader.kept.parts / before.kept.parts))))
-    return gain > CERTAIN and saved < (RELEVANT if first else SECOND)
+    if saved < (RELEVANT if first else SECOND):
+        return True
+    # a sensor clips in the loudest recording only: what was kept back need not show it, but must not suffer
+    strongest = float(np.min(leader.fit.parts / before.fit.parts))
+    return first and saved < UNHARMED and strongest < STRONG
 
 
 def _as_near(rival: Explanation, chosen: Explanation) -> bool:

@@ -11,7 +11,7 @@ from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.identify.coordinates import Model
 from ssmr_ident.identify.objective import Unknown
-from ssmr_ident.identify.robot_map import robot_unknowns, set_aside
+from ssmr_ident.identify.robot_map import robot_unknowns
 from ssmr_ident.identify.trials import Trial, trial_of
 from ssmr_ident.identify.trials.make import EXPERIMENTS
 from ssmr_ident.physics.rig import RIG_KEYS
@@ -112,10 +112,9 @@ def set_up(campaign: Campaign, parameters: ParameterSet) -> Setup:
             names, verb = ", ".join(m.name for m in heldout), "was" if len(heldout) == 1 else "were"
             notes.append(f"the session holds nothing back, so {names} {verb} kept back from the fits that decided")
     known = unknowns_of(campaign, parameters)
-    motions = {m.entry.motion for m in (*targets, *calibration) if m.entry.motion}
-    physics = set_aside(known, motions) if baseline == "decoupled" else known
     held = {name: dict(values) for name, values in effect_values(parameters).items()}
-    model = Model(tuple(physics), (), held)
+    # pure rotations are held to their priors as well: it is by the inertia that they ask for that they are found out
+    model = Model(tuple(known), (), held)
     if calibration:
         notes.append(
             f"the baseline comes from {len(calibration)} calibration recordings; the question is what the others have "

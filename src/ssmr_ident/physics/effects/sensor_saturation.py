@@ -40,8 +40,8 @@ EFFECT = Effect(
     acts={Site.OUTPUT: change},
     rig=True,
     probes=(
+        {"range_m_s2": Sized(0.99, "acceleration")},
         {"range_m_s2": Sized(0.9, "acceleration")},
-        {"range_m_s2": Sized(0.6, "acceleration")},
-        {"range_N": Sized(0.95, "load")},
+        {"range_N": Sized(0.99, "load")},
     ),
 )
