@@ -1,0 +1,57 @@
+"""What docs/theory/diagnosis.md states in numbers is what the code has, and what noise does."""
+
+from __future__ import annotations
+
+import re
+from math import log, prod
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.signal import lfilter
+from scipy.stats import chi2
+
+from ssmr_ident.compare.comparison import measure
+from ssmr_ident.compare.outcome import Prediction
+from ssmr_ident.diagnose import assemble, engine, weigh
+from ssmr_ident.diagnose.worth import noise_floor
+from ssmr_ident.physics.effects import CATALOGUE
+from ssmr_ident.signals.metrics import LOW_PASS_HZ
+
+PAGE = Path(__file__).resolve().parents[2] / "docs" / "theory" / "diagnosis.md"
+
+
+def test_thresholds_are_those_of_the_code() -> None:
+    rows = dict(re.findall(r"^\| `([A-Z]+)` \| ([^|]+) \|", PAGE.read_text(encoding="utf-8"), re.MULTILINE))
+    stated = {name: log(float(v.split()[1])) if v.startswith("ln") else float(v) for name, v in rows.items()}
+    code = {name: getattr(m, name) for m in (assemble, engine, weigh) for name in rows if hasattr(m, name)}
+    assert {"CERTAIN", "UNEXPLAINED"} <= set(rows)
+    assert stated == pytest.approx(code)
+
+
+def test_chance_to_be_certain_where_nothing_is_missing() -> None:
+    def passing(samples: float, parameters: int) -> float:
+        return float(chi2.sf(2.0 * weigh.CERTAIN + parameters * log(samples), parameters))
+
+    assert [passing(100, k) for k in (1, 2, 3)] == pytest.approx([1.8e-5, 1.0e-5, 4.3e-6], rel=0.03)
+    assert [passing(1000, k) for k in (1, 2, 3)] == pytest.approx([5e-6, 1e-6, 2e-7], rel=0.35)
+    probes = sum(len(e.probes) * prod(map(len, e.holds.values())) for e in CATALOGUE.values())
+    assert f"all {probes} probes" in " ".join(PAGE.read_text(encoding="utf-8").split())
+    assert probes * passing(100, 1) < 1e-3
+
+
+@pytest.mark.parametrize(("coefficient", "stated"), [(0.0, 1.0), (0.3, 1.4), (0.5, 1.8), (0.6, 2.2)])
+def test_coloured_noise_over_its_floor(coefficient: float, stated: float) -> None:
+    share, rate, count = 0.6, 2000.0, 20_000
+    inside, outside = (1 + coefficient) / (1 - coefficient), 1 - 4 * coefficient / 3 + coefficient**2 / 3
+    formula = np.sqrt((1 - share + share * inside) / (1 - share + share * outside))
+    assert formula == pytest.approx(stated, abs=0.05)
+    rng = np.random.default_rng(11)
+    coloured = lfilter([np.sqrt(1 - coefficient**2)], [1.0, -coefficient], rng.standard_normal(count + 200))[200:]
+    noise = np.sqrt(1 - share) * rng.standard_normal(count) + np.sqrt(share) * coloured
+    time = np.arange(count) / rate
+    motion = np.exp(-0.3 * time) * np.cos(40.0 * time)
+    seen = Prediction(
+        time, ("ay",), ("m/s^2",), (motion + 0.02 * noise)[:, None], motion[:, None], low_pass_hz=LOW_PASS_HZ
+    )
+    assert measure(seen)[0] / noise_floor(seen) == pytest.approx(formula, rel=0.05)
