@@ -16,7 +16,7 @@ from ssmr_ident.diagnose.residual_map import residual_maps
 from ssmr_ident.diagnose.surface import surfaces
 from ssmr_ident.diagnose.weigh import Explanation, shares
 from ssmr_ident.diagnose.words import law, missing, nothing, readable, told, undetermined
-from ssmr_ident.diagnose.worth import overlays, predictions, worth
+from ssmr_ident.diagnose.worth import grows_with_motion, overlays, predictions, worth
 from ssmr_ident.identify.joint import JointFit, differentiate
 
 METRIC = "nrmse_percent"
@@ -27,9 +27,9 @@ CONFLICT = 2.0
 MOST_RIVALS = 2
 """Explanations beside the best with which an answer is still one."""
 
-UNEXPLAINED = 1.6
-"""Error over the noise floor, on recordings kept back, from which something is missing even if nothing names it. The
-floor is known to some ten percent; what coloured noise does to it is in docs/theory/diagnosis.md."""
+UNEXPLAINED, BY_CHANCE = 1.6, 1e-3
+"""Error over the noise floor from which something is missing even if nothing names it, and the probability by chance up
+to which what is left must follow the motion: the floor takes the noise for white, and coloured noise lies above it."""
 
 
 def assembled(outcome: Outcome, parameters: ParameterSet, everything: JointFit | None, seed: int) -> Diagnosis:
@@ -56,7 +56,8 @@ def assembled(outcome: Outcome, parameters: ParameterSet, everything: JointFit |
         verdict = MISSING if len(outcome.rivals) <= MOST_RIVALS else UNDETERMINED
     else:
         left = max(w.before / w.noise_floor for w in (training, heldout))
-        verdict = UNDETERMINED if left > UNEXPLAINED else NOTHING
+        follows = grows_with_motion([*before_fit, *before_kept]) < BY_CHANCE
+        verdict = UNDETERMINED if left > UNEXPLAINED and follows else NOTHING
     tried = _tried(outcome)
     scanned = len(outcome.searches[0].suspects) if outcome.searches else 0
     if verdict == MISSING:

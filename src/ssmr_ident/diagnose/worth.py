@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from scipy.stats import spearmanr
 
 from ssmr_ident.compare.comparison import measure
 from ssmr_ident.compare.outcome import Prediction
@@ -23,6 +24,9 @@ Array = np.ndarray
 
 DRAWN = 3
 """Recordings of which an overlay is drawn, held-out ones first."""
+
+WINDOW_S, FEWEST = 0.5, 12
+"""Length of the windows in which what is left is held against the motion, and how many are needed."""
 
 LONGEST = 3000
 """Points of an overlay."""
@@ -78,6 +82,33 @@ def noise_floor(prediction: Prediction) -> float:
         noise += (share * spread(column) ** 2 + hum) / size**2
     signal = float(np.sum(((measured - measured.mean(axis=0)) / scale).var(axis=0)))
     return 100.0 * float(np.sqrt(noise / signal))
+
+
+def grows_with_motion(found: Sequence[Prediction]) -> float:
+    """Probability by chance that what is left is as much larger where the simulated motion is larger.
+
+    Spearman's rank correlation over half seconds of all recordings and channels. Noise of whatever colour does not
+    know how large the motion is; missing physics does.
+    """
+    motion: list[float] = []
+    left: list[float] = []
+    for prediction in found:
+        rate, rest = prediction.sample_rate, prediction.measured - prediction.simulated
+        smooth = prediction.low_pass_hz is not None and prediction.low_pass_hz < 0.45 * rate
+        if smooth:
+            rest = low_pass(rest, rate, prediction.low_pass_hz)  # type: ignore[arg-type]
+        width = max(4, round(WINDOW_S * rate))
+        count = len(rest) // width
+        scale = prediction.measured.std(axis=0)
+        for c in range(rest.shape[1]):
+            parts = [a[: count * width, c].reshape(count, width).std(axis=1) for a in (prediction.simulated, rest)]
+            # channels in different units, or with different noise, are told apart by their own size
+            unit = 1.0 if len(set(prediction.units)) == 1 else scale[c]
+            motion += list(parts[0] / unit)
+            left += list(parts[1] / unit)
+    if len(motion) < FEWEST:
+        return 1.0
+    return float(spearmanr(motion, left, alternative="greater").pvalue)
 
 
 def worth(before: Sequence[Prediction], after: Sequence[Prediction], names: Sequence[str]) -> Worth:
