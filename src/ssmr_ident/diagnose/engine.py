@@ -12,7 +12,7 @@ from ssmr_ident.compare.recorded import follow
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.explain import without
 from ssmr_ident.diagnose.explore import LAST, LOUD, Progress, Search, best_baseline, prepared, search
-from ssmr_ident.diagnose.setup import Setup
+from ssmr_ident.diagnose.setup import COUPLING, Setup
 from ssmr_ident.diagnose.weigh import CERTAIN, TIE, Explanation, evidences
 from ssmr_ident.identify.horizons import led
 from ssmr_ident.identify.joint import JointFit, descend, differentiate
@@ -80,7 +80,10 @@ def examine(setup: Setup, parameters: ParameterSet, progress: Progress | None = 
     tried, searches = [baseline], []
     chosen = baseline
     for _ in range(MOST_EFFECTS):
-        result = search(chosen.fit, setup.campaign.session.baseline, lengths, chosen is not baseline, progress)
+        if setup.decoupled and chosen is baseline:
+            result = Search(fit, (), (coupled(setup, parameters),), lengths)
+        else:
+            result = search(chosen.fit, setup.campaign.session.baseline, lengths, chosen is not baseline, progress)
         searches.append(result)
         new = [explained(kept, f, chosen.kept) for f in result.tried]
         if not new:
@@ -112,6 +115,15 @@ def explained(kept: Sequence[Trial], fit: JointFit, near: JointFit | None = None
     ``near`` is another model's prediction of them, whose nuisances are a start as well.
     """
     return Explanation(fit, follow(kept, fit.model, fit.point, None if near is None else near.nuisances))
+
+
+def coupled(setup: Setup, parameters: ParameterSet) -> JointFit:
+    """All six degrees of freedom in place of pure rotations, fitted from what is known beforehand.
+
+    Not from where the pure rotations ended: the inertia that they ask for is what gives them away.
+    """
+    model = replace(setup.model, held={**setup.model.held, COUPLING: {"active": 1.0}})
+    return best_baseline(setup.fitted, replace(setup, model=model), parameters)[0]
 
 
 def informed(setup: Setup, parameters: ParameterSet) -> Setup:

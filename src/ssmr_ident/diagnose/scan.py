@@ -60,13 +60,6 @@ class Suspect:
 
 def candidates(fit: JointFit, baseline: str) -> tuple[Effect, ...]:
     """Effects that can be seen in the session's experiments, and that its model does not have yet."""
-    if (
-        baseline == "decoupled"
-        and "translation_coupling" not in fit.model.held
-        and "free_response" in {trial.experiment for trial in fit.trials}
-    ):
-        # every robot has it; what else there is shows beside it
-        return (CATALOGUE["translation_coupling"],)
     experiments = {trial.experiment for trial in fit.trials}
     return tuple(
         effect

@@ -17,6 +17,8 @@ from ssmr_ident.identify.trials.make import EXPERIMENTS
 from ssmr_ident.physics.rig import RIG_KEYS
 from ssmr_ident.physics.slots import effect_values
 
+COUPLING = "translation_coupling"
+
 KEPT_BACK = 1 / 3
 """Share of the targets that is kept back where a session has no held-out recordings."""
 
@@ -54,7 +56,8 @@ class Setup:
 
     @property
     def decoupled(self) -> bool:
-        return self.campaign.session.baseline == "decoupled"
+        """Whether motions are pure rotations still."""
+        return self.campaign.session.baseline == "decoupled" and COUPLING not in self.model.held
 
 
 def set_up(campaign: Campaign, parameters: ParameterSet) -> Setup:

@@ -139,7 +139,7 @@ def _trial(whole: BodyDecay, kept: int, facts: _Facts) -> Trial:
 
     def begin(values: Values, effects: Effects) -> Array:
         robot = builder(values)
-        if model is None:
+        if model is None or "translation_coupling" in effects:
             return _linear_start(trial, _columns(robot, decay))
         responses = model.responses(robot, length, decay.record.step)[:, 0]
         return _linear_start(trial, decay.averaged(responses)[:, None, :])
