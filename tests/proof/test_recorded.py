@@ -53,7 +53,7 @@ def test_without_hidden_physics_the_true_parameters_leave_the_noise(family: str,
     campaign = load(tmp_path / "heldout")
     errors = [r.value for r in compare(campaign, true_parameters(campaign.parameters, dict(recorded.true))).recordings]
     floors = [log.noise_floor() for log in recorded.logs if log.heldout]
-    assert all(error < 1.03 * floor for error, floor in zip(errors, floors, strict=True))
+    assert all(error < 1.1 * floor for error, floor in zip(errors, floors, strict=True))
 
 
 def test_no_word_of_a_session_tells_what_is_hidden(tmp_path: Path, tiny: Extent) -> None:

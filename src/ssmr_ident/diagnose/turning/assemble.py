@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from ssmr_ident.core.parameter import Estimate, ParameterSet
-from ssmr_ident.diagnose.diagnosis import MISSING, NOTHING, Conflict, Diagnosis, NamedEffect, Tried, Worth
+from ssmr_ident.diagnose.diagnosis import MISSING, NOTHING, UNDETERMINED, Conflict, Diagnosis, NamedEffect, Tried, Worth
 from ssmr_ident.diagnose.evidence import Evidence
 from ssmr_ident.diagnose.turning.anchor import Anchor
 from ssmr_ident.diagnose.turning.candidates import UNLISTED
@@ -27,6 +27,9 @@ NEW_UNITS = {"tire.sliding_speed_m_s": "m/s", "floor.height_m": "m"}
 SPREAD_FACTOR, MODEL_SPREAD = 3.0, 0.07
 """The curvature's standard deviations times this, and this share of a size on top: what errors of simulated sessions
 need, whose baselines are fitted too (docs/theory/swivel.md)."""
+NEARER, WITHIN = 0.95, 1.25
+"""Share of the distance that an effect may leave on recordings kept back, and the distance over the repeatability below
+which nothing is left to name."""
 CONFLICT = 3.0  # standard deviations of the prior
 
 
@@ -41,6 +44,13 @@ def diagnosis_of(outcome: Outcome, session: str) -> Diagnosis:
     floor = repeatability_db((*outcome.targets, *outcome.heldout))
     training = _worth(outcome, outcome.targets, added, effects, floor)
     heldout = _worth(outcome, outcome.heldout, added, effects, floor) if outcome.heldout else training
+    if decision.verdict == MISSING and not _predicts(heldout):
+        # what fits the targets and predicts nothing is no answer
+        verdict = NOTHING if heldout.before < WITHIN * heldout.noise_floor else UNDETERMINED
+        decision = Decision(verdict, (), 0.0, "what fits best does not predict the recordings kept back any better")
+        best, after, added, effects = None, before, values, {}
+        training = _worth(outcome, outcome.targets, values, {}, floor)
+        heldout = _worth(outcome, outcome.heldout, values, {}, floor) if outcome.heldout else training
     maps = speed_maps(outcome, values, added, effects)
     return Diagnosis(
         session=session,
@@ -59,6 +69,11 @@ def diagnosis_of(outcome: Outcome, session: str) -> Diagnosis:
         notes=(*_notes(outcome, decision), *_lines(maps)),
         evidence=Evidence(speeds=maps, seconds=dict(outcome.seconds)),
     )
+
+
+def _predicts(heldout: Worth) -> bool:
+    """Whether there was anything to explain beyond repeatability, and the effect brings the spectra nearer."""
+    return heldout.before > heldout.noise_floor and heldout.after < NEARER * heldout.before
 
 
 def _chosen(outcome: Outcome, decision: Decision) -> Explained | None:
