@@ -12,9 +12,9 @@ from dataclasses import replace
 import numpy as np
 from bank import draw
 from bank.truth import BankSession
-from ssmr_ident.pipeline.diagnose import diagnose
 
 from ssmr_ident.campaign import Campaign
+from ssmr_ident.pipeline.diagnose import diagnose
 
 CASES = (("decays", "nonlinear_stiffness", 6), ("forced", "nonlinear_stiffness", 4), ("pulls", "cable_compliance", 4))
 

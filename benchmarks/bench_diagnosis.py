@@ -14,6 +14,7 @@ from pathlib import Path
 
 from bank import FAMILIES, draw, mixed
 from scoring import append, engine, read, row_of, summary, table
+
 from ssmr_ident.pipeline.diagnose import diagnose
 
 

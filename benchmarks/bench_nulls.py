@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 from bank import KINDS, draw
 from scoring import Row, append, engine, read, row_of, share
+
 from ssmr_ident.pipeline.diagnose import diagnose
 
 FAMILIES = tuple(name for name, kinds in KINDS.items() if "none" in kinds)

@@ -19,10 +19,10 @@ import numpy as np
 from bank import draw
 from score_practice import SHARED
 from scoring import append, read, share
-from ssmr_ident.pipeline.diagnose import diagnose
 
 from ssmr_ident.campaign import Campaign, load
 from ssmr_ident.diagnose.diagnosis import NOTHING
+from ssmr_ident.pipeline.diagnose import diagnose
 from ssmr_ident.proof.peers import PEERS
 
 RIGS = ("15", "16", "17", "18", "19", "23")

@@ -20,6 +20,7 @@ from bank.robot_physics import BENCH, DECAYS, PULLS
 from scipy.optimize import brentq, minimize
 from scipy.special import expit
 from scoring import GOOD, append, engine, read, row_of
+
 from ssmr_ident.pipeline.diagnose import diagnose
 
 EFFECTS = {

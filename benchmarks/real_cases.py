@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 from scoring import engine, row_of
-from ssmr_ident.pipeline.diagnose import diagnose, write_diagnosis
 
 from ssmr_ident.campaign import Campaign, load
 from ssmr_ident.compare import predict
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.diagnosis import Diagnosis
+from ssmr_ident.pipeline.diagnose import diagnose, write_diagnosis
 from ssmr_ident.signals.filters import low_pass
 
 Claims = list[tuple[str, bool]]
