@@ -15,7 +15,7 @@ from pathlib import Path
 from playwright.sync_api import sync_playwright
 
 IMAGES = Path(__file__).resolve().parent / "images"
-MISSING = "nonlinear_stiffness:k3_N_m3=3e9"
+MISSING = "nonlinear_stiffness:k3_N_m3=8e8"
 AMPLITUDES_MM = (0.6, 1.2, 1.8)
 SESSION = """\
 schema: ssmr-ident/session/1
