@@ -116,7 +116,10 @@ def draw(effect: Effect, path: Path, values: Mapping[str, float] | None = None) 
         f"{name} = {value:g}" + ("" if units[name] == "1" else f" {style.unit_text(units[name])}")
         for name, value in complete.items()
     )
-    figure = effect_figure(f"{effect.id} ({given})", effect.sentence, panels(effect, complete))
+    drawn = panels(effect, complete)
+    if not drawn:
+        raise InputError(effect.id, "acts on a rig alone, of which there is no drawing", "Leave -o out")
+    figure = effect_figure(f"{effect.id} ({given})", effect.sentence, drawn)
     try:
         return style.save(figure, path.with_suffix(""), ending)
     except OSError as error:
