@@ -51,9 +51,12 @@ def test_without_hidden_physics_the_true_parameters_leave_the_noise(family: str,
     recorded = record(Case(21, 1, family, "none", (), "noise"), tiny)
     write_session(recorded, tmp_path / "heldout", heldout=True)
     campaign = load(tmp_path / "heldout")
-    errors = [r.value for r in compare(campaign, true_parameters(campaign.parameters, dict(recorded.true))).recordings]
-    floors = [log.noise_floor() for log in recorded.logs if log.heldout]
-    assert all(error < 1.1 * floor for error, floor in zip(errors, floors, strict=True))
+    compared = compare(campaign, true_parameters(campaign.parameters, dict(recorded.true))).recordings
+    for log, row in zip((log for log in recorded.logs if log.heldout), compared, strict=True):
+        # over the samples that are compared: until the sensor has settled after the release, none are
+        begin = len(log.time) - len(row.prediction.time)
+        part = replace(log, time=log.time[begin:], logged=log.logged[begin:], clean=log.clean[begin:])
+        assert row.value < 1.03 * part.noise_floor()
 
 
 def test_no_word_of_a_session_tells_what_is_hidden(tmp_path: Path, tiny: Extent) -> None:
