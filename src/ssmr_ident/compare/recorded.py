@@ -22,8 +22,8 @@ LAST = 10
 def follow(trials: Sequence[Trial], model: Model, point: Array, near: Sequence[Array] | None = None) -> JointFit:
     """A model held where it is, with the nuisances of each recording at their best.
 
-    Small motions give the start of a decay. Where effects bend the motion away from them, three more roads are tried:
-    from the start that fits without the effects, through growing horizons, and from a start that is known to be near.
+    Small motions give the start of a decay. Where effects bend the motion away from them, two more roads are tried:
+    through growing horizons, and from a start that is near, or else from the one that fits without the effects.
     Each recording takes its own best.
 
     Parameters

@@ -20,8 +20,8 @@ from ssmr_ident.identify.trials import Trial
 Progress = Callable[[str, int, int], None]
 
 PROMISING = 6.0
-"""Fall of n ln(RSS), beyond one for each parameter, from which a suspect is refitted. Noise alone passes it in 4 of
-100 effects (chi-square, one and two parameters); passing costs time and decides nothing."""
+"""Fall of n ln(RSS), beyond one for each parameter, from which a suspect is refitted. Noise alone passes it in
+1 to 2 of 100 probes (chi-square, one and two parameters); passing costs time and decides nothing."""
 
 LOUD = 2.0
 """Variance over the noise's from which a residual is large: then effects are tried by simulation alone."""
