@@ -25,6 +25,10 @@ SECOND = 0.7
 """Share of the first effect's unexplained variance, on recordings kept back, that may be left when a second one is
 added: the right effect in a formula that is not quite the world's leaves structure, of which any other takes a part."""
 
+FORMULA = 0.1
+"""Share of the baseline's error below which what one effect leaves is put down to its own formula: a friction that is
+rounded otherwise than the catalogue's leaves a hundredth, which some second effect always mends a little."""
+
 UNHARMED, STRONG = 1.02, 0.5
 """Where no recording kept back shows an effect: the variance that it may add to them, and the share that it must leave
 in the recording that shows it best."""
@@ -80,6 +84,8 @@ def examine(setup: Setup, parameters: ParameterSet, progress: Progress | None = 
     tried, searches = [baseline], []
     chosen = baseline
     for _ in range(MOST_EFFECTS):
+        if chosen is not baseline and _left(chosen, baseline) < FORMULA:
+            break
         if setup.decoupled and chosen is baseline:
             result = Search(fit, (), (coupled(setup, parameters),), lengths)
         else:
@@ -163,6 +169,12 @@ def _better(leader: Explanation, before: Explanation, first: bool) -> bool:
     # a sensor clips in the loudest recording only: what was kept back need not show it, but must not suffer
     strongest = float(np.min(leader.fit.parts / before.fit.parts))
     return first and saved < UNHARMED and strongest < STRONG
+
+
+def _left(chosen: Explanation, baseline: Explanation) -> float:
+    """Size of what an explanation leaves over what the baseline left, mean over all recordings."""
+    pairs = ((chosen.fit, baseline.fit), (chosen.kept, baseline.kept))
+    return float(np.exp(0.5 * np.mean(np.concatenate([np.log(a.parts / b.parts) for a, b in pairs]))))
 
 
 def _as_near(rival: Explanation, chosen: Explanation) -> bool:
