@@ -1,0 +1,95 @@
+"""Verdicts on rigs that an integrator of their own made: what is said depends on the law, and on nothing else."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ssmr_ident.campaign import Campaign, Measurement
+from ssmr_ident.core.parameter import Estimate, ParameterSet
+from ssmr_ident.core.recording import Channel, Provenance, Recording
+from ssmr_ident.pipeline.diagnose import diagnose
+from ssmr_ident.session import Entry, Session
+
+RATE, SECONDS, LEVELS = 500.0, 6.0, (1.0, 3.0, 6.0)
+MASS, DAMPING, STIFFNESS = 6.0, 40.0, 15000.0
+NOISE = 2e-5
+"""m; a third of a percent of the motion, as an encoder or a laser gives it. With ten times less, the error of splitting
+and of the force between its samples shows beside the noise."""
+
+
+def rig(law, seed: int = 7) -> Campaign:
+    """Three shaken runs of m x'' + d x' + k x + law(x, v) = F by classical Runge-Kutta, ten steps a sample."""
+    rng = np.random.default_rng(seed)
+    tones = np.linspace(2.0, 14.0, 40)[:, None]
+    phases = rng.uniform(0.0, 2.0 * np.pi, (40, len(LEVELS)))
+    step, count = 0.1 / RATE, int(RATE * SECONDS)
+    halves = 0.5 * step * np.arange(20 * count + 1)
+    force = np.stack(
+        [a * np.cos(2 * np.pi * tones * halves + phases[:, [k]]).sum(axis=0) for k, a in enumerate(LEVELS)], axis=1
+    )
+
+    def rate(f, x, v):
+        return (f - DAMPING * v - STIFFNESS * x - law(x, v)) / MASS
+
+    x, v, path = np.zeros(len(LEVELS)), np.zeros(len(LEVELS)), []
+    for n in range(10 * count):
+        if n % 10 == 0:
+            path.append(x)
+        f0, f1, f2 = force[2 * n], force[2 * n + 1], force[2 * n + 2]
+        a1 = rate(f0, x, v)
+        v2 = v + 0.5 * step * a1
+        a2 = rate(f1, x + 0.5 * step * v, v2)
+        v3 = v + 0.5 * step * a2
+        a3 = rate(f1, x + 0.5 * step * v2, v3)
+        v4 = v + step * a3
+        a4 = rate(f2, x + step * v3, v4)
+        x = x + step / 6 * (v + 2 * v2 + 2 * v3 + v4)
+        v = v + step / 6 * (a1 + 2 * a2 + 2 * a3 + a4)
+    seen = np.array(path) + NOISE * rng.standard_normal((count, len(LEVELS)))
+    time = np.arange(count) / RATE
+    measurements = []
+    for k in range(len(LEVELS)):
+        channels = (Channel("force", force[::20, k][:count], "N"), Channel("position", seen[:, k], "m"))
+        entry = Entry(f"run-{k}.csv", "forced")
+        measurements.append(Measurement(entry, Recording(time, channels, Provenance("drawn", "", "test"))))
+    known = ParameterSet(
+        "rig",
+        {
+            "mass_kg": Estimate(6.05, 0.12, "kg"),
+            "damping_N_s_m": Estimate(45.0, 15.0, "N s/m"),
+            "stiffness_N_m": Estimate(14600.0, 1500.0, "N/m"),
+        },
+    )
+    session = Session("drawn", Path(), "rig", "sdof", tuple(m.entry for m in measurements))
+    return Campaign(session, known, tuple(measurements))
+
+
+def test_nothing_is_missing_where_nothing_is():
+    found = diagnose(rig(lambda x, v: 0.0 * x))
+    assert (found.verdict, found.effects) == ("nothing_missing", ())
+    assert found.heldout.before < 1.1 * found.heldout.noise_floor
+    assert found.before["stiffness_N_m"].value == pytest.approx(STIFFNESS, rel=0.01)
+
+
+def test_friction_of_another_formula_is_named_and_alone():
+    found = diagnose(rig(lambda x, v: np.tanh(v / 1e-3)))
+    assert [e.id for e in found.effects] == ["dry_friction"]
+    assert float(found.effects[0].parameters["F_c_N"].value) == pytest.approx(1.0, rel=0.02)
+    assert found.heldout.after < 0.05 * found.heldout.before
+
+
+def test_hardening_is_named_with_its_size():
+    found = diagnose(rig(lambda x, v: 6e8 * x**3))
+    assert [e.id for e in found.effects] == ["nonlinear_stiffness"]
+    assert float(found.effects[0].parameters["k3_N_m3"].value) == pytest.approx(6e8, rel=0.02)
+    assert found.heldout.after < 1.2 * found.heldout.noise_floor
+
+
+def test_a_law_that_no_list_holds_is_called_unlisted():
+    found = diagnose(rig(lambda x, v: 30.0 * np.abs(v)))
+    assert [e.id for e in found.effects] == ["unlisted"]
+    assert list(found.effects[0].parameters) == ["c_abs_v_N_s_m"]
+    assert float(found.effects[0].parameters["c_abs_v_N_s_m"].value) == pytest.approx(30.0, rel=0.02)
