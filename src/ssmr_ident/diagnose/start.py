@@ -94,4 +94,6 @@ def _by_linear_fit(campaign: Campaign, used: list[Measurement], parameters: Para
     bandwidth = parameters.number("accelerometer.bandwidth_hz", np.inf)
     rate = 1.0 / records[0].step
     fit = fit_rig(records, (rig.mass, rig.damping, rig.stiffness), None if bandwidth >= 0.5 * rate else bandwidth)
-    return dict(zip(RIG_KEYS[rig.rotary], (fit.mass, fit.damping, fit.stiffness), strict=True))
+    found = dict(zip(RIG_KEYS[rig.rotary], (fit.mass, fit.damping, fit.stiffness), strict=True))
+    # two modes that beat can ask one mass for a negative damping: what no rig can have is no start
+    return {name: value for name, value in found.items() if value > 0.0}
