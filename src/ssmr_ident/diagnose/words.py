@@ -12,7 +12,7 @@ LAWS = {
     "translation_coupling": "M q'' + D q' + K q = 0 with q = (x, y, z, roll, pitch, yaw)",
     "nonlinear_stiffness": "F = K s + k3 s^3",
     "dry_friction": "F = k z, dz/dt = v - |v| k z/F_c",
-    "hysteresis": "F = alpha K s + (1 - alpha) K z",
+    "hysteresis": "F = alpha K s + (1 - alpha) K z, dz/dt = v (1 - |z/y|^n (gamma + sign(v z)/2))",
     "quadratic_damping": "F = D v + d2 v |v|",
     "viscoelastic_relaxation": "F = K s + D v + K_m z, dz/dt = v - z/tau",
     "free_play": "F = K dz(s), no force for |s| < gap/2",

@@ -22,6 +22,8 @@ from ssmr_ident.physics.slots import (
     FRICTION_STIFFNESS,
     GAP,
     GAP_ROUNDING,
+    LOOP_EXPONENT,
+    LOOP_SHAPE,
     QUADRATIC,
     RELAXATION_STIFFNESS,
     RELAXATION_TIME,
@@ -86,7 +88,7 @@ def element_next(z, v, step, tangential, e):
         if e[FRICTION_FORCE] != 0.0:
             friction = _friction_advance(friction, v, step, e[FRICTION_FORCE], e[FRICTION_STIFFNESS])
         if e[ALPHA] != 1.0:
-            loop = _loop_advance(loop, v, step, e[YIELD])
+            loop = _loop_advance(loop, v, step, e[YIELD], e[LOOP_EXPONENT], e[LOOP_SHAPE])
     return friction, loop, relaxation
 
 
@@ -101,5 +103,5 @@ def inner_slots(e):
     """The slots that tires and floor look at, as a tuple that stands in for ``e`` in an inner loop."""
     return (
         e[0], e[1], e[2], e[3], e[4], e[5], e[6], e[7], e[8], e[9],
-        e[10], e[11], e[12], e[13], e[14], e[15], e[16], e[17], e[18],
+        e[10], e[11], e[12], e[13], e[14], e[15], e[16], e[17], e[18], e[19], e[20],
     )  # fmt: skip

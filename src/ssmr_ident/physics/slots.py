@@ -17,6 +17,8 @@ SLOTS = (
     "dry_friction.element_stiffness_N_m",
     "hysteresis.alpha",
     "hysteresis.yield_m",
+    "hysteresis.exponent",
+    "hysteresis.shape",
     "viscoelastic_relaxation.K_m_N_m",
     "viscoelastic_relaxation.tau_s",
     "free_play.gap_m",
@@ -41,12 +43,12 @@ SLOTS = (
     "motor_belt.D_b_N_s_m",
     "motor_belt.rim_mass_kg",
 )
-CUBIC, QUADRATIC, FRICTION_FORCE, FRICTION_STIFFNESS, ALPHA, YIELD = range(6)
-RELAXATION_STIFFNESS, RELAXATION_TIME, GAP, GAP_ROUNDING, GAP_SHARE_X = range(6, 11)
-KINETIC_SHARE, STRIBECK_SPEED, LOAD_EXPONENT, ROLLING = range(11, 15)
-JOINT_DEPTH, JOINT_PITCH, JOINT_WIDTH, ECCENTRICITY, ROUGHNESS = range(15, 20)
-LIFT, CORIOLIS, MAST_HZ, MAST_MASS, MAST_HEIGHT, MAST_DAMPING = range(20, 26)
-BELT_STIFFNESS, BELT_DAMPING, RIM_MASS = range(26, 29)
+CUBIC, QUADRATIC, FRICTION_FORCE, FRICTION_STIFFNESS, ALPHA, YIELD, LOOP_EXPONENT, LOOP_SHAPE = range(8)
+RELAXATION_STIFFNESS, RELAXATION_TIME, GAP, GAP_ROUNDING, GAP_SHARE_X = range(8, 13)
+KINETIC_SHARE, STRIBECK_SPEED, LOAD_EXPONENT, ROLLING = range(13, 17)
+JOINT_DEPTH, JOINT_PITCH, JOINT_WIDTH, ECCENTRICITY, ROUGHNESS = range(17, 22)
+LIFT, CORIOLIS, MAST_HZ, MAST_MASS, MAST_HEIGHT, MAST_DAMPING = range(22, 28)
+BELT_STIFFNESS, BELT_DAMPING, RIM_MASS = range(28, 31)
 
 Effects = Mapping[str, Mapping[str, float]]
 
@@ -96,10 +98,20 @@ def effect_values(parameters: ParameterSet) -> dict[str, dict[str, float]]:
 
 def effect_vector(effects: Mapping[str, Mapping[str, float]]) -> np.ndarray:
     """(len(SLOTS),) float: everything off but the given effects, whose values are complete."""
-    vector = np.empty(len(SLOTS))
-    for index, slot in enumerate(SLOTS):
-        effect_id, name = slot.split(".")
-        parameter = next(p for p in CATALOGUE[effect_id].parameters if p.name == name)
-        off = parameter.nominal if parameter.off is None else parameter.off
-        vector[index] = effects[effect_id][name] if effect_id in effects else off
+    vector = _OFF.copy()
+    for effect_id, values in effects.items():
+        for index, name in _PLACES.get(effect_id, ()):
+            vector[index] = values[name]
     return vector
+
+
+def _off(slot: str) -> float:
+    effect_id, name = slot.split(".")
+    parameter = next(p for p in CATALOGUE[effect_id].parameters if p.name == name)
+    return parameter.nominal if parameter.off is None else parameter.off
+
+
+_OFF = np.array([_off(slot) for slot in SLOTS])
+_PLACES: dict[str, list[tuple[int, str]]] = {}
+for _index, _slot in enumerate(SLOTS):
+    _PLACES.setdefault(_slot.split(".")[0], []).append((_index, _slot.split(".")[1]))
