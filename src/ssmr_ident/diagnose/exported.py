@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from ssmr_ident.core.parameter import Estimate, ParameterSet
+from ssmr_ident.diagnose.setup import twin
 from ssmr_ident.identify.joint import JointFit
 from ssmr_ident.identify.robot_map import HEIGHT, SENSOR, SHIFTS
 from ssmr_ident.physics.effects import CATALOGUE
@@ -50,6 +51,10 @@ def exported(fit: JointFit, before: ParameterSet) -> ParameterSet:
             old = before[unknown.name]
             kept = None if unknown.prior_std is None and not told else std
             changes[unknown.name] = replace(old, value=value, std=kept, source=SOURCE if told else _prior(old))
+    for path in before:
+        other = twin(path, before)
+        if other in changes and path not in changes:
+            changes[path] = replace(changes[other], unit=before[path].unit)
     for path, array in (("contact_points_m", contacts), ("accelerometer.position_m", place)):
         if path in widest and array is not None:
             source = SOURCE if any(told for _, told in widest[path]) else _prior(before[path])

@@ -173,6 +173,20 @@ def split_in_time(trial: Trial) -> tuple[Trial, Trial]:
     return first, replace(trial, counts=late, shorten=None, part=(float(times[cut]), float(times[-1])))
 
 
+def twin(path: str, parameters: ParameterSet) -> str | None:
+    """The static friction that a kinetic one is the same number as.
+
+    A file in which both are equal says that contacts slide at the force at which they let go: one unknown, and a
+    saw-tooth in a pull is something that this baseline has not.
+    """
+    if not path.endswith("mu_kinetic"):
+        return None
+    other = path.replace("kinetic", "static")
+    if other not in parameters or parameters[other].fixed or parameters[path].fixed:
+        return None
+    return other if float(parameters[other].value) == float(parameters[path].value) else None
+
+
 def unknowns_of(campaign: Campaign, parameters: ParameterSet) -> tuple[Unknown, ...]:
     """What the baseline may move, with what is known of it."""
     baseline = campaign.session.baseline
@@ -186,7 +200,8 @@ def unknowns_of(campaign: Campaign, parameters: ParameterSet) -> tuple[Unknown, 
             if baseline == "sdof"
             else ("mass_kg", "mu_static", "mu_kinetic", "cable.stiffness_N_m")
         )
-    for key in (*keys, BANDWIDTH):
+    found = [u for u in found if twin(u.name, parameters) is None]
+    for key in (k for k in (*keys, BANDWIDTH) if twin(k, parameters) is None):
         if key not in parameters or parameters[key].fixed or (key == BANDWIDTH and parameters[key].std is None):
             continue
         value = float(parameters[key].value)

@@ -125,6 +125,7 @@ class RobotBuilder:
 
     def _made(self, values: Mapping[str, float]) -> Robot:
         robot = self.nominal
+        mu_static = values.get("tire.mu_static", robot.mu_static)
         inertia = robot.inertia.copy()
         for row, column, axis in ((0, 0, "xx"), (1, 1, "yy"), (2, 2, "zz"), (0, 2, "xz"), (0, 1, "xy"), (1, 2, "yz")):
             inertia[row, column] = inertia[column, row] = values.get(f"inertia_kg_m2.{axis}", inertia[row, column])
@@ -145,8 +146,11 @@ class RobotBuilder:
                 [values.get(f"tire.stiffness_{a}_N_m", robot.stiffness[i]) for i, a in enumerate("xyz")]
             ),
             damping=np.array([values.get(f"tire.damping_{a}_N_s_m", robot.damping[i]) for i, a in enumerate("xyz")]),
-            mu_static=values.get("tire.mu_static", robot.mu_static),
-            mu_kinetic=values.get("tire.mu_kinetic", robot.mu_kinetic),
+            mu_static=mu_static,
+            # one coefficient in the file stays one, unless a fit gives both
+            mu_kinetic=values.get(
+                "tire.mu_kinetic", mu_static if robot.mu_kinetic == robot.mu_static else robot.mu_kinetic
+            ),
             cable_stiffness=values.get("cable.stiffness_N_m", robot.cable_stiffness),
             accelerometer=replace(
                 robot.accelerometer,

@@ -6,8 +6,8 @@ import math
 
 from ssmr_ident.core.kernel import kernel
 
-PULLED, CABLE_K, CABLE_D, PULL_X, PULL_Y, HOOK_X, HOOK_Y, HOOK_Z, HELD = range(9)
-PULLING = 9
+PULLED, CABLE_K, CABLE_D, PULL_X, PULL_Y, HOOK_X, HOOK_Y, HOOK_Z, HELD, MOBILITY = range(10)
+PULLING = 10
 
 
 @kernel
@@ -30,8 +30,23 @@ def hook_position(pulling, x, y, yaw, hx, hy):
 
 
 @kernel
-def cable_tension(pulling, head, head_rate, hook, hook_rate):
-    """K·stretch + D·rate [N], and 0 where that would push or the cable is slack; all [m] and [m/s]."""
+def cable_tension(pulling, head, head_rate, hook, hook_rate, last, half):
+    """K·stretch + D·rate [N], and 0 where that would push or the cable is slack.
+
+    The hook's rate was carried forward with the tension of the last step; what this step's changes of it is taken
+    along implicitly, so that a stiff damper asks for no short step.
+
+    Parameters
+    ----------
+    head, hook : float [m]
+    head_rate, hook_rate : float [m/s]
+    last : float [N]
+        Tension of the last step.
+    half : float [s]
+        Half a step.
+    """
     stretch = head - hook
+    share = pulling[CABLE_D] * pulling[MOBILITY] * half
     tension = pulling[CABLE_K] * stretch + pulling[CABLE_D] * (head_rate - hook_rate)
+    tension = (tension + share * last) / (1.0 + share)
     return tension if tension > 0.0 and stretch >= 0.0 else 0.0

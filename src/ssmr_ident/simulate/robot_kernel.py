@@ -159,7 +159,7 @@ def run(
 
     # where the hook stands at rest, so that the cable starts without slack
     pulled, held = pulling[PULLED] > 0.5, pulling[HELD] > 0.5
-    hook_start = 0.0
+    hook_start, tension_last = 0.0, 0.0
     if pulled:
         hx, hy, _ = _to_heading(roll, pitch, pulling[HOOK_X], pulling[HOOK_Y], pulling[HOOK_Z])
         hook_start = hook_position(pulling, x, y, yaw, hx, hy)
@@ -285,7 +285,8 @@ def run(
             hx, hy, hz = _to_heading(roll, pitch, pulling[HOOK_X], pulling[HOOK_Y], pulling[HOOK_Z])
             hook = hook_position(pulling, x, y, yaw, hx, hy) - hook_start
             hook_rate = along_x * (ue + oy * hz - oz * hy) + along_y * (ve + oz * hx - ox * hz)
-            tension = cable_tension(pulling, head_now, head_rate, hook, hook_rate)
+            tension = cable_tension(pulling, head_now, head_rate, hook, hook_rate, tension_last, 0.5 * step)
+            tension_last = tension
             fx += along_x * tension
             fy += along_y * tension
             tx -= hz * along_y * tension

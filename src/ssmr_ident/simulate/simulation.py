@@ -25,6 +25,7 @@ from ssmr_ident.simulate.pulling import (
     HOOK_X,
     HOOK_Y,
     HOOK_Z,
+    MOBILITY,
     PULL_X,
     PULL_Y,
     PULLED,
@@ -196,6 +197,9 @@ def _pulling(robot: Robot, scenario: Scenario, active: Effects) -> np.ndarray:
     q[HOOK_X] = 0.0 if scenario.direction == "lateral" else float(robot.contact_points[:, 0].min())
     q[HOOK_Y] = robot.half_track if scenario.direction == "lateral" else 0.0
     q[HOOK_Z] = scenario.height - robot.height
+    along = np.array([q[PULL_X], q[PULL_Y], 0.0])
+    turning = np.cross(q[[HOOK_X, HOOK_Y, HOOK_Z]], along)
+    q[MOBILITY] = 1.0 / robot.mass + turning @ np.linalg.solve(robot.inertia, turning)
     return q
 
 
