@@ -30,6 +30,10 @@ LONGEST_BLOCK, FEWEST_BLOCKS = 0.25, 150.0
 """Seconds that are averaged into one number at the most, and numbers that a recording keeps at the least: a pull is
 slow, and the chatter of sliding contacts repeats in no second run."""
 
+ENDS, STILL_RISES = 6, 0.3
+"""Parts of a drag, and the gain of mean force into its last part over the largest from part to part, from which the
+contact holds: a sliding one keeps its force, and a carcass that creeps or softens loses half of its slope at most."""
+
 COARSE = 10.0
 """On the steps of differences: a percent of a stiffness, and a thousandth of the travel."""
 
@@ -37,6 +41,9 @@ BLIND = {
     "pull": ("inertia_", "accelerometer.", "tire.damping_"),
     "wheel": ("inertia_", "accelerometer.", "contact_shift", "height", "tire.damping_"),
 }
+
+POINTS = 1000
+"""Samples at which a slack is looked for."""
 
 Force = Callable[[Values, Effects, Array, float, float | None], Array]
 """``force(values, effects, head, step, inner)``: what the load cell reads, (n,) [N]; ``inner`` is the longest step of
@@ -61,8 +68,8 @@ def pull_trial(measurement: Measurement, parameters: ParameterSet) -> Trial:
     InputError
         Neither a position nor a speed.
     """
-    force = force_model(measurement.entry, parameters)
     measured, travel, step, start = travelled(measurement)
+    force = force_model(measurement.entry, parameters, holds(measured, travel))
     elapsed = step * np.arange(len(travel))
     speed = float(np.polyfit(elapsed, travel, 1)[0])
     size = float(travel.max())
@@ -133,8 +140,22 @@ def travelled(measurement: Measurement) -> tuple[Array, Array, float, float]:
     return even.samples[:, 0], travel, 1.0 / even.sample_rate, even.start
 
 
-def force_model(entry: Entry, parameters: ParameterSet) -> Force:
-    """The simulator of an entry's experiment."""
+def holds(force: Array, travel: Array) -> bool:
+    """Whether the contact holds as long as the head moves: at the end the force still rises with the travel.
+
+    A single wheel is dragged under a load that no log tells, and may wedge; where it does not let go within the
+    recording, the friction under a quarter of the weight is not what holds it.
+    """
+    moving = np.flatnonzero(np.abs(np.gradient(travel)) > 0.2 * np.quantile(np.abs(np.gradient(travel)), 0.95))
+    inside = np.arange(moving[0], moving[-1] + 1) if len(moving) else np.arange(0)
+    if len(inside) < 4 * ENDS:
+        return False
+    gains = np.diff([float(force[part].mean()) for part in np.array_split(inside, ENDS)])
+    return bool(gains[-1] > STILL_RISES * gains.max() > 0.0)
+
+
+def force_model(entry: Entry, parameters: ParameterSet, held: bool = False) -> Force:
+    """The simulator of an entry's experiment; ``held`` says that a dragged wheel does not let go."""
     if "tire.stiffness_y_N_m" not in parameters:
         block = block_from_parameters(parameters)
         return lambda values, effects, head, step, inner: pull_block(_block(block, values), head, step, effects)
@@ -142,7 +163,7 @@ def force_model(entry: Entry, parameters: ParameterSet) -> Force:
     if entry.experiment == "vertical_compression":
         return lambda values, effects, head, step, inner: compress_wheel(builder(values), head, step, effects=effects)
     if entry.experiment == "wheel_drag":
-        free = entry.free_normal
+        free = entry.free_normal and not held
         return lambda values, effects, head, step, inner: drag_wheel(builder(values), head, step, free, effects)
     return lambda values, effects, head, step, inner: _pulled(builder(values), entry, head, step, effects, inner)
 
@@ -180,7 +201,8 @@ def find_slack(force: Array, travel: Array, tight: Array) -> float:
     """Travel of the head before the cable tightens [m], by least squares with the load cell's zero eliminated.
 
     Up to a third of the travel; a log that starts under load is told apart by the zero. What a slack does is taken
-    from one simulation without: the same force over the travel that is left, which is exact at constant speed.
+    from one simulation without: the same force over the travel that is left, which is exact at constant speed; where
+    the head stands still, the force goes on by itself and does not count.
 
     Parameters
     ----------
@@ -189,6 +211,9 @@ def find_slack(force: Array, travel: Array, tight: Array) -> float:
     tight : (n,) float [N]
         Simulated without slack.
     """
+    last = int(np.argmax(travel > (1.0 - 1e-3) * travel.max()))
+    every = max(1, last // POINTS)
+    force, travel, tight = (a[: last + 1 : every] for a in (force, travel, tight))
     rising = np.maximum.accumulate(travel) + 1e-9 * travel.max() * np.linspace(0.0, 1.0, len(travel))
 
     def misfit(slack: float) -> float:
