@@ -21,15 +21,17 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from scipy.stats import beta
 
 from ssmr_ident.campaign import Campaign, Measurement, to_quantities
 from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.diagnose.turning.anchor import scale_of
+from ssmr_ident.diagnose.turning.assemble import MODEL_SPREAD, SPREAD_FACTOR, diagnosis_of
 from ssmr_ident.diagnose.turning.bench import Bench
 from ssmr_ident.diagnose.turning.conditions import conditions_of
 from ssmr_ident.diagnose.turning.engine import LEFT, Outcome, examine, repeated
 from ssmr_ident.diagnose.turning.spectra import look
-from ssmr_ident.diagnose.turning.verdict import decide, findings_of
+from ssmr_ident.diagnose.turning.verdict import findings_of
 from ssmr_ident.diagnose.turning.worth import channel_logs, distance_db
 from ssmr_ident.physics.motor import wheel_rates
 from ssmr_ident.physics.robot import accelerometer_from_parameters, robot_from_parameters
@@ -192,14 +194,21 @@ def session(seed: int, effect: str | None, calibrated: bool) -> tuple[Campaign, 
     return Campaign(plain, lab.file, tuple(runs)), truth
 
 
-def row_of(outcome: Outcome, truth: dict, seconds: float) -> dict:
-    findings = findings_of(outcome)
+def row_of(outcome: Outcome, truth: dict, begun: float) -> dict:
+    """What the whole diagnosis says, and the numbers behind it."""
+    answer = diagnosis_of(outcome, str(truth["seed"]))
+    seconds = time.perf_counter() - begun
     fitted = {
         one.id: {free.name: (one.values[free.name], None if one.spread is None else float(one.spread[i]), free.log)
                  for i, free in enumerate(one.candidate.free)}
         for one in outcome.explanations
     }  # fmt: skip
-    return {**truth, "findings": findings.as_dict(), "fitted": fitted, "seconds": round(seconds, 1)}
+    named = [name for one in answer.effects for name in (one.id, *one.indistinguishable_from)]
+    heldout = (answer.heldout.before, answer.heldout.after, answer.heldout.noise_floor)
+    return {
+        **truth, "verdict": answer.verdict, "named": named, "heldout_db": heldout,
+        "findings": findings_of(outcome).as_dict(), "fitted": fitted, "seconds": round(seconds, 1),
+    }  # fmt: skip
 
 
 def run_many(kind: str, count: int, seed: int, output: Path) -> None:
@@ -212,10 +221,11 @@ def run_many(kind: str, count: int, seed: int, output: Path) -> None:
         effect = None if kind == "null" else names[i % len(names)]
         campaign, truth = session(number, effect, calibrated=(i + i // len(names)) % 3 != 2)
         begun = time.perf_counter()
-        row = truth if campaign is None else row_of(examine(campaign), truth, time.perf_counter() - begun)
+        row = truth if campaign is None else row_of(examine(campaign), truth, begun)
         with output.open("a") as file:
             file.write(json.dumps(row) + "\n")
-        print(number, effect, row.get("calibrated"), row.get("seconds"), flush=True)
+        said = (row["verdict"], row["named"], np.round(row["heldout_db"], 1).tolist()) if campaign else "cannot be seen"
+        print(number, effect, row.get("calibrated"), row.get("seconds"), said, flush=True)
 
 
 def repeats(count: int, seed: int) -> None:
@@ -234,36 +244,66 @@ def repeats(count: int, seed: int) -> None:
 
 
 def report(paths: list[Path]) -> None:
-    """Confusion matrix and rates of what was stored, by the rules of today's ``decide``."""
-    from ssmr_ident.diagnose.turning.verdict import Findings
-
+    """Rates with exact intervals, and the confusion matrix, of what was stored."""
     rows = [json.loads(line) for path in paths for line in path.read_text().splitlines()]
-    unseen = Counter(row["effect"] for row in rows if "findings" not in row)
-    rows = [row for row in rows if "findings" in row]
+    unseen = Counter(row["effect"] for row in rows if "verdict" not in row)
+    rows = [row for row in rows if "verdict" in row]
     for calibrated in (True, False, None):
         part = [row for row in rows if calibrated is None or row["calibrated"] == calibrated]
         label = {True: "with calibration", False: "without calibration", None: "all"}[calibrated]
-        decided = [(row["effect"], decide(Findings.from_dict(row["findings"]))) for row in part]
-        nulls = [d for effect, d in decided if effect is None]
-        drawn = [(effect, d) for effect, d in decided if effect is not None]
-        right = [effect for effect, d in drawn if effect in d.named]
-        alone = [effect for effect, d in drawn if d.named[:1] == (effect,) and len(d.named) == 1]
-        alarms = sum(d.verdict == "missing_physics" for d in nulls)
-        print(f"\n{label}: {len(drawn)} sessions with an effect, {len(right)} right or tied, {len(alone)} right alone; "
-              f"{len(nulls)} null sessions, {alarms} false alarms, "
-              f"{sum(d.verdict == 'undetermined' for d in nulls)} undetermined")  # fmt: skip
-        if calibrated is None:
-            print("\n| acted | sessions | right or tied | named first (times) |\n| --- | --- | --- | --- |")
-            for effect in DRAWS:
-                mine = [d for e, d in drawn if e == effect]
-                if mine:
-                    first = Counter((d.named[0] if d.named else d.verdict) for d in mine)
-                    said = ", ".join(f"{name} {times}" for name, times in first.most_common())
-                    print(f"| `{effect}` | {len(mine)} | {sum(effect in d.named for d in mine)} | {said} |")
+        nulls = [row for row in part if row["effect"] is None]
+        drawn = [row for row in part if row["effect"] is not None]
+        right = sum(row["effect"] in row["named"] for row in drawn)
+        alone = sum(row["named"] == [row["effect"]] for row in drawn)
+        alarms = sum(row["verdict"] == "missing_physics" for row in nulls)
+        unsure = sum(row["verdict"] == "undetermined" for row in nulls)
+        print(f"\n{label}: {len(drawn)} sessions with an effect, {right} right or tied "
+              f"({_interval(right, len(drawn))}), {alone} right alone; "
+              f"{len(nulls)} null sessions, {alarms} false alarms "
+              f"({_interval(alarms, len(nulls))}), {unsure} undetermined")  # fmt: skip
+    drawn = [row for row in rows if row["effect"] is not None]
+    print("\n| acted | sessions | right or tied | alone | first named (times) |\n| --- | --- | --- | --- | --- |")
+    for effect in DRAWS:
+        mine = [row for row in drawn if row["effect"] == effect]
+        if mine:
+            first = Counter((row["named"] or [row["verdict"]])[0] for row in mine)
+            said = ", ".join(f"`{name}` {times}" for name, times in first.most_common())
+            print(f"| `{effect}` | {len(mine)} | {sum(effect in row['named'] for row in mine)} "
+                  f"| {sum(row['named'] == [effect] for row in mine)} | {said} |")  # fmt: skip
+    named = [row for row in drawn if row["named"][:1] == [row["effect"]]]
+    if named:
+        before, after, floor = np.array([row["heldout_db"] for row in named]).T
+        print(f"\nheld out, effect named first: median {np.median(before):.1f} dB to {np.median(after):.1f} dB, "
+              f"cut by a third or more in {np.sum(after < 2 / 3 * before)} of {len(named)}, "
+              f"within 1.5 dB of repeatability in {np.sum(after < floor + 1.5)}")  # fmt: skip
+        for width in (1.0, 2.0, 3.0):
+            inside = [ok for row in named for ok in _inside(row, width)]
+            print(f"parameters within {width:g} printed standard deviations: {sum(inside)} of {len(inside)}")
     if unseen:
         print(f"\nnever moved the spectra by {VISIBLE:g} times their scatter: {dict(unseen)}")
     seconds = [row["seconds"] for row in rows]
     print(f"\nseconds per session: median {np.median(seconds):.0f}, longest {np.max(seconds):.0f}")
+
+
+def _interval(hits: int, count: int) -> str:
+    """Clopper and Pearson, 95 %."""
+    if not count:
+        return "-"
+    low = beta.ppf(0.025, hits, count - hits + 1) if hits else 0.0
+    high = beta.ppf(0.975, hits + 1, count - hits) if hits < count else 1.0
+    return f"{low:.1%} to {high:.1%}"
+
+
+def _inside(row: dict, width: float) -> list[bool]:
+    """Whether each fitted parameter of the effect that acted lies within ``width`` printed standard deviations."""
+    found = []
+    for name, (value, spread, log) in row["fitted"].get(row["effect"], {}).items():
+        true = row["effects"].get(row["effect"], {}).get(name)
+        if spread is None or true is None:
+            continue
+        sigma = np.hypot(SPREAD_FACTOR * spread, MODEL_SPREAD if log else 0.0)
+        found.append(bool(abs(np.log(value / true) if log else value - true) < width * sigma))
+    return found
 
 
 if __name__ == "__main__":

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from ssmr_ident.compare.turning import FLOOR_HEIGHT, SLIDING_SPEED
 from ssmr_ident.core.parameter import ParameterSet
-from ssmr_ident.diagnose.turning.bench import Bench, Run
+from ssmr_ident.diagnose.turning.bench import STEP, Bench, Run
 from ssmr_ident.diagnose.turning.conditions import Condition
 from ssmr_ident.diagnose.turning.likelihood import Block, Score, log_variance, score
 from ssmr_ident.physics.slots import Effects
@@ -26,8 +26,6 @@ FITTED = (
     "tire.damping_x_N_s_m", "tire.damping_y_N_s_m", "tire.damping_z_N_s_m",
     "inertia_kg_m2.xx", "inertia_kg_m2.yy", "inertia_kg_m2.zz",
 )  # fmt: skip
-_DIFFERENCE = 0.7  # standard deviations of the prior; spectra of chaotic runs are no smooth functions of less
-ROUNDS = 4
 
 
 @dataclass(frozen=True)
@@ -76,6 +74,10 @@ class Anchor:
         Empty where the baseline was fitted on the targets.
     fit : Score
         On what it was fitted on.
+    step : float [s]
+        Of the simulations.
+    slopes : (n, p) float or None
+        Of the log densities that it was fitted on, over ``z``, near where the fit ended.
     """
 
     bench: Bench
@@ -87,6 +89,8 @@ class Anchor:
     seeds: tuple[int, ...] = SEEDS
     shares: tuple[float, ...] = field(default=(1.0, 0.5, 0.0))
     fixed: Mapping[str, float] = field(default_factory=dict)
+    step: float = STEP
+    slopes: np.ndarray | None = None
 
     def at(self, z: np.ndarray) -> dict[str, float]:
         """Parameters at ``z`` standard deviations from the priors, and those that are held elsewhere."""
@@ -116,7 +120,7 @@ class Anchor:
         for c, weight in zip(known, weights, strict=True):
             if weight == 0.0:
                 continue
-            run = self.bench.run(c, self.values, {}, self.seeds)
+            run = self.bench.run(c, self.values, {}, self.seeds, self.step)
             assert run is not None
             densities = densities + weight * (c.mean.log_density(self.scale) - self.log_density(run, c))
             levels = levels + weight * (c.mean.levels - run.look.levels)
@@ -137,7 +141,7 @@ class Anchor:
         """Measured less predicted, with ``share`` of what the baseline misses carried over; None where nothing runs."""
         result = []
         for condition in conditions:
-            run = self.bench.run(condition, self.values if values is None else values, effects, self.seeds)
+            run = self.bench.run(condition, self.values if values is None else values, effects, self.seeds, self.step)
             if run is None:
                 return None
             result.append(self._block(condition, run, share, bool(effects)))
@@ -205,79 +209,3 @@ def scale_of(conditions: tuple[Condition, ...]) -> np.ndarray:
     """Rms of each channel within the band over all conditions, (c,) float [m/s^2]."""
     power = [np.einsum("kii->i", c.mean.cross) for c in conditions]
     return np.sqrt(np.mean(power, axis=0))
-
-
-def anchored(
-    bench: Bench,
-    fitted_on: tuple[Condition, ...],
-    calibrated: bool,
-    scale: np.ndarray,
-    advance: Callable[[], None],
-    rounds: int = ROUNDS,
-    seeds: tuple[int, ...] = SEEDS,
-    fixed: Mapping[str, float] | None = None,
-    starts: tuple[np.ndarray, ...] = (),
-) -> Anchor:
-    """Fit the baseline: sliding speed and floor over a grid, then everything within its prior by Gauss-Newton.
-
-    ``fixed`` are parameters held at values of their own; ``starts``, in standard deviations, take the grid's place.
-    """
-    priors = priors_of(bench.parameters)
-    free = Anchor(bench, scale, priors, np.zeros(len(priors)), (), Score(-np.inf, 0.0, 0.0), seeds, fixed=fixed or {})
-
-    def value(z: np.ndarray) -> Score | None:
-        found = free.score(fitted_on, {}, free.at(z))
-        if found is None:
-            return None
-        one = found[0]
-        return Score(one.log_likelihood - 0.5 * float(z @ z), one.tau_db, one.rms_db)
-
-    best_z = np.zeros(len(priors))
-    index = {p.path: i for i, p in enumerate(priors)}
-    best: Score | None = None
-    grid = list(starts)
-    for speed in () if starts else (-1.8, -0.9, 0.0, 0.9, 1.8):
-        for floor in (-1.5, 0.0, 1.5):
-            z = np.zeros(len(priors))
-            for path, shift in (("tire.sliding_speed_m_s", speed), ("floor.height_m", floor)):
-                if path in index:
-                    z[index[path]] = shift
-            grid.append(z)
-    bench.prefetch((c, free.at(z), {}, seed) for z in grid for c in fitted_on for seed in seeds)
-    for z in grid:
-        found = value(z)
-        if found is not None and (best is None or found.log_likelihood > best.log_likelihood):
-            best, best_z = found, z
-    advance()
-    for _ in range(rounds):
-        best, best_z, moved = _gauss_newton(free, fitted_on, priors, best_z, best, value, advance)
-        if not moved:
-            break
-    if best is None:
-        raise FloatingPointError("no values within the priors make a robot that can be simulated")
-    return Anchor(bench, scale, priors, best_z, fitted_on if calibrated else (), best, seeds, fixed=fixed or {})
-
-
-def _gauss_newton(free, conditions, priors, z, now, value, advance):
-    def residual(at: np.ndarray) -> np.ndarray | None:
-        blocks = free.blocks(conditions, {}, 0.0, free.at(at))
-        return None if blocks is None else np.concatenate([b.residual for b in blocks])
-
-    ahead = [z + _DIFFERENCE * (np.arange(len(z)) == i) for i in range(len(z))]
-    free.bench.prefetch((c, free.at(at), {}, seed) for at in [z, *ahead] for c in conditions for seed in free.seeds)
-    base = residual(z)
-    advance()
-    if base is None or now is None:
-        return now, z, False
-    columns = []
-    for at in ahead:
-        found = residual(at)
-        columns.append(np.zeros_like(base) if found is None else (found - base) / _DIFFERENCE)
-    jacobian = np.column_stack(columns)
-    weight = 1.0 / (6.0 * (0.05 + (now.tau_db / 4.343) ** 2))
-    change = np.linalg.solve(weight * jacobian.T @ jacobian + np.eye(len(priors)), -weight * jacobian.T @ base - z)
-    for length in (1.0, 0.5, 0.25, 0.1):
-        found = value(z + length * change)
-        if found is not None and found.log_likelihood > now.log_likelihood:
-            return found, z + length * change, True
-    return now, z, False

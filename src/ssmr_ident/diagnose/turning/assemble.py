@@ -12,7 +12,7 @@ from ssmr_ident.diagnose.evidence import Evidence
 from ssmr_ident.diagnose.turning.anchor import Anchor
 from ssmr_ident.diagnose.turning.candidates import UNLISTED
 from ssmr_ident.diagnose.turning.conditions import Condition
-from ssmr_ident.diagnose.turning.engine import Outcome
+from ssmr_ident.diagnose.turning.engine import FINAL_SEEDS, Outcome
 from ssmr_ident.diagnose.turning.located import located
 from ssmr_ident.diagnose.turning.maps import follows, speed_maps
 from ssmr_ident.diagnose.turning.next_run import next_run
@@ -30,6 +30,8 @@ need, whose baselines are fitted too (docs/theory/swivel.md)."""
 NEARER, WITHIN = 0.95, 1.25
 """Share of the distance that an effect may leave on recordings kept back, and the distance over the repeatability below
 which nothing is left to name."""
+ONE_SIDED = float(np.sqrt(0.5 * (1.0 + 1.0 / len(FINAL_SEEDS))))
+"""Distance of a run from the mean of several, over that of two runs from each other."""
 CONFLICT = 3.0  # standard deviations of the prior
 
 
@@ -44,10 +46,11 @@ def diagnosis_of(outcome: Outcome, session: str) -> Diagnosis:
     floor = repeatability_db((*outcome.targets, *outcome.heldout))
     training = _worth(outcome, outcome.targets, added, effects, floor)
     heldout = _worth(outcome, outcome.heldout, added, effects, floor) if outcome.heldout else training
-    if decision.verdict == MISSING and not _predicts(heldout):
+    if decision.verdict == MISSING and not _predicts(outcome, added, effects, floor):
         # what fits the targets and predicts nothing is no answer
-        verdict = NOTHING if heldout.before < WITHIN * heldout.noise_floor else UNDETERMINED
-        decision = Decision(verdict, (), 0.0, "what fits best does not predict the recordings kept back any better")
+        if not (outcome.calibrated and decision.named == (UNLISTED,)):  # that something is new needs no explanation
+            verdict = NOTHING if heldout.before < WITHIN * heldout.noise_floor else UNDETERMINED
+            decision = Decision(verdict, (), 0.0, "what fits best does not predict the recordings kept back any better")
         best, after, added, effects = None, before, values, {}
         training = _worth(outcome, outcome.targets, values, {}, floor)
         heldout = _worth(outcome, outcome.heldout, values, {}, floor) if outcome.heldout else training
@@ -71,9 +74,18 @@ def diagnosis_of(outcome: Outcome, session: str) -> Diagnosis:
     )
 
 
-def _predicts(heldout: Worth) -> bool:
-    """Whether there was anything to explain beyond repeatability, and the effect brings the spectra nearer."""
-    return heldout.before > heldout.noise_floor and heldout.after < NEARER * heldout.before
+def _predicts(outcome: Outcome, added: Mapping[str, float], effects: Mapping, floor: float) -> bool:
+    """Whether there was anything to explain beyond repeatability, and the effect brings the spectra nearer.
+
+    Against the mean of several runs: one run's chance is as large as what a small effect changes.
+    """
+    conditions = outcome.heldout or outcome.targets
+    distances = [
+        float(np.mean(list(found.values()))) if (found := against_simulation(
+            outcome.bench, conditions, values, active, FINAL_SEEDS)) else np.inf
+        for values, active in ((outcome.anchor.values, {}), (added, effects))
+    ]  # fmt: skip
+    return distances[0] > floor * ONE_SIDED and distances[1] < NEARER * distances[0]
 
 
 def _chosen(outcome: Outcome, decision: Decision) -> Explained | None:

@@ -11,7 +11,8 @@ import numpy as np
 from ssmr_ident.campaign import Campaign
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import ParameterSet
-from ssmr_ident.diagnose.turning.anchor import ROUNDS, SEEDS, Anchor, anchored, scale_of
+from ssmr_ident.diagnose.turning.anchor import SEEDS, Anchor, scale_of
+from ssmr_ident.diagnose.turning.baseline import ROUNDS, anchored
 from ssmr_ident.diagnose.turning.bench import Bench
 from ssmr_ident.diagnose.turning.candidates import Candidate, candidates, pitches_heard
 from ssmr_ident.diagnose.turning.conditions import Condition, conditions_of, held_back
@@ -19,19 +20,18 @@ from ssmr_ident.diagnose.turning.grip import PATH, TRIED, GripProfile, grip_prof
 from ssmr_ident.diagnose.turning.likelihood import Score
 from ssmr_ident.diagnose.turning.search import Explained, explained, freed, polished, refined, screened
 
-REFINED, FREED, FREED_STRAIGHT = (
-    5,
-    3,
-    6,
-)  # explanations that are refined, and that get the baseline set free beside them
+REFINED = 5  # explanations whose own parameters are searched first, with calibration
+FREED, FREED_LOOSE, FREED_STRAIGHT = 5, 3, 3
+"""Explanations that get the baseline set free beside them: with calibration, without, and without from the file's
+baseline."""
+FIRST_STEPS = 3
+HALVINGS = ((4, 4), (2, 10))  # how many of the best get how many more steps, as long as they gain
 FINAL_SEEDS = (1, 2, 3, 4)
-LAST_ROUNDS = 3  # of fitting the winner, with all of them
+LAST_STEPS = 3  # of fitting the winner, with all of the final seeds
 LEFT = 20.0
 """What the model's own error may add to the baseline's log likelihood where nothing is missing (docs/theory)."""
-FAR = 40.0
-"""Of evidence: setting the baseline free has gained 27 at most, so what lies further behind cannot come first."""
 REFINE_FAR = 100.0
-"""The same for refining a candidate's own parameters from the start of its search."""
+"""Of evidence: what lies further behind does not come first by being fitted (1.5 times the most seen)."""
 DISTORTED_DB = 2.0
 """Own error of a baseline fitted on the targets from which on it may have been bent by what is missing."""
 CLOSE = 30.0  # of evidence behind the first: who comes first may still be a matter of where the search began
@@ -128,35 +128,49 @@ def examine(
     baseline = explained(anchor, None, {}, targets)
     assert baseline is not None
 
+    if quiet:  # the targets repeat the calibration: nothing is left that an effect could explain
+        seconds["explanations"] = 0.0
+        final = _final(baseline, targets, seed)
+        return Outcome(
+            bench, calibration, targets, heldout, anchor, final, (), (), grip, (*kept_notes, *notes), seconds,
+        )  # fmt: skip
+
     every = candidates(_pitches(anchor, targets), _ceilings(targets), anchor.values.get("floor.height_m", 3e-5))
-    tried, starts = _tried(anchor, every, targets, baseline, quiet, show)
-    if not calibration and baseline.target.tau_db > DISTORTED_DB:
-        # fitted on the targets, the baseline may have bent itself round what is missing: once more from the file
-        straight = replace(anchor, z=np.zeros(len(anchor.priors)))
-        more, others = _tried(straight, every, targets, baseline, quiet, show, refine=False)
-        best_there = more[:FREED_STRAIGHT]
-        tried, starts = [*tried[:FREED], *best_there, *tried[FREED:]], {**others, **starts}
-        followed = tried[: FREED + len(best_there)]
+    pairs = _tried(anchor, every, targets, show)
+    starts = {pair[0].id: pair[-1] for pair in pairs}
+    if calibration:
+        level = max(baseline.evidence, pairs[0][0].evidence) - REFINE_FAR
+        pool = [one for pair in pairs[:FREED] for one in _both(pair) if one.evidence > level]
     else:
-        followed = tried[:FREED]
+        pool = [one for pair in pairs[:FREED_LOOSE] for one in _both(pair)]
+        if baseline.target.tau_db > DISTORTED_DB:
+            # fitted on the targets, the baseline may have bent itself round what is missing: once more from the file
+            straight = replace(anchor, z=np.zeros(len(anchor.priors)))
+            pool += [pair[0] for pair in _tried(straight, every, targets, show)[:FREED_STRAIGHT]]
     seconds["explanations"] = time.perf_counter() - clock - seconds["baseline"]
 
-    rounds = 2 if calibration else 3
-    level = baseline.evidence if quiet else max(baseline.evidence, max(one.evidence for one in tried)) - FAR
-    worth_it = [one for one in followed if one.evidence > level or one.anchor is not anchor]
-    count = _Counter(show, "baseline set free beside them", len(worth_it) * rounds + 2 * (rounds + 1) + LAST_ROUNDS)
-    best = [freed(one, targets, rounds * (1 + (one.anchor is not anchor)), count.advance) for one in worth_it]
-    best.sort(key=lambda one: one.evidence, reverse=True)
+    alone = 0 if calibration else FIRST_STEPS + sum(more for _, more in HALVINGS)  # steps of the baseline by itself
+    steps = FIRST_STEPS * len(pool) + sum(most * more for most, more in HALVINGS) + 2 + alone + 2 * LAST_STEPS
+    count = _Counter(show, "baseline set free beside them", steps)
+    best = [freed(one, targets, FIRST_STEPS, count.advance) for one in pool]
+    for most, more in HALVINGS:
+        best.sort(key=lambda one: one.evidence, reverse=True)
+        best = _one_each(best) if most == 2 else best
+        reach = best[0].evidence - REFINE_FAR if best else 0.0
+        for i, one in enumerate(best[:most]):
+            if one.evidence > reach:
+                best[i] = freed(one, targets, more, count.advance)
+    best = _one_each(best)
     for i in _ahead(best[:2], baseline):
-        best[i] = polished(best[i], starts[best[i].id], targets, rounds + 1, count.advance)
+        best[i] = polished(best[i], starts.get(best[i].id, best[i]), targets, count.advance)
     if not calibration:  # the explanations had their baseline fitted further on the targets; so must it be
-        baseline = freed(baseline, targets, 3 * rounds, lambda: None)
+        baseline = freed(baseline, targets, alone, count.advance)
     finals = [_final(one, targets, seed) for one in [baseline, *_one_each(best)]]
     finals[1:] = sorted(finals[1:], key=lambda one: one.evidence, reverse=True)
     for i in _ahead(finals[1:3], finals[0]):
-        finals[i + 1] = freed(finals[i + 1], targets, LAST_ROUNDS, count.advance)
+        finals[i + 1] = freed(finals[i + 1], targets, LAST_STEPS, count.advance)
     count.finish()
-    rest = [one for one in _one_each(tried) if one.id not in {other.id for other in finals}]
+    rest = [one for one in _one_each([pair[0] for pair in pairs]) if one.id not in {other.id for other in finals}]
     ranked = sorted(finals[1:], key=lambda one: one.evidence, reverse=True)
     seconds["baseline beside explanations"] = time.perf_counter() - clock - sum(seconds.values())
     return Outcome(
@@ -166,30 +180,31 @@ def examine(
 
 
 def _tried(
-    anchor: Anchor,
-    every: tuple[Candidate, ...],
-    targets: tuple[Condition, ...],
-    baseline: Explained,
-    quiet: bool,
-    show: Progress,
-    refine: bool = True,
-) -> tuple[list[Explained], dict[str, Explained]]:
-    """All candidates with this baseline, best first and the promising ones refined; and a second start of each."""
+    anchor: Anchor, every: tuple[Candidate, ...], targets: tuple[Condition, ...], show: Progress
+) -> list[list[Explained]]:
+    """All candidates with this baseline, best first, each with a second start; anchored ones refined where promising.
+
+    Without calibration the baseline gives way together with the effect instead.
+    """
     count = _Counter(show, "explanations tried", 2 * len(every))
     pairs = [pair for pair in (screened(anchor, c, targets, count.advance) for c in every) if pair]
     count.finish()
-    tried = sorted((pair[0] for pair in pairs), key=lambda one: one.evidence, reverse=True)
-    if not refine:
-        return tried, {pair[0].id: pair[-1] for pair in pairs}
-    level = baseline.evidence if quiet else tried[0].evidence - REFINE_FAR
-    promising = [one for one in tried[:REFINED] if one.evidence > level]
+    pairs.sort(key=lambda pair: pair[0].evidence, reverse=True)
+    if not anchor.calibration:
+        return pairs
+    level = pairs[0][0].evidence - REFINE_FAR
+    promising = [pair for pair in pairs[:REFINED] if pair[0].evidence > level]
     count = _Counter(show, "best explanations refined", len(promising) + 1)
-    for i, one in enumerate(promising):
-        tried[i] = refined(one, targets, lambda: None)
+    for pair in promising:
+        pair.insert(0, refined(pair[0], targets, lambda: None))
         count.advance()
     count.finish()
-    tried.sort(key=lambda one: one.evidence, reverse=True)
-    return tried, {pair[0].id: pair[-1] for pair in pairs}
+    return sorted(pairs, key=lambda pair: pair[0].evidence, reverse=True)
+
+
+def _both(pair: list[Explained]) -> list[Explained]:
+    """The best of a candidate, and its second start where there is one."""
+    return [pair[0]] if len(pair) == 1 or pair[-1].values == pair[0].values else [pair[0], pair[-1]]
 
 
 def _ahead(ranked: list[Explained], baseline: Explained) -> list[int]:
@@ -227,7 +242,7 @@ def _final(one: Explained, targets: tuple[Condition, ...], seed: int) -> Explain
     jobs += [(c, many.values, {}, s) for c in many.calibration for s in many.seeds]
     many.bench.prefetch(jobs)
     again = explained(many, one.candidate, one.values, targets)
-    return one if again is None else replace(again, spread=one.spread)
+    return one if again is None else replace(again, spread=one.spread, slopes=one.slopes)
 
 
 def _pitches(anchor: Anchor, targets: tuple[Condition, ...]) -> tuple[float, ...]:

@@ -8,7 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ssmr_ident.core.shown import Shown
-from ssmr_ident.diagnose.turning.anchor import Anchor, anchored
+from ssmr_ident.diagnose.turning.anchor import Anchor
+from ssmr_ident.diagnose.turning.baseline import anchored
 from ssmr_ident.diagnose.turning.conditions import Condition
 
 PATH = "tire.lambda_max"
@@ -21,8 +22,7 @@ SCATTER = 2.0
 SURE = 2.0  # standard deviations of chance
 FOREIGN_DB = 3.5
 """Own error of a baseline from which on it is no model of this robot; fits to robots that it describes leave 3 dB."""
-RUNS = 4  # simulated per value and condition
-SURE = 2.0  # standard deviations of chance
+REACH = 60.0  # of log likelihood that slopes of its own may gain a value
 DROP = 1.92  # of the log likelihood at the ends of a 95 % interval
 
 
@@ -64,22 +64,40 @@ def grip_profile(anchor: Anchor, fitted_on: tuple[Condition, ...], advance: Call
     narrow, and in the wrong place.
     """
     bench, own = anchor.bench, anchor.bench.parameters.number(PATH, 0.0)
-    fits = []
-    for value in TRIED:
+
+    def fit(value: float, starts: tuple[np.ndarray, ...], slopes: np.ndarray | None) -> Anchor:
+        return anchored(
+            bench, fitted_on, bool(anchor.calibration), anchor.scale, lambda: None, ROUNDS_EACH, anchor.seeds,
+            {PATH: value}, starts, slopes,
+        )  # fmt: skip
+
+    fits: list[Anchor] = []
+    complete: set[int] = set()
+    for i, value in enumerate(TRIED):
         if value == TRIED[0] and 0.0 <= own <= HARMLESS:
             fits.append(anchor)
+            complete.add(i)
         else:
-            starts = (anchor.z, np.zeros_like(anchor.z))
-            fits.append(
-                anchored(
-                    bench, fitted_on, bool(anchor.calibration), anchor.scale, lambda: None, ROUNDS_EACH, anchor.seeds,
-                    {PATH: value}, starts,
-                )
-            )  # fmt: skip
+            fits.append(fit(value, (anchor.z, np.zeros_like(anchor.z)), anchor.slopes))
         advance()
-    found = profile(np.array(TRIED), np.array([fit.fit.log_likelihood for fit in fits]), 0.0, SCATTER)
+    # the slopes were those of another value: where that decides, its own
+    while (j := _doubtful(np.array([one.fit.log_likelihood for one in fits]), complete)) is not None:
+        complete.add(j)
+        again = fit(TRIED[j], (fits[j].z,), None)
+        if again.fit.log_likelihood > fits[j].fit.log_likelihood:
+            fits[j] = again
+    found = profile(np.array(TRIED), np.array([one.fit.log_likelihood for one in fits]), 0.0, SCATTER)
     best = fits[int(np.argmax(found.log_likelihood))]
     return replace(found, own_error_db=best.fit.tau_db, anchor=best)
+
+
+def _doubtful(log_likelihood: np.ndarray, complete: set[int]) -> int | None:
+    """The best value, or the first one beyond an end of the interval, unless it was fitted with its own slopes."""
+    best = int(np.argmax(log_likelihood))
+    allowed = np.flatnonzero(log_likelihood >= log_likelihood[best] - DROP - SURE * np.sqrt(2.0) * SCATTER)
+    beyond = [i for i in (int(allowed[0]) - 1, int(allowed[-1]) + 1) if 0 <= i < len(log_likelihood)]
+    asked = [best, *(i for i in beyond if log_likelihood[i] > log_likelihood[best] - REACH)]
+    return next((i for i in asked if i not in complete), None)
 
 
 def profile(

@@ -9,11 +9,17 @@ import numpy as np
 from scipy.optimize import minimize
 
 from ssmr_ident.diagnose.turning.anchor import Anchor
+from ssmr_ident.diagnose.turning.bench import COARSE
 from ssmr_ident.diagnose.turning.candidates import Candidate, Values
 from ssmr_ident.diagnose.turning.conditions import Condition
 from ssmr_ident.diagnose.turning.likelihood import NEPER_DB, Score
 
 REFINEMENTS = 10  # evaluations per free parameter
+GAINING = 3.0  # of evidence, below which slopes are worn out
+REACH = 100.0  # of evidence that another start may gain by being fitted
+PITCH = "pitch_m"
+RATIOS = (0.5, 2.0 / 3.0, 0.75, 0.8, 1.25, 4.0 / 3.0, 1.5, 2.0, 3.0)
+BEHIND = 40.0  # of evidence, from which on a second start is not followed
 _STEP = 0.35  # of a logarithm, or of a hundredth of the bounds
 
 
@@ -36,6 +42,8 @@ class Explained:
         Log likelihood of targets and calibration, less what free parameters cost.
     spread : (p,) float or None
         Standard deviations of the free parameters on the scales of the search.
+    slopes : (n, q) float or None
+        Of log densities of calibration and targets over the baseline's parameters, where it was last set free.
     """
 
     candidate: Candidate | None
@@ -45,6 +53,7 @@ class Explained:
     share: float
     evidence: float
     spread: np.ndarray | None = None
+    slopes: np.ndarray | None = None
 
     @property
     def id(self) -> str:
@@ -79,18 +88,17 @@ def explained(
 def screened(
     anchor: Anchor, candidate: Candidate, targets: tuple[Condition, ...], advance: Callable[[], None]
 ) -> list[Explained]:
-    """The best two starts, best first: all of them on one run at the slowest and fastest speed, two on everything."""
+    """The best one or two starts, best first: all on one run at the slowest and fastest speed, these on everything."""
     order = sorted(targets, key=lambda c: abs(c.turning))
     few = tuple({c.kind: c for c in (order[0], order[-1])}.values())
-    coarse = replace(anchor, seeds=anchor.seeds[:1])
+    coarse = replace(anchor, seeds=anchor.seeds[:1], step=COARSE)
     starts = list(candidate.starts)
     if len(starts) > 2:
-        anchor.bench.prefetch(
-            (c, anchor.values, candidate.effects(start), coarse.seeds[0]) for start in starts for c in few
-        )
+        jobs = ((c, anchor.values, candidate.effects(start), coarse.seeds[0]) for start in starts for c in few)
+        anchor.bench.prefetch(jobs, COARSE)
         rough = [(explained(coarse, candidate, start, few), start) for start in starts]
         ranked = sorted(((one.evidence, i) for i, (one, _) in enumerate(rough) if one is not None), reverse=True)
-        starts = [starts[i] for _, i in ranked[:2]]
+        starts = [starts[i] for value, i in ranked[:2] if value > ranked[0][0] - BEHIND]
     advance()
     anchor.bench.prefetch(
         (c, anchor.values, candidate.effects(start), seed) for start in starts for c in targets for seed in anchor.seeds
@@ -137,9 +145,9 @@ def refined(start: Explained, targets: tuple[Condition, ...], advance: Callable[
 
 
 def polished(
-    best: Explained, start: Explained, targets: tuple[Condition, ...], rounds: int, advance: Callable[[], None]
+    best: Explained, start: Explained, targets: tuple[Condition, ...], advance: Callable[[], None]
 ) -> Explained:
-    """The winner once more, from another start and with its first parameter half as large again.
+    """The winner once more: from another start, with its first parameter half as large again, at other distances.
 
     Spectra are no smooth functions of an effect's size, and what a search ends on depends on where it began.
     """
@@ -151,28 +159,55 @@ def polished(
     larger[first.name] = first.outward(first.inward(larger[first.name]) + np.log(1.5)) if first.log else (
         float(np.clip(1.5 * larger[first.name], first.lower, first.upper))
     )  # fmt: skip
-    for anchor, values in ((best.anchor, start.values), (best.anchor, larger)):
-        again = explained(anchor, candidate, values, targets)
-        if again is None:
-            continue
-        found = freed(again, targets, rounds, advance)
-        if found.evidence > best.evidence:
-            best = found
+    others = [start.values, larger]
+    if PITCH in best.values:
+        others += _other_pitches(best, targets)
+    for values in others:
+        again = explained(best.anchor, candidate, values, targets)
+        if again is not None and again.evidence > best.evidence - REACH:
+            found = freed(replace(again, slopes=best.slopes), targets, 3, lambda: None)
+            if found.evidence > best.evidence:
+                best = found
+    advance()
     return best
 
 
-def freed(start: Explained, targets: tuple[Condition, ...], rounds: int, advance: Callable[[], None]) -> Explained:
-    """Baseline and effect together by Gauss-Newton on calibration and target recordings."""
+def _other_pitches(best: Explained, targets: tuple[Condition, ...]) -> list[Values]:
+    """The two best distances of which some lines fall on those of the one found."""
+    assert best.candidate is not None
+    coarse = replace(best.anchor, step=COARSE)
+    others = [{**best.values, PITCH: ratio * best.values[PITCH]} for ratio in RATIOS]
+    jobs = [
+        (c, coarse.values, best.candidate.effects(v), seed) for v in others for c in targets for seed in coarse.seeds
+    ]
+    coarse.bench.prefetch(jobs, COARSE)
+    scored = [(one.evidence, i) for i, v in enumerate(others)
+              if (one := explained(coarse, best.candidate, v, targets)) is not None]  # fmt: skip
+    return [others[i] for _, i in sorted(scored, reverse=True)[:2]]
+
+
+def freed(start: Explained, targets: tuple[Condition, ...], steps: int, advance: Callable[[], None]) -> Explained:
+    """Baseline and effect together by Gauss-Newton on calibration and target recordings.
+
+    Slopes over the baseline's parameters cost most: they serve for as long as a step with them gains something. Those
+    over the effect's own are simulated for every step.
+    """
     now = start
-    for _ in range(rounds):
-        after = _together(now, targets, advance)
+    for done in range(steps):
+        after = _together(now, targets)
+        if after is None and now.slopes is not None:
+            after = _together(replace(now, slopes=None), targets)
+        advance()
         if after is None:
+            for _ in range(done + 1, steps):
+                advance()
             break
-        now = after
+        gained = after.evidence - now.evidence
+        now = after if gained > GAINING else replace(after, slopes=None)
     return now
 
 
-def _together(now: Explained, targets: tuple[Condition, ...], advance: Callable[[], None]) -> Explained | None:
+def _together(now: Explained, targets: tuple[Condition, ...]) -> Explained | None:
     anchor, candidate = now.anchor, now.candidate
     own = np.zeros(0) if candidate is None else candidate.position(now.values)
     steps = np.array([] if candidate is None else [0.1 if f.log else 0.01 * f.span for f in candidate.free])
@@ -189,33 +224,33 @@ def _together(now: Explained, targets: tuple[Condition, ...], advance: Callable[
         pairs = [(c, {}) for c in anchor.calibration] + [(c, effects) for c in targets]
         return [(c, values, active, seed) for c, active in pairs for seed in anchor.seeds]
 
-    def residual(at: np.ndarray) -> np.ndarray | None:
+    def residual(at: np.ndarray, step: float) -> np.ndarray | None:
         values, effects = split(at)
-        direct = replace(anchor, calibration=())
+        direct = replace(anchor, calibration=(), step=step)
         parts = [direct.blocks(anchor.calibration, {}, 0.0, values), direct.blocks(targets, effects, 0.0, values)]
         if any(part is None for part in parts):
             return None
         return np.concatenate([block.residual for part in parts if part is not None for block in part])
 
-    ahead = [z + difference * (np.arange(len(z)) == i) for i in range(len(z))]
-    anchor.bench.prefetch([job for at in [z, *ahead] for job in jobs(at)])
-    base = residual(z)
-    if base is None:
+    first = 0 if now.slopes is None else size
+    ahead = [z + difference * (np.arange(len(z)) == i) for i in range(first, len(z))]
+    anchor.bench.prefetch([job for at in [z, *ahead] for job in jobs(at)], COARSE)
+    base, rough = residual(z, anchor.step), residual(z, COARSE)
+    if base is None or rough is None:
         return None
-    columns = [residual(at) for at in ahead]
-    jacobian = np.column_stack(
-        [np.zeros_like(base) if c is None else (c - base) / d for c, d in zip(columns, difference, strict=True)]
-    )
-    advance()
+    columns = [residual(at, COARSE) for at in ahead]
+    fresh = [np.zeros_like(base) if c is None else (c - rough) / d
+             for c, d in zip(columns, difference[first:], strict=True)]  # fmt: skip
+    jacobian = np.column_stack([*(() if now.slopes is None else now.slopes.T), *fresh])
     tau = max(now.target.tau_db, 0.8) / NEPER_DB
-    weight = 1.0 / (6.0 * (0.05 + tau**2))
     known = np.concatenate([np.ones(size), 0.05 / np.maximum(steps, 1e-9) ** 2])
-    curvature = weight * jacobian.T @ jacobian + np.diag(known)
     pull = np.concatenate([anchor.z, np.zeros(len(own))])
+
+    weight = 1.0 / (6.0 * (0.05 + tau**2))
+    curvature = weight * jacobian.T @ jacobian + np.diag(known)
     change = np.linalg.solve(curvature, -weight * jacobian.T @ base - pull)
     spread = np.sqrt(np.diag(np.linalg.inv(curvature)))[size:]
-    best: Explained | None = None
-    for length in (1.0, 0.5, 0.2):
+    for length in (1.0, 0.5, 0.2):  # the first that helps: which of several helps most is half chance
         at = z + length * change
         anchor.bench.prefetch(jobs(at))
         values, _ = split(at)
@@ -228,6 +263,6 @@ def _together(now: Explained, targets: tuple[Condition, ...], advance: Callable[
             fit=anchor.fit if fit is None else Score(fit[0].log_likelihood - prior, fit[0].tau_db, fit[0].rms_db),
         )  # fmt: skip
         found = explained(moved, candidate, {} if candidate is None else candidate.values(at[size:]), targets)
-        if found is not None and found.evidence > (now if best is None else best).evidence:
-            best = replace(found, spread=spread)
-    return best
+        if found is not None and found.evidence > now.evidence:
+            return replace(found, spread=spread, slopes=jacobian[:, :size])
+    return None

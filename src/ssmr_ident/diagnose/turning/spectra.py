@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 from scipy import signal
 
 from ssmr_ident.signals.spectra import power_density
@@ -73,24 +74,23 @@ class Look:
 def look(samples: np.ndarray, sample_rate: float) -> Look:
     """Measure a run; samples : (n, c) float [m/s^2], at least two seconds long."""
     segment = round(sample_rate)
-    frequency, _, z = signal.stft(
-        samples - samples.mean(axis=0), sample_rate, "hann", segment, segment // 2, detrend="constant",
-        boundary=None, padded=False, axis=0, scaling="psd",
-    )  # fmt: skip
-    # z : (k, c, segments)
+    window = signal.get_window("hann", segment)
+    parts = sliding_window_view(samples.T, segment, axis=1)[:, :: segment // 2]  # (c, segments, segment)
+    parts = (parts - parts.mean(axis=2, keepdims=True)) * (window / np.sqrt(sample_rate * np.sum(window**2)))
+    frequency = np.fft.rfftfreq(segment, 1.0 / sample_rate)
     inside = (frequency >= BAND_HZ[0] - 1e-9) & (frequency <= min(BAND_HZ[1], 0.48 * sample_rate) + 1e-9)
-    z = z[inside]
-    cross = 2.0 * np.einsum("kis,kjs->kij", z, z.conj()).real / z.shape[2]
+    z = np.fft.rfft(parts, axis=2)[:, :, inside]
+    cross = 2.0 * np.einsum("isk,jsk->kij", z, z.conj()).real / z.shape[1]
     levels = levels_of(samples)
-    parts = np.array([levels_of(part) for part in np.array_split(samples, PARTS)])
-    variance = parts.var(axis=0, ddof=1) / PARTS
+    each = np.array([levels_of(part) for part in np.array_split(samples, PARTS)])
+    variance = each.var(axis=0, ddof=1) / PARTS
     return Look(frequency[inside], cross, 2.0 * len(samples) / sample_rate / WELCH, levels, variance)
 
 
 def levels_of(samples: np.ndarray) -> np.ndarray:
     """Means, and logarithms of upper and lower extremes over the median: (3 c,) float; samples : (n, c) float."""
-    order = np.sort(samples, axis=0)
-    low, middle, high = order[[round(share * (len(order) - 1)) for share in EXTREMES]]
+    at = [round(share * (len(samples) - 1)) for share in EXTREMES]
+    low, middle, high = np.partition(np.ascontiguousarray(samples.T), at, axis=1)[:, at].T
     upper, lower = np.log(np.maximum([high - middle, middle - low], 1e-6))
     return np.concatenate([samples.mean(axis=0), upper, lower])
 

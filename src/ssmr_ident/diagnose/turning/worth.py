@@ -26,13 +26,20 @@ def distance_db(first: np.ndarray, second: np.ndarray) -> float:
 
 
 def against_simulation(
-    bench: Bench, conditions: tuple[Condition, ...], values: Mapping[str, float], effects: Effects, seed: int = 1
+    bench: Bench,
+    conditions: tuple[Condition, ...],
+    values: Mapping[str, float],
+    effects: Effects,
+    seeds: tuple[int, ...] = (1,),
 ) -> dict[str, float]:
-    """Distance of every recording from one simulated run of its length [dB]; empty for a run that fails."""
-    bench.prefetch((c, values, effects, seed) for c in conditions)
+    """Distance of every recording from one simulated run of its length, or the mean of several [dB].
+
+    Empty for a run that fails.
+    """
+    bench.prefetch((c, values, effects, seed) for c in conditions for seed in seeds)
     found = {}
     for c in conditions:
-        run = bench.run(c, values, effects, (seed,))
+        run = bench.run(c, values, effects, seeds)
         if run is None:
             continue
         simulated = channel_logs(run.look, c.noise)

@@ -33,12 +33,11 @@ def _unit_field(length: float, seed: int) -> np.ndarray:
 @kernel
 def height(floor, x, y):
     """Height and slopes of the floor at (x, y): (float [m], float, float), bilinear between cells."""
-    n = floor.shape[0]
+    last = floor.shape[0] - 1  # of a power of two: a mask costs less than a remainder
     u, v = x / CELL, y / CELL
     i, j = int(np.floor(u)), int(np.floor(v))
     a, b = u - i, v - j
-    i0, j0 = i % n, j % n
-    i1, j1 = (i0 + 1) % n, (j0 + 1) % n
+    i0, j0, i1, j1 = i & last, j & last, (i + 1) & last, (j + 1) & last
     h00, h10, h01, h11 = floor[i0, j0], floor[i1, j0], floor[i0, j1], floor[i1, j1]
     level = (1 - a) * ((1 - b) * h00 + b * h01) + a * ((1 - b) * h10 + b * h11)
     along_x = ((1 - b) * (h10 - h00) + b * (h11 - h01)) / CELL
