@@ -103,5 +103,5 @@ def inner_slots(e):
     """The slots that tires and floor look at, as a tuple that stands in for ``e`` in an inner loop."""
     return (
         e[0], e[1], e[2], e[3], e[4], e[5], e[6], e[7], e[8], e[9],
-        e[10], e[11], e[12], e[13], e[14], e[15], e[16], e[17], e[18], e[19], e[20],
+        e[10], e[11], e[12], e[13], e[14], e[15], e[16], e[17], e[18], e[19], e[20], e[21],
     )  # fmt: skip

@@ -26,6 +26,7 @@ SLOTS = (
     "free_play.share_x",
     "stribeck.kinetic_share",
     "stribeck.stribeck_velocity_m_s",
+    "stribeck.exponent",
     "load_sensitive_friction.exponent",
     "rolling_resistance.c_rr",
     "ground_joints.depth_m",
@@ -45,10 +46,10 @@ SLOTS = (
 )
 CUBIC, QUADRATIC, FRICTION_FORCE, FRICTION_STIFFNESS, ALPHA, YIELD, LOOP_EXPONENT, LOOP_SHAPE = range(8)
 RELAXATION_STIFFNESS, RELAXATION_TIME, GAP, GAP_ROUNDING, GAP_SHARE_X = range(8, 13)
-KINETIC_SHARE, STRIBECK_SPEED, LOAD_EXPONENT, ROLLING = range(13, 17)
-JOINT_DEPTH, JOINT_PITCH, JOINT_WIDTH, ECCENTRICITY, ROUGHNESS = range(17, 22)
-LIFT, CORIOLIS, MAST_HZ, MAST_MASS, MAST_HEIGHT, MAST_DAMPING = range(22, 28)
-BELT_STIFFNESS, BELT_DAMPING, RIM_MASS = range(28, 31)
+KINETIC_SHARE, STRIBECK_SPEED, STRIBECK_EXPONENT, LOAD_EXPONENT, ROLLING = range(13, 18)
+JOINT_DEPTH, JOINT_PITCH, JOINT_WIDTH, ECCENTRICITY, ROUGHNESS = range(18, 23)
+LIFT, CORIOLIS, MAST_HZ, MAST_MASS, MAST_HEIGHT, MAST_DAMPING = range(23, 29)
+BELT_STIFFNESS, BELT_DAMPING, RIM_MASS = range(29, 32)
 
 Effects = Mapping[str, Mapping[str, float]]
 

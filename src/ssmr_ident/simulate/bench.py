@@ -12,7 +12,7 @@ from ssmr_ident.physics.effects import CATALOGUE, stribeck
 from ssmr_ident.physics.element import STATES, element_advance, element_force
 from ssmr_ident.physics.rig import Block
 from ssmr_ident.physics.robot import GRAVITY, Robot
-from ssmr_ident.physics.slots import KINETIC_SHARE, STRIBECK_SPEED, Effects, checked, effect_vector
+from ssmr_ident.physics.slots import KINETIC_SHARE, STRIBECK_EXPONENT, STRIBECK_SPEED, Effects, checked, effect_vector
 from ssmr_ident.physics.tire import contact_force
 from ssmr_ident.simulate.sensed import sensed
 
@@ -138,7 +138,10 @@ def _drag(stiffness, damping, mass, breakaway, grip, load, cable, e, head, step,
                 ) / (cable * h + stiffness * h + damping)  # fmt: skip
             drag = 0.0
             if falling:
-                grip = load * _friction_law(breakaway / load, e[KINETIC_SHARE], abs(velocity), e[STRIBECK_SPEED])
+                mu = _friction_law(
+                    breakaway / load, e[KINETIC_SHARE], abs(velocity), e[STRIBECK_SPEED], e[STRIBECK_EXPONENT]
+                )
+                grip = load * mu
                 drag = grip
             sliding, velocity, force = contact_force(
                 deflection, sliding, velocity, hub, beside, stiffness, damping, mass, breakaway, grip, drag, h
@@ -177,7 +180,7 @@ def _block(mass, stiffness, damping, breakaway, kinetic, e, head, step, substeps
             if v == 0.0 and tension <= breakaway:
                 continue
             if falling:
-                kinetic = _friction_law(breakaway, e[KINETIC_SHARE], v, e[STRIBECK_SPEED])
+                kinetic = _friction_law(breakaway, e[KINETIC_SHARE], v, e[STRIBECK_SPEED], e[STRIBECK_EXPONENT])
             # implicit in the velocity, so that a stiff damper needs no short step
             driving = mass * v + h * (stiffness * (position - x) + damping * rate - kinetic)
             v = max(0.0, driving / (mass + h * damping))

@@ -35,6 +35,7 @@ from ssmr_ident.physics.slots import (
     MAST_HZ,
     RIM_MASS,
     ROLLING,
+    STRIBECK_EXPONENT,
     STRIBECK_SPEED,
 )
 from ssmr_ident.physics.tire import combined_share, contact_force, grip_shares, sliding_force, weakened
@@ -235,10 +236,10 @@ def run(
                 speed = contact_speed(contact[i, 0], contact[i, 1])
                 mu_s = weakened(mu_s, mu_k, speed, sliding_speed)
                 if falling:
-                    mu_s = _stribeck(mu_s, e[KINETIC_SHARE], speed, e[STRIBECK_SPEED])
+                    mu_s = _stribeck(mu_s, e[KINETIC_SHARE], speed, e[STRIBECK_SPEED], e[STRIBECK_EXPONENT])
             elif falling:  # friction over speed takes the place of the relay's lower limit, and acts while sliding
                 speed = contact_speed(contact[i, 0], contact[i, 1])
-                mu_k, release = _stribeck(mu_s, e[KINETIC_SHARE], speed, e[STRIBECK_SPEED]), 1.0
+                mu_k, release = _stribeck(mu_s, e[KINETIC_SHARE], speed, e[STRIBECK_SPEED], e[STRIBECK_EXPONENT]), 1.0
             beside_x, beside_y = 0.0, 0.0
             if beside:
                 kept = hidden[3 * i, 0], hidden[3 * i, 1], hidden[3 * i, 2]

@@ -13,6 +13,7 @@ from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.identify.decay_record import spread
 from ssmr_ident.identify.noise import AutoregressiveNoise
 from ssmr_ident.identify.robot_map import RobotBuilder
+from ssmr_ident.identify.trials.teeth import find_teeth
 from ssmr_ident.identify.trials.trial import Array, Course, Trial, Values
 from ssmr_ident.physics.rig import Block, block_from_parameters
 from ssmr_ident.physics.robot import Robot
@@ -80,8 +81,12 @@ def pull_trial(measurement: Measurement, parameters: ParameterSet) -> Trial:
     counts = np.ones((count, 1), dtype=bool)
     counts[: -(-STARTING // block)] = False
 
+    teeth = find_teeth(measured, travel, block)
+    rising = slice(None) if teeth is None else slice(teeth.rise)
+
     def averaged(signal: Array) -> Array:
-        return signal[: count * block].reshape(count, block).mean(axis=1)[:, None]
+        averages = signal[: count * block].reshape(count, block).mean(axis=1)[:, None]
+        return averages if teeth is None else teeth.ordered(averages)
 
     def simulated(values: Values, effects: Effects, slack: float, inner: float | None = QUICK) -> Array:
         try:
@@ -99,7 +104,8 @@ def pull_trial(measurement: Measurement, parameters: ParameterSet) -> Trial:
         return averaged(simulated(values, effects, slack(nuisance)))
 
     def begin(values: Values, effects: Effects) -> Array:
-        return np.array([find_slack(measured, travel, simulated(values, effects, 0.0)) / size])
+        tight = simulated(values, effects, 0.0)
+        return np.array([find_slack(measured[rising], travel[rising], tight[rising]) / size])
 
     target = averaged(measured)
     return Trial(
@@ -109,18 +115,19 @@ def pull_trial(measurement: Measurement, parameters: ParameterSet) -> Trial:
         ("force",),
         start + step * (block * np.arange(count) + 0.5 * (block - 1)),
         target,
-        (AutoregressiveNoise(np.ones(1), spread(target[:, 0])),),
-        np.ones((count, 1)),
+        (AutoregressiveNoise(np.ones(1), spread(target[:, 0]) if teeth is None else teeth.noise),),
+        np.ones((count, 1)) if teeth is None else teeth.weight[:, None],
         run,
         begin,
         ("slack_m",),
         np.array([size]),
         Course(start + elapsed, measured[:, None], whole, ("N",), None),
         counts,
-        {"travel_m": size},
+        {"travel_m": size, "teeth": 0.0 if teeth is None else float(teeth.count)},
         BLIND["wheel" if measurement.entry.experiment != "pull" else "pull"],
         COARSE,
         searched=True,
+        quiet=teeth is not None,
     )
 
 
