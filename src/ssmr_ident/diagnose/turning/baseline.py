@@ -95,16 +95,13 @@ def _residual(free: Anchor, conditions: tuple[Condition, ...], z: np.ndarray) ->
 
 
 def _slopes(free: Anchor, conditions: tuple[Condition, ...], z: np.ndarray) -> np.ndarray | None:
-    """(n, p) float: of the residuals over ``z``, from simulations with coarse steps."""
-    coarse = replace(free, step=COARSE)
+    """(n, p) float: of the residuals over ``z``."""
     ahead = [z + _DIFFERENCE * (np.arange(len(z)) == i) for i in range(len(z))]
-    free.bench.prefetch(
-        ((c, free.at(at), {}, seed) for at in [z, *ahead] for c in conditions for seed in free.seeds), COARSE
-    )
-    base = _residual(coarse, conditions, z)
+    free.bench.prefetch((c, free.at(at), {}, seed) for at in [z, *ahead] for c in conditions for seed in free.seeds)
+    base = _residual(free, conditions, z)
     if base is None:
         return None
-    columns = [_residual(coarse, conditions, at) for at in ahead]
+    columns = [_residual(free, conditions, at) for at in ahead]
     return np.column_stack([np.zeros_like(base) if c is None else (c - base) / _DIFFERENCE for c in columns])
 
 

@@ -13,7 +13,7 @@ from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.turning.anchor import SEEDS, Anchor, scale_of
 from ssmr_ident.diagnose.turning.baseline import ROUNDS, anchored
-from ssmr_ident.diagnose.turning.bench import Bench
+from ssmr_ident.diagnose.turning.bench import STEP, Bench
 from ssmr_ident.diagnose.turning.candidates import Candidate, candidates, pitches_heard
 from ssmr_ident.diagnose.turning.conditions import Condition, conditions_of, held_back
 from ssmr_ident.diagnose.turning.grip import PATH, TRIED, GripProfile, grip_profile
@@ -27,7 +27,7 @@ baseline."""
 FIRST_STEPS = 3
 HALVINGS = ((4, 4), (2, 10))  # how many of the best get how many more steps, as long as they gain
 FINAL_SEEDS = (1, 2, 3, 4)
-LAST_STEPS = 3  # of fitting the winner, with all of the final seeds
+LAST_STEPS = 5  # of fitting the winner, with all of the final seeds and fine slopes
 LEFT = 20.0
 """What the model's own error may add to the baseline's log likelihood where nothing is missing (docs/theory)."""
 REFINE_FAR = 100.0
@@ -152,23 +152,23 @@ def examine(
     alone = 0 if calibration else FIRST_STEPS + sum(more for _, more in HALVINGS)  # steps of the baseline by itself
     steps = FIRST_STEPS * len(pool) + sum(most * more for most, more in HALVINGS) + 2 + alone + 2 * LAST_STEPS
     count = _Counter(show, "baseline set free beside them", steps)
-    best = [freed(one, targets, FIRST_STEPS, count.advance) for one in pool]
+    best = [replace(freed(one, targets, FIRST_STEPS, count.advance), slopes=None) for one in pool]
     for most, more in HALVINGS:
         best.sort(key=lambda one: one.evidence, reverse=True)
         best = _one_each(best) if most == 2 else best
         reach = best[0].evidence - REFINE_FAR if best else 0.0
         for i, one in enumerate(best[:most]):
             if one.evidence > reach:
-                best[i] = freed(one, targets, more, count.advance)
+                best[i] = freed(one, targets, more, count.advance, STEP)
     best = _one_each(best)
     for i in _ahead(best[:2], baseline):
         best[i] = polished(best[i], starts.get(best[i].id, best[i]), targets, count.advance)
     if not calibration:  # the explanations had their baseline fitted further on the targets; so must it be
-        baseline = freed(baseline, targets, alone, count.advance)
+        baseline = freed(baseline, targets, alone, count.advance, STEP)
     finals = [_final(one, targets, seed) for one in [baseline, *_one_each(best)]]
     finals[1:] = sorted(finals[1:], key=lambda one: one.evidence, reverse=True)
     for i in _ahead(finals[1:3], finals[0]):
-        finals[i + 1] = freed(finals[i + 1], targets, LAST_STEPS, count.advance)
+        finals[i + 1] = freed(replace(finals[i + 1], slopes=None), targets, LAST_STEPS, count.advance, STEP)
     count.finish()
     rest = [one for one in _one_each([pair[0] for pair in pairs]) if one.id not in {other.id for other in finals}]
     ranked = sorted(finals[1:], key=lambda one: one.evidence, reverse=True)

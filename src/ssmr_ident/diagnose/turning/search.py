@@ -9,12 +9,13 @@ import numpy as np
 from scipy.optimize import minimize
 
 from ssmr_ident.diagnose.turning.anchor import Anchor
-from ssmr_ident.diagnose.turning.bench import COARSE
+from ssmr_ident.diagnose.turning.bench import COARSE, STEP
 from ssmr_ident.diagnose.turning.candidates import Candidate, Values
 from ssmr_ident.diagnose.turning.conditions import Condition
 from ssmr_ident.diagnose.turning.likelihood import NEPER_DB, Score
 
 REFINEMENTS = 10  # evaluations per free parameter
+POLISH_STEPS = 3
 GAINING = 3.0  # of evidence, below which slopes are worn out
 REACH = 100.0  # of evidence that another start may gain by being fitted
 PITCH = "pitch_m"
@@ -165,7 +166,7 @@ def polished(
     for values in others:
         again = explained(best.anchor, candidate, values, targets)
         if again is not None and again.evidence > best.evidence - REACH:
-            found = freed(replace(again, slopes=best.slopes), targets, 3, lambda: None)
+            found = freed(replace(again, slopes=best.slopes), targets, POLISH_STEPS, lambda: None, STEP)
             if found.evidence > best.evidence:
                 best = found
     advance()
@@ -186,17 +187,19 @@ def _other_pitches(best: Explained, targets: tuple[Condition, ...]) -> list[Valu
     return [others[i] for _, i in sorted(scored, reverse=True)[:2]]
 
 
-def freed(start: Explained, targets: tuple[Condition, ...], steps: int, advance: Callable[[], None]) -> Explained:
+def freed(
+    start: Explained, targets: tuple[Condition, ...], steps: int, advance: Callable[[], None], step: float = COARSE
+) -> Explained:
     """Baseline and effect together by Gauss-Newton on calibration and target recordings.
 
     Slopes over the baseline's parameters cost most: they serve for as long as a step with them gains something. Those
-    over the effect's own are simulated for every step.
+    over the effect's own are simulated for every step. ``step`` [s] is that of the simulations that slopes come from.
     """
     now = start
     for done in range(steps):
-        after = _together(now, targets)
+        after = _together(now, targets, step)
         if after is None and now.slopes is not None:
-            after = _together(replace(now, slopes=None), targets)
+            after = _together(replace(now, slopes=None), targets, step)
         advance()
         if after is None:
             for _ in range(done + 1, steps):
@@ -207,7 +210,7 @@ def freed(start: Explained, targets: tuple[Condition, ...], steps: int, advance:
     return now
 
 
-def _together(now: Explained, targets: tuple[Condition, ...]) -> Explained | None:
+def _together(now: Explained, targets: tuple[Condition, ...], step: float) -> Explained | None:
     anchor, candidate = now.anchor, now.candidate
     own = np.zeros(0) if candidate is None else candidate.position(now.values)
     steps = np.array([] if candidate is None else [0.1 if f.log else 0.01 * f.span for f in candidate.free])
@@ -224,9 +227,9 @@ def _together(now: Explained, targets: tuple[Condition, ...]) -> Explained | Non
         pairs = [(c, {}) for c in anchor.calibration] + [(c, effects) for c in targets]
         return [(c, values, active, seed) for c, active in pairs for seed in anchor.seeds]
 
-    def residual(at: np.ndarray, step: float) -> np.ndarray | None:
+    def residual(at: np.ndarray, dt: float) -> np.ndarray | None:
         values, effects = split(at)
-        direct = replace(anchor, calibration=(), step=step)
+        direct = replace(anchor, calibration=(), step=dt)
         parts = [direct.blocks(anchor.calibration, {}, 0.0, values), direct.blocks(targets, effects, 0.0, values)]
         if any(part is None for part in parts):
             return None
@@ -234,11 +237,11 @@ def _together(now: Explained, targets: tuple[Condition, ...]) -> Explained | Non
 
     first = 0 if now.slopes is None else size
     ahead = [z + difference * (np.arange(len(z)) == i) for i in range(first, len(z))]
-    anchor.bench.prefetch([job for at in [z, *ahead] for job in jobs(at)], COARSE)
-    base, rough = residual(z, anchor.step), residual(z, COARSE)
+    anchor.bench.prefetch([job for at in [z, *ahead] for job in jobs(at)], step)
+    base, rough = residual(z, anchor.step), residual(z, step)
     if base is None or rough is None:
         return None
-    columns = [residual(at, COARSE) for at in ahead]
+    columns = [residual(at, step) for at in ahead]
     fresh = [np.zeros_like(base) if c is None else (c - rough) / d
              for c, d in zip(columns, difference[first:], strict=True)]  # fmt: skip
     jacobian = np.column_stack([*(() if now.slopes is None else now.slopes.T), *fresh])
