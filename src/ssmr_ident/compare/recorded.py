@@ -2,29 +2,41 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from ssmr_ident.compare.outcome import Prediction
 from ssmr_ident.identify.coordinates import Model
-from ssmr_ident.identify.horizons import horizons, led
+from ssmr_ident.identify.horizons import STEPS, horizons, led
 from ssmr_ident.identify.joint import JointFit, evaluate
 from ssmr_ident.identify.trials.trial import Array, Trial, Values
 from ssmr_ident.physics.slots import Effects
 from ssmr_ident.signals.filters import low_pass
 
+LOUD = 2.0
+"""Variance over the noise's from which another start may be worth its time."""
+
+SHARES = (1.0, 0.6, 0.35)
+"""Of the start that small motions suggest: where tires harden, the same acceleration takes a smaller deflection."""
+
 LAST = 10
 """Gauss-Newton steps on the whole recording."""
 
 
-def follow(trials: Sequence[Trial], model: Model, point: Array, near: Sequence[Array] | None = None) -> JointFit:
+def follow(
+    trials: Sequence[Trial],
+    model: Model,
+    point: Array,
+    near: Sequence[Array] | None = None,
+    kin: JointFit | None = None,
+) -> JointFit:
     """A model held where it is, with the nuisances of each recording at their best.
 
-    Small motions give the start of a decay. Where effects bend the motion away from them, two more roads are tried:
-    through growing horizons, and from a start that is near, or else from the one that fits without the effects.
-    Each recording takes its own best.
+    Small motions give the start of a decay, or nuisances that are near. Where effects bend the motion and more than
+    noise is left, further roads are tried: from the start that fits without the effects or from small motions, from
+    recordings of the same kind, in proportion, and through growing horizons. Each recording takes its own best.
 
     Parameters
     ----------
@@ -33,22 +45,84 @@ def follow(trials: Sequence[Trial], model: Model, point: Array, near: Sequence[A
     point : (p,) float
     near : sequence of (k,) float, optional
         Nuisances of a similar model.
+    kin : JointFit, optional
+        Other recordings, as the model explains them; by default these.
     """
     values, effects = model.split(point)
-    starts = [[t.begin(values, effects) for t in trials]]
-    lengths = horizons(trials, radian(trials))
-    bent = bool(effects) and any(trial.quiet for trial in trials)
-    if near is not None:
-        starts.append(list(near))
-    elif bent:
-        plain = replace(model, held={}, free=())
-        starts.append(list(_at_rest(trials, plain, point[: len(model.physics)], starts[0]).nuisances))
-    fits = [_at_rest(trials, model, point, start) for start in starts]
-    if bent and len(lengths) > 1:
-        fits.append(led(trials, model, point, lengths, LAST, shared=False))
-    sums = np.array([[float(r @ r) for r in f.residuals] for f in fits])
-    chosen = np.argmin(np.where(np.isfinite(sums), sums, np.inf), axis=0)
-    return evaluate(trials, model, point, [fits[f].nuisances[k] for k, f in enumerate(chosen)])
+    own = [t.begin(values, effects) for t in trials]
+    found = _at_rest(trials, model, point, own if near is None else near)
+    if not effects:
+        return found
+
+    def bare(left: Sequence[int]) -> JointFit:
+        few, starts = [trials[k] for k in left], [own[k] for k in left]
+        if near is None:
+            plain = replace(model, held={}, free=())
+            starts = list(_at_rest(few, plain, point[: len(model.physics)], starts).nuisances)
+        return _at_rest(few, model, point, starts)
+
+    def grown(left: Sequence[int]) -> JointFit:
+        few = [trials[k] for k in left]
+        lengths = horizons(few, radian(few))
+        if len(lengths) < 2:
+            return _at_rest(few, model, point, [own[k] for k in left])
+        short = [t.until(lengths[0]) for t in few]
+        small = [t.begin(values, effects) for t in short]
+        fits = [
+            led(short, model, point, [np.inf], STEPS, [share * start for start in small], shared=False)
+            for share in SHARES
+        ]
+        parts = np.array([np.where(np.isfinite(f.parts), f.parts, np.inf) for f in fits])
+        begun = [fits[f].nuisances[k] for k, f in enumerate(np.argmin(parts, axis=0))]
+        return led(few, model, point, lengths[1:], LAST, begun, shared=False)
+
+    def alike(sign: float) -> Callable[[Sequence[int]], JointFit]:
+        def road(left: Sequence[int]) -> JointFit:
+            like = [_in_proportion(trials[k], own[k], found if kin is None else kin, sign) for k in left]
+            return _at_rest([trials[k] for k in left], model, point, like)
+
+        return road
+
+    for road in (bare, alike(1.0), alike(-1.0), grown):
+        found = _better(found, road, kin)
+    return found
+
+
+def _better(found: JointFit, road: Callable[[Sequence[int]], JointFit], kin: JointFit | None) -> JointFit:
+    """Decays that are left with more than noise by another road, where that one is better.
+
+    Where the model leaves the like of it too, it is no start that is wanting.
+    """
+    left = [k for k, trial in enumerate(found.trials) if trial.quiet and not found.parts[k] < LOUD * trial.size]
+    if kin is not None:
+        left = [k for k in left if min(_kin(found.trials[k], kin), default=(0.0, 0))[0] < LOUD]
+    if not left:
+        return found
+    other = road(left)
+    nuisances = list(found.nuisances)
+    for index, k in enumerate(left):
+        if np.isfinite(other.parts[index]) and not other.parts[index] > found.parts[k]:
+            nuisances[k] = other.nuisances[index]
+    return evaluate(found.trials, found.model, found.point, nuisances)
+
+
+def _in_proportion(trial: Trial, start: Array, kin: JointFit, sign: float) -> Array:
+    """Start of a recording as that of the best explained one of its kind, as much larger as it is itself."""
+    others = _kin(trial, kin)
+    if not others:
+        return start
+    best = min(others)[1]
+    sizes = [float(np.std(t.target - t.target.mean(axis=0))) for t in (trial, kin.trials[best])]
+    return sign * sizes[0] / sizes[1] * kin.nuisances[best]
+
+
+def _kin(trial: Trial, kin: JointFit) -> list[tuple[float, int]]:
+    """Variance over the noise's and index of the other recordings of a kind."""
+    return [
+        (float(kin.parts[k]) / other.size, k)
+        for k, other in enumerate(kin.trials)
+        if other.kind == trial.kind and other.channels == trial.channels and other.name != trial.name
+    ]
 
 
 def _at_rest(trials: Sequence[Trial], model: Model, point: Array, start: Sequence[Array]) -> JointFit:

@@ -24,15 +24,13 @@ from ssmr_ident.simulate.simulation import simulate
 
 AXES = ("ax", "ay", "az")
 _SETTLING = 2.0  # s run before the record, so that motor and tires are in their steady course
-SLIDING_SPEED = 0.3  # m/s, over which rubber loses the difference of mu_static and mu_kinetic
 FLOOR_HEIGHT, FLOOR_LENGTH = 3e-5, 6e-3  # m: a smooth floor, whose grain keeps runs from repeating
 _NOISE_SEED = 1
 
 
 def turning_robot(parameters: ParameterSet) -> Robot:
     """The robot with contacts that slide along both axes together."""
-    robot = robot_from_parameters(parameters)
-    return robot if robot.sliding_speed > 0.0 else robot.with_changes(sliding_speed=SLIDING_SPEED)
+    return robot_from_parameters(parameters).sliding_together()
 
 
 def with_floor(effects: Effects, parameters: ParameterSet, seed: float = 1.0) -> dict[str, dict[str, float]]:

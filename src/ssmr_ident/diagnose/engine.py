@@ -10,13 +10,16 @@ from scipy.stats import chi2
 
 from ssmr_ident.compare.recorded import follow
 from ssmr_ident.core.parameter import ParameterSet
+from ssmr_ident.diagnose.coupling import coupled
 from ssmr_ident.diagnose.explain import without
-from ssmr_ident.diagnose.explore import LAST, LOUD, Progress, Search, best_baseline, prepared, search
-from ssmr_ident.diagnose.setup import COUPLING, Setup
+from ssmr_ident.diagnose.explore import LAST, LOUD, Progress, Search, best_baseline, mended, prepared, search
+from ssmr_ident.diagnose.scan import combinations
+from ssmr_ident.diagnose.setup import Setup
 from ssmr_ident.diagnose.weigh import CERTAIN, TIE, Explanation, evidences
 from ssmr_ident.identify.horizons import led
 from ssmr_ident.identify.joint import JointFit, descend, differentiate
 from ssmr_ident.identify.trials import Trial
+from ssmr_ident.physics.effects import CATALOGUE
 
 MOST_EFFECTS = 2
 """Effects that are looked for together."""
@@ -35,6 +38,9 @@ in the recording that shows it best."""
 
 ALIKE = 2.0
 """Unexplained variance over that of the best explanation, up to which another counts as near as it."""
+
+FAR = 3.0
+"""Prior standard deviations by which a parameter may have moved beside an effect before the fit is begun again."""
 
 CHANCE = 0.0027
 """Probability, that of three standard deviations, with which an amplitude may be as far from off by chance."""
@@ -77,7 +83,7 @@ def examine(setup: Setup, parameters: ParameterSet, progress: Progress | None = 
         progress("fitting the baseline", 0, 1)
     setup = informed(setup, parameters)
     fit, lengths = best_baseline(setup.fitted, setup, parameters)
-    kept = prepared(follow(setup.kept, fit.model, fit.point))
+    kept = tuple(prepared(follow(setup.kept, fit.model, fit.point)))
     if progress:
         progress("fitting the baseline", 1, 1)
     baseline = explained(kept, fit)
@@ -87,15 +93,20 @@ def examine(setup: Setup, parameters: ParameterSet, progress: Progress | None = 
         if chosen is not baseline and _left(chosen, baseline) < FORMULA:
             break
         if setup.decoupled and chosen is baseline:
-            result = Search(fit, (), (coupled(setup, parameters),), lengths)
+            new = [coupled(setup, parameters, kept)]
+            result = Search(fit, (), tuple(e.fit for e in new), lengths)
         else:
             result = search(chosen.fit, setup.campaign.session.baseline, lengths, chosen is not baseline, progress)
+            new = [explained(kept, f, chosen.kept) for f in result.tried]
         searches.append(result)
-        new = [explained(kept, f, chosen.kept) for f in result.tried]
         if not new:
             break
-        leader = min(new, key=lambda e: _cost(e, chosen))
-        polished = explained(kept, polish(leader.fit, lengths), leader.kept)
+        found = evidences([chosen, *new])
+        leader = max(new, key=lambda e: found[e.id])
+        if chosen is not baseline and _cost(leader, chosen) > _cost(chosen, chosen):
+            tried += new
+            break
+        polished = explained(kept, turned(polish(leader.fit, lengths), lengths), leader.kept)
         if polished.fit.cost(polished.fit.counted) < leader.fit.cost(polished.fit.counted):
             new[new.index(leader)], leader = polished, polished
         tried += new
@@ -120,16 +131,7 @@ def explained(kept: Sequence[Trial], fit: JointFit, near: JointFit | None = None
 
     ``near`` is another model's prediction of them, whose nuisances are a start as well.
     """
-    return Explanation(fit, follow(kept, fit.model, fit.point, None if near is None else near.nuisances))
-
-
-def coupled(setup: Setup, parameters: ParameterSet) -> JointFit:
-    """All six degrees of freedom in place of pure rotations, fitted from what is known beforehand.
-
-    Not from where the pure rotations ended: the inertia that they ask for is what gives them away.
-    """
-    model = replace(setup.model, held={**setup.model.held, COUPLING: {"active": 1.0}})
-    return best_baseline(setup.fitted, replace(setup, model=model), parameters)[0]
+    return Explanation(fit, follow(kept, fit.model, fit.point, None if near is None else near.nuisances, fit))
 
 
 def informed(setup: Setup, parameters: ParameterSet) -> Setup:
@@ -145,13 +147,42 @@ def informed(setup: Setup, parameters: ParameterSet) -> Setup:
     return replace(setup, model=replace(setup.model, physics=physics))
 
 
+def turned(fit: JointFit, lengths: tuple[float, ...]) -> JointFit:
+    """The better of a fit and its like with other values of what is tried of its last effect and not fitted."""
+    effect_id = fit.model.ids[-1]
+    own = fit.model.held[effect_id]
+    best = fit
+    for tried in combinations(CATALOGUE[effect_id].holds):
+        if tried == {name: own[name] for name in tried} or not loud(fit):
+            continue
+        model = replace(fit.model, held={**fit.model.held, effect_id: {**own, **tried}})
+        other = led(fit.trials, model, fit.point, lengths[1:] or lengths, LAST, fit.nuisances)
+        best = min((best, other), key=lambda f: f.cost(best.counted))
+    return best
+
+
+def loud(fit: JointFit) -> bool:
+    """Whether the median recording is left with more than noise."""
+    return float(np.median(fit.parts / [t.size for t in fit.trials])) > LOUD
+
+
 def polish(fit: JointFit, lengths: tuple[float, ...]) -> JointFit:
-    """An explanation led through all horizons once more, from where it stands; the better of the two."""
-    further = descend(fit, LAST)
-    if len(lengths) == 1 or float(np.median(further.parts / [t.size for t in further.trials])) < LOUD:
+    """An explanation led to its best: on from where it stands, and where that is far from what is known or leaves more
+    than noise, once more from what is known."""
+    further = mended(descend(fit, LAST))
+    physics = len(further.model.physics)
+    if len(lengths) == 1 or not (loud(further) or float(np.max(np.abs(further.point[:physics]), initial=0.0)) > FAR):
         return further
-    again = led(fit.trials, fit.model, fit.point, lengths, LAST)
-    return min((again, further), key=lambda f: f.cost(further.counted))
+    return min((anew(further, lengths), further), key=lambda f: f.cost(further.counted))
+
+
+def anew(fit: JointFit, lengths: tuple[float, ...]) -> JointFit:
+    """The effects as they are, everything else begun from what is known of it."""
+    point = fit.point.copy()
+    point[: len(fit.model.physics)] = 0.0
+    short = [t.until(lengths[0]) for t in fit.trials]
+    begun = follow(short, fit.model, point, kin=fit)
+    return mended(led(fit.trials, fit.model, point, lengths, LAST, begun.nuisances))
 
 
 def _cost(explanation: Explanation, reference: Explanation) -> float:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ssmr_ident.compare.recorded import radian
+from ssmr_ident.compare.recorded import follow, radian
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.explain import begin_with
 from ssmr_ident.diagnose.scan import Suspect, candidates, scan
@@ -33,7 +33,7 @@ still overtake another: a factor of 4.5."""
 WIDE = 4.0
 """The same for the median recording when an effect has been found already."""
 
-HEATS = ((0, 3), (12, 4), (6, 6))
+HEATS = ((0, 1), (12, 3), (6, 4))
 """Rounds in which probes are tried: how many go in, and Gauss-Newton steps in each. All probes go into the first, on
 the first horizon; the others are run on the second."""
 
@@ -131,16 +131,25 @@ def search(
         rough = _raced(base, groups, progress)
     else:
         chosen = [g for g in groups if g[0].gain > PROMISING + len(g[0].at)][: REFITTED if beside else SCREENED]
-        rough = _ranked([_best([_started(base, suspect) for suspect in _variants(group)]) for group in chosen])
-    tried = []
-    rough = _close(rough)
-    for index, fit in enumerate(rough[:REFITTED]):
+        rough = _ranked([_started(base, suspect) for group in chosen for suspect in _variants(group)])
+    tried: list[JointFit] = []
+    rough = _finalists(_close(rough))
+    for index, fit in enumerate(rough):
         if progress:
-            progress("refitting explanations", index, min(len(rough), REFITTED))
-        tried.append(led(base.trials, fit.model, fit.point, rest, LAST, _all_nuisances(base, fit, lengths)))
+            progress("refitting explanations", index, len(rough))
+        tried.append(mended(led(base.trials, fit.model, fit.point, rest, LAST, _all_nuisances(base, fit, lengths))))
     if progress:
         progress("refitting explanations", 1, 1)
-    return Search(base, tuple(tuple(g) for g in groups), tuple(tried), tuple(lengths))
+    return Search(base, tuple(tuple(g) for g in groups), tuple(_each_once(tried)), tuple(lengths))
+
+
+def mended(fit: JointFit) -> JointFit:
+    """A fit that explains most of its recordings, the others begun elsewhere: one release in a valley of its own spoils
+    the physics that all share."""
+    left = fit.parts / [t.size for t in fit.trials]
+    if not float(np.median(left)) < LOUD < float(np.max(left)):
+        return fit
+    return descend(follow(fit.trials, fit.model, fit.point, fit.nuisances), LAST)
 
 
 def _close(ranked: Sequence[JointFit]) -> list[JointFit]:
@@ -150,6 +159,27 @@ def _close(ranked: Sequence[JointFit]) -> list[JointFit]:
     counted = ranked[0].counted
     far = CLOSE * float(counted.sum())
     return [f for f in ranked if f.cost(counted) < ranked[0].cost(counted) + far]
+
+
+def _finalists(ranked: Sequence[JointFit]) -> list[JointFit]:
+    """The first few effects, and of the very first also what is tried and not fitted of it."""
+    if not ranked:
+        return []
+    effects = list(dict.fromkeys(fit.model.ids for fit in ranked))[:REFITTED]
+    best: dict[tuple[object, ...], JointFit] = {}
+    for fit in ranked:
+        if fit.model.ids in effects:
+            own = fit.model.held[fit.model.ids[-1]] if fit.model.ids == effects[0] else {}
+            best.setdefault((fit.model.ids, *own.values()), fit)
+    return list(best.values())
+
+
+def _each_once(fits: Sequence[JointFit]) -> list[JointFit]:
+    """Of every effect the fit that leaves least."""
+    best: dict[tuple[str, ...], JointFit] = {}
+    for fit in _ranked(fits):
+        best.setdefault(fit.model.ids, fit)
+    return list(best.values())
 
 
 def _raced(base: JointFit, groups: Sequence[Sequence[Suspect]], progress: Progress | None) -> list[JointFit]:
@@ -163,10 +193,7 @@ def _raced(base: JointFit, groups: Sequence[Sequence[Suspect]], progress: Progre
             field.append(descend(evaluate(base.trials, model, point, base.nuisances), 2))
     if progress:
         progress("trying effects", 1, 1)
-    best: dict[tuple[str, ...], JointFit] = {}
-    for fit in _ranked([descend(f, 2) for f in _ranked(field)[: HEATS[2][0]]]):
-        best.setdefault(fit.model.ids, fit)
-    return list(best.values())
+    return _ranked([descend(f, 2) for f in _ranked(field)[: HEATS[2][0]]])
 
 
 def _screened(
@@ -190,16 +217,16 @@ def _screened(
     field = begun
     second = lengths[1:2] if len(lengths) > 2 else lengths[:1]
     for heat, (kept, steps) in enumerate(HEATS[1:]):
-        field = _ranked(field)[:kept]
+        ranked = _ranked(field)
+        # after a step or two the first dozen may all be of two effects
+        once = [] if heat else _each_once(ranked)
+        field = [*once, *(f for f in ranked[:kept] if f not in once)]
         field = [led(few.trials, f.model, f.point, second, steps, f.nuisances) for f in field]
         if progress:
             progress("trying effects", len(groups) + heat, len(groups) + 3)
-    best: dict[tuple[str, ...], JointFit] = {}
-    for fit in _ranked(field):
-        best.setdefault(fit.model.ids, fit)
     if progress:
         progress("trying effects", 1, 1)
-    return list(best.values())
+    return _ranked(field)
 
 
 def _ranked(fits: Sequence[JointFit]) -> list[JointFit]:
@@ -227,7 +254,8 @@ def _all_nuisances(base: JointFit, fit: JointFit, lengths: Sequence[float]) -> l
     known = {trial.name: own for trial, own in zip(fit.trials, fit.nuisances, strict=True)}
     left = [trial for trial in base.trials if trial.name not in known]
     if left:
-        short = led(left, fit.model, fit.point, lengths[:2], STEPS, shared=False)
+        second = lengths[min(1, len(lengths) - 1)]
+        short = follow([trial.until(second) for trial in left], fit.model, fit.point, kin=fit)
         known |= {trial.name: own for trial, own in zip(left, short.nuisances, strict=True)}
     return [known[trial.name] for trial in base.trials]
 
@@ -235,10 +263,6 @@ def _all_nuisances(base: JointFit, fit: JointFit, lengths: Sequence[float]) -> l
 def _started(base: JointFit, suspect: Suspect) -> JointFit:
     model, point = begin_with(base, suspect)
     return descend(evaluate(base.trials, model, point, base.nuisances), 2)
-
-
-def _best(fits: Sequence[JointFit]) -> JointFit:
-    return min(fits, key=lambda f: f.rss if np.isfinite(f.rss) else np.inf)
 
 
 def _variants(group: Sequence[Suspect]) -> list[Suspect]:

@@ -88,7 +88,7 @@ def scan(fit: JointFit, effects: Sequence[Effect]) -> list[list[Suspect]]:
     found = []
     for effect in effects:
         suspects = []
-        for probe, held in itertools.product(effect.probes, _combinations(effect.holds)):
+        for probe, held in itertools.product(effect.probes, combinations(effect.holds)):
             at = {name: p.value(sizes) if isinstance(p, Sized) else float(p) for name, p in probe.items()}
             at = {p.name: float(np.clip(at[p.name], p.lower, p.upper)) for p in effect.parameters if p.name in at}
             if all(np.isfinite(list(at.values()))):
@@ -100,7 +100,8 @@ def scan(fit: JointFit, effects: Sequence[Effect]) -> list[list[Suspect]]:
     return sorted(found, key=lambda group: -group[0].gain)
 
 
-def _combinations(holds: Mapping[str, Sequence[float]]) -> list[dict[str, float]]:
+def combinations(holds: Mapping[str, Sequence[float]]) -> list[dict[str, float]]:
+    """All values that are tried and not fitted, together."""
     return [dict(zip(holds, values, strict=True)) for values in itertools.product(*holds.values())]
 
 

@@ -35,6 +35,8 @@ class AutoregressiveNoise:
 
         The first p samples, which the filter's start-up would spoil, are left out.
         """
+        if not self.order:
+            return samples / self.std
         return lfilter(self.filter, [1.0], samples, axis=0)[self.order :] / self.std
 
     def gain(self, poles: Array, step: float) -> Array:

@@ -53,7 +53,7 @@ class Unknown:
     def value(self, scaled: float) -> float:
         """From the scaled coordinate (0 at the prior, 1 at one standard deviation)."""
         if self.logarithmic:
-            return self.prior * math.exp(np.clip(scaled * self.spread, -12, 12))
+            return self.prior * math.exp(min(max(scaled * self.spread, -12.0), 12.0))
         return self.prior + scaled * self.spread
 
     @property

@@ -11,6 +11,9 @@ from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.physics.sensor import Accelerometer
 
 GRAVITY = 9.8  # m/s^2, the thesis' value
+SLIDING_SPEED = 0.3
+"""Speed [m/s] over which rubber loses the difference of mu_static and mu_kinetic, where a file does not say."""
+
 _AXES = ("x", "y", "z")
 
 
@@ -70,6 +73,10 @@ class Robot:
     def half_track(self) -> float:
         """c: half the distance between left and right contacts [m]."""
         return float(np.abs(self.contact_points[:, 1]).mean())
+
+    def sliding_together(self) -> Robot:
+        """A robot whose contacts slide along both axes together (Coulomb's cone), in place of the thesis' relay."""
+        return self if self.sliding_speed > 0.0 else replace(self, sliding_speed=SLIDING_SPEED)
 
     def with_changes(self, **changes: object) -> Robot:
         """A copy with some fields replaced."""

@@ -6,6 +6,7 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
+from ssmr_ident.core.kernel import kernel
 from ssmr_ident.physics.robot import GRAVITY, Robot
 
 
@@ -25,7 +26,7 @@ def rest_pose(robot: Robot, cubic: float = 0.0) -> np.ndarray:
     """
     known = _FOUND.setdefault(robot, {})
     if cubic not in known:
-        known[cubic] = _newton(robot, cubic)
+        known[cubic] = _newton(robot.contact_points, robot.mass, float(robot.stiffness[2]), cubic)
     return known[cubic].copy()
 
 
@@ -33,21 +34,26 @@ _FOUND: WeakKeyDictionary[Robot, dict[float, np.ndarray]] = WeakKeyDictionary()
 """Rest poses of robots that are still in use: one robot is let go from many starts."""
 
 
-def _newton(robot: Robot, cubic: float) -> np.ndarray:
-    sink = robot.mass * GRAVITY / (4.0 * robot.stiffness[2])
-    pose = np.array([robot.height - sink, 0.0, 0.0])
+@kernel
+def _newton(points, mass, stiffness, cubic):
+    sink = mass * GRAVITY / (4.0 * stiffness)
+    height, roll, pitch = -points[:, 2].mean() - sink, 0.0, 0.0
     for _ in range(30):
-        arms, depth = _arms_and_depth(robot, pose)
-        load = robot.stiffness[2] * depth + cubic * depth**3
-        slope = robot.stiffness[2] + 3.0 * cubic * depth**2
-        levers = np.stack([np.ones(4), arms[:, 1], -arms[:, 0]])
-        residual = levers @ load - np.array([robot.mass * GRAVITY, 0.0, 0.0])
-        jacobian = -(levers * slope) @ levers.T
+        cr, sr, cp, sp = np.cos(roll), np.sin(roll), np.cos(pitch), np.sin(pitch)
+        residual = np.array([-mass * GRAVITY, 0.0, 0.0])
+        jacobian = np.zeros((3, 3))
+        for x, y, z in points:
+            lateral = cr * y - sr * z
+            raised = sr * y + cr * z
+            levers = np.array([1.0, lateral, -(cp * x + sp * raised)])
+            depth = -(height - sp * x + cp * raised)
+            residual += levers * (stiffness * depth + cubic * depth**3)
+            jacobian -= np.outer(levers, levers) * (stiffness + 3.0 * cubic * depth**2)
         change = np.linalg.solve(jacobian, residual)
-        pose = pose - change
+        height, roll, pitch = height - change[0], roll - change[1], pitch - change[2]
         if np.abs(change).max() < 1e-13:  # Newton: what is left now is the square of that
             break
-    return pose
+    return np.array([height, roll, pitch])
 
 
 def rest_loads(robot: Robot) -> np.ndarray:

@@ -29,7 +29,9 @@ class Scenario:
     duration : float [s]
     offset : mapping
         Start away from rest: ``x``, ``y``, ``z`` [m], ``roll``, ``pitch``, ``yaw`` [rad]; with a flexible mast also
-        ``sway_x``, ``sway_y`` [m].
+        ``sway_x``, ``sway_y`` [m]. ``brace_x`` is how far the front tires are strained forward and the rear ones
+        backward against each other, ``brace_y`` the same for left and right [m]: what a light wheel that slid while
+        the robot was pushed leaves behind.
     velocity : mapping
         Start velocities: ``x``, ``y``, ``z`` [m/s], ``roll``, ``pitch``, ``yaw`` [rad/s], ``sway_x``, ``sway_y`` [m/s].
     wheel_rates : (k, 2) float [rad/s]

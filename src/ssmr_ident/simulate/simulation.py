@@ -214,5 +214,6 @@ def _start(robot: Robot, scenario: Scenario, cubic: float) -> np.ndarray:
     heading = np.array([[math.cos(pose[5]), -math.sin(pose[5])], [math.sin(pose[5]), math.cos(pose[5])]])
     now = (robot.contact_points @ tilt(pose[3], pose[4]).T)[:, :2] @ heading.T + pose[:2]
     deflection = (now - set_down[:, :2]) @ heading
+    deflection += np.sign(robot.contact_points[:, :2]) * (offset.get("brace_x", 0.0), offset.get("brace_y", 0.0))
     sway = [part.get(name, 0.0) for part in (offset, velocity) for name in ("sway_x", "sway_y")]
     return np.concatenate([pose, rates, np.zeros(2), deflection.ravel(), sway])

@@ -7,11 +7,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ssmr_ident.compare.turning import FLOOR_HEIGHT, SLIDING_SPEED
+from ssmr_ident.compare.turning import FLOOR_HEIGHT
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.turning.bench import STEP, Bench, Run
 from ssmr_ident.diagnose.turning.conditions import Condition
 from ssmr_ident.diagnose.turning.likelihood import Block, Score, log_variance, score
+from ssmr_ident.physics.robot import SLIDING_SPEED
 from ssmr_ident.physics.slots import Effects
 
 SEEDS = (1, 2)

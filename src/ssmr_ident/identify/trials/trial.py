@@ -93,6 +93,9 @@ class Trial:
         Factor on the steps of differences: where contacts slide and stick anew, small ones see only that.
     idle : mapping of str to str
         Nuisances that do nothing unless an effect is active: name to the effect's id.
+    even : tuple of str
+        Nuisances that a recording may depend on by their square alone: a difference to one side would take its
+        rounding for a slope, and a step along it be as wide as the prior allows.
     searched : bool
         ``begin`` finds the nuisances by a search that does not get caught where a descent does.
     shorten : callable or None
@@ -121,6 +124,7 @@ class Trial:
     blind: tuple[str, ...] = ()
     coarse: float = 1.0
     idle: Mapping[str, str] = field(default_factory=dict)
+    even: tuple[str, ...] = ()
     searched: bool = False
     shorten: Callable[[float], Trial] | None = None
     part: tuple[float, float] | None = None

@@ -15,5 +15,6 @@ EFFECT = Effect(
     parameters=(Parameter("active", "1", 1.0, 0.0, 1.0, "0 or 1", off=0.0),),
     experiments=("free_response",),
     acts={Site.BODY: None},
-    probes=({"active": 1.0},),
+    probes=({},),
+    holds={"active": (1.0,)},
 )

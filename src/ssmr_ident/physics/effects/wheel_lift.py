@@ -22,5 +22,6 @@ EFFECT = Effect(
     parameters=(Parameter("active", "1", 1.0, 0.0, 1.0, "0 or 1", off=0.0),),
     experiments=("free_response", "swivel"),
     acts={Site.BODY: load},
-    probes=({"active": 1.0},),
+    probes=({},),
+    holds={"active": (1.0,)},
 )
