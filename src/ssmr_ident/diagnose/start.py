@@ -13,7 +13,8 @@ from ssmr_ident.diagnose.setup import Setup
 from ssmr_ident.identify.coordinates import scaled_at
 from ssmr_ident.identify.decay import fit_decay
 from ssmr_ident.identify.decay_result import Mode
-from ssmr_ident.identify.joint import JointFit, evaluate
+from ssmr_ident.identify.joint import JointFit, differentiate, evaluate, search_again
+from ssmr_ident.identify.joint import _step as newton_step
 from ssmr_ident.identify.posterior import most_probable
 from ssmr_ident.identify.rig import DERIVATIVES, ForcedRecord, fit_rig
 from ssmr_ident.identify.robot_map import (
@@ -31,6 +32,9 @@ SEEN_BY = {"roll": "ay", "pitch": "ax", "yaw": "ay"}
 
 MOST_MODES = 3
 
+POOLED_STEPS = 10
+"""Gauss-Newton steps of least squares that all recordings share, at the most."""
+
 
 def begin(trials: Sequence[Trial], setup: Setup, parameters: ParameterSet) -> JointFit:
     """The better of two places: what is known beforehand, and what modes or a linear fit of the recordings say."""
@@ -43,7 +47,32 @@ def begin(trials: Sequence[Trial], setup: Setup, parameters: ParameterSet) -> Jo
         values, effects = setup.model.split(point)
         nuisances = [trial.begin(values, effects) for trial in trials]
         fits.append(evaluate(trials, setup.model, point, nuisances))
-    return min(fits, key=lambda fit: fit.rss if np.isfinite(fit.rss) else np.inf)
+    best = min(fits, key=lambda fit: fit.rss if np.isfinite(fit.rss) else np.inf)
+    return pooled(best) if all(trial.channels == ("force",) for trial in trials) else best
+
+
+def pooled(fit: JointFit) -> JointFit:
+    """Least squares over all recordings with one size of misfit for all of them.
+
+    Where a recording's own misfit is its measure, one that happens to be explained first outweighs the others ever
+    after. Pulls begin far enough away for that: where a wheel lets go is a corner in the force.
+    """
+    for _ in range(POOLED_STEPS):
+        fit = differentiate(search_again(fit))
+        count = fit.independent
+
+        def cost(at: JointFit, count: float = count) -> float:
+            return count * float(np.log(at.rss)) + at.penalty if np.isfinite(at.rss) else np.inf
+
+        best = fit
+        for damping in (0.0, 0.1, 1.0, 10.0, 100.0):
+            move, own = newton_step(fit, np.full(len(fit.trials), count / fit.rss), damping, True)
+            nuisances = [n + o for n, o in zip(fit.nuisances, own, strict=True)]
+            best = min(best, evaluate(fit.trials, fit.model, fit.point + move, nuisances, fit.slopes), key=cost)
+        gain, fit = cost(fit) - cost(best), best
+        if gain < 1.0:
+            break
+    return fit
 
 
 def _guess(trials: Sequence[Trial], setup: Setup, parameters: ParameterSet) -> dict[str, float]:

@@ -27,6 +27,11 @@ from ssmr_ident.simulate.simulation import simulate
 STARTING = 3
 """Samples at the start that do not count: how the head takes up speed is not in the log."""
 
+JOLT = (-0.1, 0.3)
+"""Seconds about the tightening of the cable that do not count. Its damper takes up the head's speed with a jolt of some
+20 N for each mm/s, which the body swings out within two periods: larger than all else that is left, it would hold the
+fit by the moment at which the slack ends."""
+
 LONGEST_BLOCK, FEWEST_BLOCKS = 0.25, 150.0
 """Seconds that are averaged into one number at the most, and numbers that a recording keeps at the least: a pull is
 slow, and the chatter of sliding contacts repeats in no second run."""
@@ -108,6 +113,9 @@ def pull_trial(measurement: Measurement, parameters: ParameterSet) -> Trial:
         return np.array([find_slack(measured[rising], travel[rising], tight[rising]) / size])
 
     target = averaged(measured)
+    slack_there = find_slack(measured[rising], travel[rising], simulated({}, {}, 0.0)[rising])
+    since = elapsed[: count * block].reshape(count, block).mean(axis=1) - elapsed[int(np.argmax(travel > slack_there))]
+    counts[(since > JOLT[0]) & (since < JOLT[1])] = False
     return Trial(
         measurement.name,
         measurement.entry.experiment,
