@@ -5,9 +5,10 @@ import pytest
 
 from ssmr_ident.diagnose.turning.anchor import between
 from ssmr_ident.diagnose.turning.candidates import pitches_heard
-from ssmr_ident.diagnose.turning.grip import profile
+from ssmr_ident.diagnose.turning.grip import _doubtful, profile
 from ssmr_ident.diagnose.turning.likelihood import NEPER_DB, Block, log_variance, score
 from ssmr_ident.diagnose.turning.maps import follows
+from ssmr_ident.diagnose.turning.rivals import _clear
 from ssmr_ident.diagnose.turning.spectra import average, look, mixes
 from ssmr_ident.diagnose.turning.verdict import Finding, Findings, decide
 from ssmr_ident.signals.metrics import log_psd_db
@@ -113,3 +114,17 @@ def test_verdicts():
     assert poor.named == ("unlisted",)
     foreign = decide(_found(calibrated=False, left=900.0, tau=5.4, rms=5.5, tried=[("stribeck", 40.0, 4.4, 4.9)]))
     assert foreign.verdict == "undetermined"
+
+
+def test_lambda_max_is_refitted_only_where_it_decides():
+    flat = np.array([0.0, -1.0, -2.0, -20.0, -300.0, -500.0, -900.0])
+    assert _doubtful(flat, {0}) == 3  # the first beyond the interval, and within what its own slopes may gain
+    assert _doubtful(flat, {0, 3}) is None
+    assert _doubtful(np.array([0.0, -90.0, -200.0, -300.0, -400.0, -500.0, -900.0]), {0}) is None
+    assert _doubtful(np.array([-50.0, -9.0, 0.0, -9.0, -99.0, -200.0, -300.0]), {0}) == 2
+
+
+def test_the_best_has_to_lie_nearer_over_recordings():
+    assert _clear(np.array([0.5, 0.4, 0.6, 0.5]))
+    assert not _clear(np.array([0.5, -0.4, 0.6, 0.0]))
+    assert not _clear(np.array([-0.5, -0.4, -0.6, -0.5]))

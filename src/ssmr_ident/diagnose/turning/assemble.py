@@ -16,6 +16,7 @@ from ssmr_ident.diagnose.turning.engine import FINAL_SEEDS, Outcome
 from ssmr_ident.diagnose.turning.located import located
 from ssmr_ident.diagnose.turning.maps import follows, speed_maps
 from ssmr_ident.diagnose.turning.next_run import next_run
+from ssmr_ident.diagnose.turning.rivals import with_rivals
 from ssmr_ident.diagnose.turning.search import Explained
 from ssmr_ident.diagnose.turning.verdict import Decision, decide, findings_of
 from ssmr_ident.diagnose.turning.words import EQUATIONS
@@ -37,7 +38,7 @@ CONFLICT = 3.0  # standard deviations of the prior
 
 def diagnosis_of(outcome: Outcome, session: str) -> Diagnosis:
     """Put into words and numbers what an examination found."""
-    decision = decide(findings_of(outcome))
+    decision = with_rivals(outcome, decide(findings_of(outcome)))
     best = _chosen(outcome, decision)
     before = parameter_set(outcome, outcome.anchor, None)
     after = before if best is None else parameter_set(outcome, best.anchor, best)

@@ -1,0 +1,59 @@
+"""Without calibration: explanations that the recordings, taken one by one, do not tell from the best."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from scipy.stats import t
+
+from ssmr_ident.diagnose.diagnosis import MISSING
+from ssmr_ident.diagnose.turning.candidates import UNLISTED
+from ssmr_ident.diagnose.turning.engine import FINAL_SEEDS, Outcome
+from ssmr_ident.diagnose.turning.search import Explained
+from ssmr_ident.diagnose.turning.verdict import GAIN, MOST, Decision
+from ssmr_ident.diagnose.turning.worth import against_simulation
+
+LEVEL = 0.95  # of the one-sided test by which the best has to lie nearer
+FEWEST = 4  # recordings for such a test
+
+
+def with_rivals(outcome: Outcome, decision: Decision) -> Decision:
+    """A decision, with the explanations that lie as near the recordings as the best: three names at most.
+
+    Evidence counts the bins of a spectrum as if a model erred in each of them anew. Where no calibration takes its
+    errors away, they are the same from bin to bin, and only recordings are independent: the best has to lie nearer by
+    the paired t-test over them.
+    """
+    if outcome.calibrated or decision.verdict != MISSING or not outcome.explanations:
+        return decision
+    found = {one.id: one for one in outcome.explanations}
+    if decision.named[0] not in found:
+        return decision
+    best = _distances(outcome, found[decision.named[0]])
+    named = list(decision.named)
+    for one in outcome.explanations:
+        if one.id in (*named, UNLISTED) or one.evidence - outcome.baseline.evidence <= GAIN[1] or len(named) == MOST:
+            continue
+        rival = _distances(outcome, one)
+        nearer = np.array([rival[name] - best[name] for name in best if name in rival])
+        if len(nearer) >= FEWEST and not _clear(nearer):
+            named.append(one.id)
+    if len(named) == len(decision.named):
+        return decision
+    return replace(decision, named=tuple(named), confidence=min(decision.confidence, 1.0 / len(named)))
+
+
+def _distances(outcome: Outcome, one: Explained) -> dict[str, float]:
+    conditions = (*outcome.targets, *outcome.heldout)
+    return against_simulation(outcome.bench, conditions, one.anchor.values, one.effects, FINAL_SEEDS)
+
+
+def _clear(nearer: np.ndarray) -> bool:
+    """Whether the mean of (n,) differences is above 0 beyond chance.
+
+    >>> _clear(np.array([0.5, 0.4, 0.6, 0.5])), _clear(np.array([0.5, -0.4, 0.6, 0.0]))
+    (True, False)
+    """
+    error = nearer.std(ddof=1) / np.sqrt(len(nearer))
+    return bool(nearer.mean() > t.ppf(LEVEL, len(nearer) - 1) * error)
