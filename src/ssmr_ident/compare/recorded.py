@@ -130,13 +130,19 @@ def _at_rest(trials: Sequence[Trial], model: Model, point: Array, start: Sequenc
 
 
 def radian(trials: Sequence[Trial]) -> float:
-    """Seconds in which the motion of the loudest channel turns by one radian: its rms over that of its slope."""
-    shortest = np.inf
+    """Seconds in which the motion of the loudest channel turns by one radian: its rms over that of its slope.
+
+    Mains lines and noise are taken off both, for their slopes are steep. The median recording of the fastest kind.
+    """
+    kinds: dict[str, list[float]] = {}
     for trial in trials:
-        signal = trial.target - trial.target.mean(axis=0)
-        column = signal[:, int(np.argmax(signal.std(axis=0)))]
-        shortest = min(shortest, float(np.std(column) / np.std(np.diff(column)) * trial.step))
-    return shortest
+        signal = trial.colour(np.zeros_like(trial.target))
+        loudest = int(np.argmax(signal.std(axis=0)))
+        column, noise = signal[:, loudest], trial.noises[loudest].std ** 2 if trial.quiet else 0.0
+        size, slope = float(np.var(column)) - noise, float(np.var(np.diff(column))) - 2.0 * noise
+        if size > 0.0 and slope > 0.0:
+            kinds.setdefault(trial.kind, []).append(float(np.sqrt(size / slope)) * trial.step)
+    return min((float(np.median(found)) for found in kinds.values()), default=trials[0].step)
 
 
 def predicted(trial: Trial, values: Values, effects: Effects, nuisance: Array) -> Prediction:

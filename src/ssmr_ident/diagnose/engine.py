@@ -24,7 +24,7 @@ from ssmr_ident.physics.effects import CATALOGUE
 MOST_EFFECTS = 2
 """Effects that are looked for together."""
 
-SECOND = 0.7
+SECOND = 0.5
 """Share of the first effect's unexplained variance, on recordings kept back, that may be left when a second one is
 added: the right effect in a formula that is not quite the world's leaves structure, of which any other takes a part."""
 

@@ -31,6 +31,9 @@ DAMPINGS = (0.0, 0.01, 0.1, 0.5, 2.0, 10.0, 100.0, 1e3)
 NUISANCE_STEP = 1e-4
 """Of differences in a nuisance, in units of its scale."""
 
+BURST = 1e30
+"""Simulated number, in its SI unit, beyond which an integration has burst; its square would overflow."""
+
 SETTLED = 0.1
 """Fall of the cost (twice a log-likelihood) at which a fit is at rest."""
 
@@ -169,6 +172,8 @@ def evaluate(
     def one(index: int) -> tuple[Array, Array]:
         trial = trials[index]
         simulated = trial.run(values, effects, nuisances[index]) if sane else np.full_like(trial.target, np.nan)
+        if not np.all(np.abs(simulated) < BURST):
+            simulated = np.full_like(trial.target, np.nan)
         return simulated, trial.white_target - trial.whitened(simulated)
 
     pairs = over(trials, one)

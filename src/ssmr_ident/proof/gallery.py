@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -46,12 +47,29 @@ def overlay(row: Row, opened: Path) -> Picture:
         compare(campaign, read_parameters(str(row.answer.folder / f"{name}.yaml"))).recordings[index]
         for name in ("before", "after")
     )
-    figure = _drawn(before.prediction, after.prediction)
+    figure = _drawn(*_overlapping(before.prediction, after.prediction))
     truth = "+".join(row.mark.hidden) or "nothing"
     named = "+".join(row.mark.named) or "nothing"
     values = f"{row.heldout.before[index]:.1f} %, {row.heldout.after[index]:.1f} %, {row.heldout.floor[index]:.1f} %"
     caption = f"{row.case}, held out: {before.file}. Hidden: {truth}; named: {named}. Before, after, noise: {values}."
     return picture(figure, caption, f"overlay {row.case}")
+
+
+def _overlapping(before: Prediction, after: Prediction) -> tuple[Prediction, Prediction]:
+    """The two over the times that both have: a sensor's own start-up is left out, and two sensors' differ."""
+    first, last = max(before.time[0], after.time[0]), min(before.time[-1], after.time[-1])
+
+    def cut(prediction: Prediction) -> Prediction:
+        half = 0.5 / prediction.sample_rate
+        kept = (prediction.time > first - half) & (prediction.time < last + half)
+        return replace(
+            prediction,
+            time=prediction.time[kept],
+            measured=prediction.measured[kept],
+            simulated=prediction.simulated[kept],
+        )
+
+    return cut(before), cut(after)
 
 
 @house
