@@ -6,7 +6,7 @@ before.yaml and after.yaml are compared with them by ``ident compare``, and that
     python benchmarks/score_practice.py                  # all
     python benchmarks/score_practice.py --only 01,15     # some
     python benchmarks/score_practice.py --real           # the real recordings
-    python benchmarks/score_practice.py --out out/practice.jsonl --markdown
+    python benchmarks/score_practice.py --out out/practice.jsonl
 """
 
 from __future__ import annotations

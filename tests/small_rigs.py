@@ -11,7 +11,8 @@ from ssmr_ident.campaign import Campaign, Measurement
 from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.core.recording import Channel, Provenance, Recording
 from ssmr_ident.diagnose.setup import Setup, set_up
-from ssmr_ident.identify.joint import JointFit, descend, differentiate, evaluate
+from ssmr_ident.identify.descent import descend
+from ssmr_ident.identify.joint import JointFit, differentiate, evaluate
 from ssmr_ident.identify.noise import AutoregressiveNoise
 from ssmr_ident.identify.trials import Trial
 from ssmr_ident.physics.rig import Rig

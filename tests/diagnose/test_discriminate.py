@@ -11,7 +11,8 @@ from small_rigs import NOISE, Run, campaign, fitted, prepared, quiet
 from ssmr_ident.diagnose.discriminate import _apart, next_experiment, repeats
 from ssmr_ident.diagnose.experiments import experiments
 from ssmr_ident.diagnose.setup import Setup
-from ssmr_ident.identify.joint import JointFit, descend, differentiate, evaluate
+from ssmr_ident.identify.descent import descend
+from ssmr_ident.identify.joint import JointFit, differentiate, evaluate
 
 HARDENING = {"nonlinear_stiffness": {"k3_N_m3": 6e7}}
 

@@ -10,7 +10,8 @@ from scipy.linalg import block_diag
 from scipy.signal import lfilter
 
 from ssmr_ident.identify.coordinates import Model
-from ssmr_ident.identify.joint import JointFit, descend, differentiate, evaluate, worth
+from ssmr_ident.identify.descent import descend
+from ssmr_ident.identify.joint import JointFit, differentiate, evaluate, worth
 from ssmr_ident.identify.noise import AutoregressiveNoise
 from ssmr_ident.identify.objective import Unknown
 from ssmr_ident.identify.trials import Trial
@@ -100,7 +101,7 @@ def _full(
 def test_one_step_with_nuisances_eliminated_is_the_full_least_squares_solution(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("ssmr_ident.identify.joint.SECANTS", 0)  # they would go on to the weights of what is left
+    monkeypatch.setattr("ssmr_ident.identify.descent.SECANTS", 0)  # they would go on to the weights of what is left
     fit, *blocks = _linear()
     expected, covariance = _full(fit, *blocks, fit.weights)
     # one iteration: Gauss-Newton is exact for what is linear

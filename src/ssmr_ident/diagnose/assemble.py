@@ -160,7 +160,8 @@ def refitted_on_all(outcome: Outcome) -> JointFit | None:
     best = outcome.chosen
     if not outcome.setup.kept_by_us or outcome.setup.kept[0].part is not None:
         return None
-    from ssmr_ident.identify.joint import descend, evaluate
+    from ssmr_ident.identify.descent import descend
+    from ssmr_ident.identify.joint import evaluate
 
     trials = (*best.fit.trials, *best.kept.trials)
     nuisances = (*best.fit.nuisances, *best.kept.nuisances)

@@ -16,8 +16,9 @@ from ssmr_ident.diagnose.explore import LAST, LOUD, Progress, Search, best_basel
 from ssmr_ident.diagnose.scan import combinations
 from ssmr_ident.diagnose.setup import Setup
 from ssmr_ident.diagnose.weigh import CERTAIN, TIE, Explanation, evidences
+from ssmr_ident.identify.descent import descend
 from ssmr_ident.identify.horizons import led
-from ssmr_ident.identify.joint import JointFit, descend, differentiate
+from ssmr_ident.identify.joint import JointFit, differentiate
 from ssmr_ident.identify.trials import Trial
 from ssmr_ident.physics.effects import CATALOGUE
 

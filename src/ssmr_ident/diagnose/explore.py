@@ -13,8 +13,9 @@ from ssmr_ident.diagnose.explain import begin_with
 from ssmr_ident.diagnose.scan import Suspect, candidates, scan
 from ssmr_ident.diagnose.setup import Setup
 from ssmr_ident.diagnose.start import begin
+from ssmr_ident.identify.descent import descend
 from ssmr_ident.identify.horizons import STEPS, horizons, led
-from ssmr_ident.identify.joint import JointFit, descend, differentiate, evaluate
+from ssmr_ident.identify.joint import JointFit, differentiate, evaluate
 from ssmr_ident.identify.trials import Trial
 
 Progress = Callable[[str, int, int], None]

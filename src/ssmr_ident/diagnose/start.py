@@ -13,8 +13,8 @@ from ssmr_ident.diagnose.setup import Setup
 from ssmr_ident.identify.coordinates import scaled_at
 from ssmr_ident.identify.decay import fit_decay
 from ssmr_ident.identify.decay_result import Mode
-from ssmr_ident.identify.joint import JointFit, differentiate, evaluate, search_again
-from ssmr_ident.identify.joint import _step as newton_step
+from ssmr_ident.identify.descent import newton_step, search_again
+from ssmr_ident.identify.joint import JointFit, differentiate, evaluate
 from ssmr_ident.identify.posterior import most_probable
 from ssmr_ident.identify.rig import DERIVATIVES, ForcedRecord, fit_rig
 from ssmr_ident.identify.robot_map import (

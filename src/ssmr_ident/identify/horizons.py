@@ -11,7 +11,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from ssmr_ident.identify.coordinates import Model
-from ssmr_ident.identify.joint import JointFit, descend, evaluate
+from ssmr_ident.identify.descent import descend
+from ssmr_ident.identify.joint import JointFit, evaluate
 from ssmr_ident.identify.trials.trial import Trial
 
 Array = np.ndarray
