@@ -229,18 +229,25 @@ def run_many(kind: str, count: int, seed: int, output: Path) -> None:
 
 
 def repeats(count: int, seed: int) -> None:
-    """Only the first question, and only of null sessions with calibration: do targets repeat it within chance?"""
-    left = []
+    """Null sessions with calibration: the whole diagnosis of those alone whose targets do not repeat it within chance.
+
+    A diagnosis of the others ends there, with nothing missing.
+    """
+    left, said = [], []
     for i in range(count):
-        campaign, _ = session(1000 * seed + i, None, calibrated=True)
+        campaign, truth = session(1000 * seed + i, None, calibrated=True)
         conditions, _ = conditions_of(campaign, campaign.parameters)
         calibration = tuple(c for c in conditions if c.role == "calibration")
         targets = tuple(c for c in conditions if c.role == "target")
         found = repeated(Bench(campaign.parameters), calibration, targets, scale_of(calibration), (1, 2))
         left.append(found.left)
+        if found.left > LEFT:
+            row = row_of(examine(campaign), truth, time.perf_counter())
+            said.append(row["verdict"])
+            print(truth["seed"], round(found.left, 1), row["verdict"], row["named"], flush=True)
         if (i + 1) % 20 == 0:
-            above = sum(value > LEFT for value in left)
-            print(f"{i + 1} null sessions: {above} above {LEFT:g}; largest {np.sort(left)[-3:].round(2)}", flush=True)
+            print(f"{i + 1} null sessions: {len(said)} above {LEFT:g}: {dict(Counter(said))}; "
+                  f"false alarms {_interval(said.count('missing_physics'), i + 1)}", flush=True)  # fmt: skip
 
 
 def report(paths: list[Path]) -> None:

@@ -86,7 +86,7 @@ def _predicts(outcome: Outcome, added: Mapping[str, float], effects: Mapping, fl
             outcome.bench, conditions, values, active, FINAL_SEEDS)) else np.inf
         for values, active in ((outcome.anchor.values, {}), (added, effects))
     ]  # fmt: skip
-    return distances[0] > floor * ONE_SIDED and distances[1] < NEARER * distances[0]
+    return distances[0] > WITHIN * floor * ONE_SIDED and distances[1] < NEARER * distances[0]
 
 
 def _chosen(outcome: Outcome, decision: Decision) -> Explained | None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -16,8 +15,10 @@ from ssmr_ident.diagnose.turning.baseline import ROUNDS, anchored
 from ssmr_ident.diagnose.turning.bench import STEP, Bench
 from ssmr_ident.diagnose.turning.candidates import Candidate, candidates, pitches_heard
 from ssmr_ident.diagnose.turning.conditions import Condition, conditions_of, held_back
+from ssmr_ident.diagnose.turning.counter import Counter, Progress
 from ssmr_ident.diagnose.turning.grip import PATH, TRIED, GripProfile, grip_profile
 from ssmr_ident.diagnose.turning.likelihood import Score
+from ssmr_ident.diagnose.turning.regimes import widened
 from ssmr_ident.diagnose.turning.search import Explained, explained, freed, polished, refined, screened
 
 REFINED = 5  # explanations whose own parameters are searched first, with calibration
@@ -36,7 +37,6 @@ DISTORTED_DB = 2.0
 """Own error of a baseline fitted on the targets from which on it may have been bent by what is missing."""
 CLOSE = 30.0  # of evidence behind the first: who comes first may still be a matter of where the search began
 MANY = 3  # target conditions from which on one run each has to do while searching
-Progress = Callable[[str, int, int], None]
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,17 +113,23 @@ def examine(
     fitted_on = calibration or targets
     seeds = tuple(1000 * seed + s for s in (SEEDS if len(targets) < MANY else SEEDS[:1]))
 
-    count = _Counter(show, "baseline", 1 + ROUNDS)
+    count = Counter(show, "baseline", 1 + ROUNDS)
     scale = scale_of(fitted_on)
     again = repeated(bench, calibration, targets, scale, seeds) if calibration else None
     quiet = again is not None and again.left <= LEFT
     anchor = anchored(bench, fitted_on, bool(calibration), scale, count.advance, seeds=seeds)
     count.finish()
-    count = _Counter(show, "lambda_max", len(TRIED))
+    count = Counter(show, "lambda_max", len(TRIED))
     grip = grip_profile(anchor, fitted_on, count.advance)
     # on the targets themselves a larger lambda_max may be the very effect that is looked for
     if calibration and grip.lower is not None and grip.anchor is not None and PATH in known:
         anchor = grip.anchor
+    if again is not None and not quiet:
+        # is it that this robot shakes now in one way, now in another?
+        targets, calibration = widened(anchor, targets), widened(anchor, calibration)
+        anchor = replace(anchor, calibration=calibration)
+        again = repeated(bench, calibration, targets, scale, seeds)
+        quiet = again is not None and again.left <= LEFT
     seconds["baseline"] = time.perf_counter() - clock
     baseline = explained(anchor, None, {}, targets)
     assert baseline is not None
@@ -151,7 +157,7 @@ def examine(
 
     alone = 0 if calibration else FIRST_STEPS + sum(more for _, more in HALVINGS)  # steps of the baseline by itself
     steps = FIRST_STEPS * len(pool) + sum(most * more for most, more in HALVINGS) + 2 + alone + 2 * LAST_STEPS
-    count = _Counter(show, "baseline set free beside them", steps)
+    count = Counter(show, "baseline set free beside them", steps)
     best = [replace(freed(one, targets, FIRST_STEPS, count.advance), slopes=None) for one in pool]
     for most, more in HALVINGS:
         best.sort(key=lambda one: one.evidence, reverse=True)
@@ -186,7 +192,7 @@ def _tried(
 
     Without calibration the baseline gives way together with the effect instead.
     """
-    count = _Counter(show, "explanations tried", 2 * len(every))
+    count = Counter(show, "explanations tried", 2 * len(every))
     pairs = [pair for pair in (screened(anchor, c, targets, count.advance) for c in every) if pair]
     count.finish()
     pairs.sort(key=lambda pair: pair[0].evidence, reverse=True)
@@ -194,7 +200,7 @@ def _tried(
         return pairs
     level = pairs[0][0].evidence - REFINE_FAR
     promising = [pair for pair in pairs[:REFINED] if pair[0].evidence > level]
-    count = _Counter(show, "best explanations refined", len(promising) + 1)
+    count = Counter(show, "best explanations refined", len(promising) + 1)
     for pair in promising:
         pair.insert(0, refined(pair[0], targets, lambda: None))
         count.advance()
@@ -281,16 +287,3 @@ def _ceilings(targets: tuple[Condition, ...]) -> tuple[float, ...]:
         levels.append(np.abs(top))
     highest = np.max(levels, axis=0)
     return tuple(sorted({float(h * f) for h in highest for f in (0.93, 0.98, 1.03)}))
-
-
-class _Counter:
-    def __init__(self, show: Progress, stage: str, total: int) -> None:
-        self.show, self.stage, self.total, self.done = show, stage, total, 0
-        show(stage, 0, total)
-
-    def advance(self) -> None:
-        self.done = min(self.done + 1, self.total)
-        self.show(self.stage, self.done, self.total)
-
-    def finish(self) -> None:
-        self.show(self.stage, self.total, self.total)

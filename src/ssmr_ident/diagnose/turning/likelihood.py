@@ -26,6 +26,11 @@ def log_variance(dof: float) -> float:
     return float(polygamma(1, 0.5 * dof))
 
 
+def weight_of(tau_db: float) -> float:
+    """Of a squared residual in a least-squares step, where the model's own error is ``tau_db``."""
+    return INDEPENDENT / (0.05 + (tau_db / NEPER_DB) ** 2)
+
+
 @dataclass(frozen=True, eq=False)
 class Block:
     """What one condition asks of an explanation.
