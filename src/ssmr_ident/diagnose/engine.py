@@ -112,8 +112,16 @@ def examine(setup: Setup, parameters: ParameterSet, progress: Progress | None = 
             new[new.index(leader)], leader = polished, polished
         tried += new
         found_fit = differentiate(leader.fit)
-        if not _better(leader, chosen, first=chosen is baseline) or not significant(found_fit):
+        first = chosen is baseline
+        if not _better(leader, chosen, first) or not significant(found_fit):
             break
+        bare = explained(kept, differentiate(descend(without(leader.fit, leader.fit.model.ids[-1]), LAST)), leader.kept)
+        if _cost(bare, chosen) < _cost(chosen, chosen):
+            # the effect had only shown the way to a better fit without it
+            tried[tried.index(chosen)], chosen = bare, bare
+            baseline = bare if first else baseline
+            if not _better(leader, bare, first):
+                continue
         chosen = replace(leader, fit=found_fit)
         tried[tried.index(leader)] = chosen
     chosen, tried = _backward(kept, lengths, chosen, tried)
