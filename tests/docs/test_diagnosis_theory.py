@@ -40,7 +40,7 @@ def test_chance_to_be_certain_where_nothing_is_missing() -> None:
     assert probes * passing(100, 1) < 1e-3
 
 
-@pytest.mark.parametrize(("coefficient", "stated"), [(0.0, 1.0), (0.3, 1.4), (0.5, 1.8), (0.6, 2.2)])
+@pytest.mark.parametrize(("coefficient", "stated"), [(0.0, 1.0), (0.3, 1.4), (0.5, 1.8), (0.6, 2.2), (0.7, 2.7)])
 def test_coloured_noise_over_its_floor(coefficient: float, stated: float) -> None:
     share, rate, count = 0.6, 2000.0, 20_000
     inside, outside = (1 + coefficient) / (1 - coefficient), 1 - 4 * coefficient / 3 + coefficient**2 / 3

@@ -31,6 +31,10 @@ UNEXPLAINED, BY_CHANCE = 1.6, 1e-3
 """Error over the noise floor from which something is missing even if nothing names it, and the probability by chance up
 to which what is left must follow the motion: the floor takes the noise for white, and coloured noise lies above it."""
 
+COLOURED = 3.0
+"""Error over the noise floor that no noise reaches whose neighbours are correlated by 0.7 or less: then something is
+missing wherever it sits. What is left of a sliding pull follows no motion."""
+
 
 def assembled(outcome: Outcome, parameters: ParameterSet, everything: JointFit | None, seed: int) -> Diagnosis:
     """The diagnosis.
@@ -57,7 +61,7 @@ def assembled(outcome: Outcome, parameters: ParameterSet, everything: JointFit |
     else:
         left = max(w.before / w.noise_floor for w in (training, heldout))
         follows = grows_with_motion([*before_fit, *before_kept]) < BY_CHANCE
-        verdict = UNDETERMINED if left > UNEXPLAINED and follows else NOTHING
+        verdict = UNDETERMINED if left > COLOURED or (left > UNEXPLAINED and follows) else NOTHING
     tried = _tried(outcome)
     scanned = len(outcome.searches[0].suspects) if outcome.searches else 0
     if verdict == MISSING:
@@ -68,7 +72,7 @@ def assembled(outcome: Outcome, parameters: ParameterSet, everything: JointFit |
         names = [e.id for e in (best, *outcome.rivals)] if named else [t.id for t in tried if t.id != "baseline"]
         summary = undetermined(heldout, METRIC, names)
     places = located(base.fit, parameters, seed=seed) if verdict != NOTHING else ()
-    advice = next_experiment(outcome.setup, best.fit, [r.fit for r in outcome.rivals]) if verdict != NOTHING else ""
+    advice = next_experiment(outcome.setup, *_apart(outcome)) if verdict != NOTHING else ""
     after = exported(everything or best.fit, parameters)
     evidence = Evidence(
         overlays=overlays(heldout.recordings, before_kept, after_kept, heldout=True),
@@ -93,6 +97,15 @@ def assembled(outcome: Outcome, parameters: ParameterSet, everything: JointFit |
         notes=(*outcome.setup.notes, *_notes(best, heldout)),
         evidence=evidence,
     )
+
+
+def _apart(outcome: Outcome) -> tuple[JointFit, list[JointFit]]:
+    """What the next recording has to tell apart: the answer and its rivals; without an answer, the nearest suspects."""
+    if outcome.chosen is not outcome.baseline:
+        return outcome.chosen.fit, [r.fit for r in outcome.rivals]
+    ranked = sorted(outcome.tried, key=lambda e: -outcome.found[e.id])
+    suspects = [e.fit for e in ranked if e is not outcome.baseline]
+    return (suspects[0], [*suspects[1:], outcome.baseline.fit]) if suspects else (outcome.baseline.fit, [])
 
 
 def conflicting(outcome: Outcome) -> tuple[Conflict, ...]:
