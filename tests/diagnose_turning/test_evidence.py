@@ -1,8 +1,12 @@
 """The statistics under a diagnosis of swivels: what chance does to spectra, and what a model's own error costs."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
+from ssmr_ident.diagnose.diagnosis import MISSING, UNDETERMINED
+from ssmr_ident.diagnose.turning import rivals
 from ssmr_ident.diagnose.turning.anchor import between
 from ssmr_ident.diagnose.turning.candidates import pitches_heard
 from ssmr_ident.diagnose.turning.grip import _doubtful, profile
@@ -10,7 +14,7 @@ from ssmr_ident.diagnose.turning.likelihood import NEPER_DB, Block, log_variance
 from ssmr_ident.diagnose.turning.maps import follows
 from ssmr_ident.diagnose.turning.rivals import _clear
 from ssmr_ident.diagnose.turning.spectra import average, look, mixes
-from ssmr_ident.diagnose.turning.verdict import Finding, Findings, decide
+from ssmr_ident.diagnose.turning.verdict import Decision, Finding, Findings, decide
 from ssmr_ident.signals.metrics import log_psd_db
 
 
@@ -128,3 +132,25 @@ def test_the_best_has_to_lie_nearer_over_recordings():
     assert _clear(np.array([0.5, 0.4, 0.6, 0.5]))
     assert not _clear(np.array([0.5, -0.4, 0.6, 0.0]))
     assert not _clear(np.array([-0.5, -0.4, -0.6, -0.5]))
+
+
+@pytest.mark.parametrize(
+    ("off", "verdict", "named"),
+    [
+        ({"stribeck": 2.0, "ground_roughness": 3.0}, MISSING, ("stribeck",)),  # the best repeats the recordings
+        ({"stribeck": 3.0, "ground_roughness": 3.5}, MISSING, ("stribeck", "ground_roughness")),
+        ({"stribeck": 3.0, "ground_roughness": 4.5}, MISSING, ("stribeck",)),
+        (dict.fromkeys(("stribeck", "ground_roughness", "com_offset", "coriolis"), 3.0), UNDETERMINED, ()),
+    ],
+)
+def test_rivals_no_further_off_than_the_best_itself_are_named_with_it(
+    monkeypatch: pytest.MonkeyPatch, off: dict[str, float], verdict: str, named: tuple[str, ...]
+) -> None:
+    monkeypatch.setattr(rivals, "repeatability_db", lambda conditions: 2.0 / rivals.ONE_SIDED)
+    monkeypatch.setattr(rivals, "_distances", lambda outcome, one: {"a.csv": off[one.id], "b.csv": off[one.id]})
+    tried = tuple(SimpleNamespace(id=name, evidence=100.0) for name in off)
+    outcome = SimpleNamespace(
+        calibrated=False, explanations=tried, baseline=SimpleNamespace(evidence=0.0), targets=(), heldout=()
+    )
+    found = rivals.with_rivals(outcome, Decision(MISSING, ("stribeck",), 0.9, ""))
+    assert (found.verdict, found.named) == (verdict, named)

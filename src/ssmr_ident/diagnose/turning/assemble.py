@@ -16,7 +16,7 @@ from ssmr_ident.diagnose.turning.engine import FINAL_SEEDS, Outcome
 from ssmr_ident.diagnose.turning.located import located
 from ssmr_ident.diagnose.turning.maps import follows, speed_maps
 from ssmr_ident.diagnose.turning.next_run import next_run
-from ssmr_ident.diagnose.turning.rivals import with_rivals
+from ssmr_ident.diagnose.turning.rivals import ONE_SIDED, with_rivals
 from ssmr_ident.diagnose.turning.search import Explained
 from ssmr_ident.diagnose.turning.verdict import Decision, decide, findings_of
 from ssmr_ident.diagnose.turning.words import EQUATIONS
@@ -31,8 +31,6 @@ need, whose baselines are fitted too (docs/theory/swivel.md)."""
 NEARER, WITHIN = 0.95, 1.25
 """Share of the distance that an effect may leave on recordings kept back, and the distance over the repeatability below
 which nothing is left to name."""
-ONE_SIDED = float(np.sqrt(0.5 * (1.0 + 1.0 / len(FINAL_SEEDS))))
-"""Distance of a run from the mean of several, over that of two runs from each other."""
 CONFLICT = 3.0  # standard deviations of the prior
 
 

@@ -7,15 +7,17 @@ from dataclasses import replace
 import numpy as np
 from scipy.stats import t
 
-from ssmr_ident.diagnose.diagnosis import MISSING
+from ssmr_ident.diagnose.diagnosis import MISSING, UNDETERMINED
 from ssmr_ident.diagnose.turning.candidates import UNLISTED
 from ssmr_ident.diagnose.turning.engine import FINAL_SEEDS, Outcome
 from ssmr_ident.diagnose.turning.search import Explained
 from ssmr_ident.diagnose.turning.verdict import GAIN, MOST, Decision
-from ssmr_ident.diagnose.turning.worth import against_simulation
+from ssmr_ident.diagnose.turning.worth import against_simulation, repeatability_db
 
 LEVEL = 0.95  # of the one-sided test by which the best has to lie nearer
 FEWEST = 4  # recordings for such a test
+ONE_SIDED = float(np.sqrt(0.5 * (1.0 + 1.0 / len(FINAL_SEEDS))))
+"""Distance of a run from the mean of several, over that of two runs from each other."""
 
 
 def with_rivals(outcome: Outcome, decision: Decision) -> Decision:
@@ -23,7 +25,8 @@ def with_rivals(outcome: Outcome, decision: Decision) -> Decision:
 
     Evidence counts the bins of a spectrum as if a model erred in each of them anew. Where no calibration takes its
     errors away, they are the same from bin to bin, and only recordings are independent: the best has to lie nearer by
-    the paired t-test over them.
+    the paired t-test over them. And where the best is itself off by more than two runs differ, its law is not quite the
+    world's; a rival that is off by no more than that again is as near. More than three that are alike are no answer.
     """
     if outcome.calibrated or decision.verdict != MISSING or not outcome.explanations:
         return decision
@@ -31,16 +34,20 @@ def with_rivals(outcome: Outcome, decision: Decision) -> Decision:
     if decision.named[0] not in found:
         return decision
     best = _distances(outcome, found[decision.named[0]])
+    repeats = repeatability_db((*outcome.targets, *outcome.heldout)) * ONE_SIDED
+    own_error = float(np.mean(list(best.values()))) - repeats
     named = list(decision.named)
     for one in outcome.explanations:
-        if one.id in (*named, UNLISTED) or one.evidence - outcome.baseline.evidence <= GAIN[1] or len(named) == MOST:
+        if one.id in (*named, UNLISTED) or one.evidence - outcome.baseline.evidence <= GAIN[1]:
             continue
         rival = _distances(outcome, one)
         nearer = np.array([rival[name] - best[name] for name in best if name in rival])
-        if len(nearer) >= FEWEST and not _clear(nearer):
+        if len(nearer) and ((len(nearer) >= FEWEST and not _clear(nearer)) or float(nearer.mean()) < own_error):
             named.append(one.id)
     if len(named) == len(decision.named):
         return decision
+    if len(named) > MOST:
+        return Decision(UNDETERMINED, (), 0.0, f"{', '.join(named)} come equally near, none of them near enough")
     return replace(decision, named=tuple(named), confidence=min(decision.confidence, 1.0 / len(named)))
 
 
