@@ -74,13 +74,16 @@ def printed(run: Callable[[], None]) -> str:
 
 
 def page(folder: Path) -> str:
-    """The whole page; a benchmark without results is said to be missing."""
-    parts = [HEAD]
+    """The whole page; a benchmark without results keeps what the page said of it, or is said to be missing."""
+    parts, before = [HEAD], _sections()
 
     def section(title: str, file: str, words: str, text: Callable[[list[Row]], str]) -> None:
         rows = read(folder / file)
-        body = versions(rows) + text(rows) if rows else "Not measured yet.\n"
-        parts.append(f"## {title}\n{words}\n{body}")
+        if rows or title not in before:
+            body = versions(rows) + text(rows) if rows else "Not measured yet.\n"
+            parts.append(f"## {title}\n{words}\n{body}")
+        else:
+            parts.append(before[title])
 
     section(
         "Practice sessions",
@@ -119,6 +122,14 @@ def page(folder: Path) -> str:
     text = block(cost.read_text(encoding="utf-8")) if cost.is_file() else "Not measured yet.\n"
     parts.append(f"## Cost\n`bench_cost.py`: seconds over the number of recordings.\n\n{text}")
     return "\n".join(parts)
+
+
+def _sections() -> dict[str, str]:
+    """The page as it stands, by title."""
+    if not PAGE.is_file():
+        return {}
+    found = PAGE.read_text(encoding="utf-8").split("\n## ")[1:]
+    return {text.split("\n", 1)[0]: f"## {text.rstrip()}\n" for text in found}
 
 
 PEERS = """`bench_peers.py`, on driven rigs: those of the practice sessions and random ones with plain sizes (0.7),
