@@ -13,12 +13,17 @@ UNLISTED = "unlisted"
 
 @dataclass(frozen=True)
 class Free:
-    """A parameter that is searched: its bounds, and whether on a logarithmic scale."""
+    """A parameter that is searched: its bounds, whether on a logarithmic scale, and how far off it may still be.
+
+    ``unsure`` is a standard deviation of the logarithm, or of a fifth of the span; what places lines in a spectrum is
+    found by them, to less than they are wide.
+    """
 
     name: str
     lower: float
     upper: float
     log: bool = True
+    unsure: float = 0.2
 
     def inward(self, value: float) -> float:
         return float(np.log(value)) if self.log else value
@@ -26,6 +31,11 @@ class Free:
     def outward(self, position: float) -> float:
         value = float(np.exp(position)) if self.log else position
         return float(np.clip(value, self.lower, self.upper))
+
+    @property
+    def spread(self) -> float:
+        """Standard deviation on the scale of the search by which a start may be off."""
+        return self.unsure if self.log else 0.2 * self.unsure * self.span
 
     @property
     def span(self) -> float:
@@ -91,7 +101,7 @@ def candidates(pitches: tuple[float, ...], ceilings: tuple[float, ...], grain: f
         ),
         Candidate(
             "ground_joints",
-            (Free("depth_m", 1e-6, 0.02), Free("pitch_m", 3e-3, 2.0), Free("width_m", 2e-3, 0.03)),
+            (Free("depth_m", 1e-6, 0.02), Free("pitch_m", 3e-3, 2.0, unsure=0.04), Free("width_m", 2e-3, 0.03)),
             _grid(pitch_m=pitches, depth_m=(8e-5, 2e-4, 5e-4, 1.2e-3), width_m=(6e-3,)),
             {},
         ),
@@ -103,7 +113,7 @@ def candidates(pitches: tuple[float, ...], ceilings: tuple[float, ...], grain: f
         ),
         Candidate(
             "flexible_mast",
-            (Free("f_mast_Hz", 2.0, 40.0), Free("mass_kg", 0.1, 8.0)),
+            (Free("f_mast_Hz", 2.0, 40.0, unsure=0.04), Free("mass_kg", 0.1, 8.0)),
             _grid(f_mast_Hz=(4.0, 5.5, 7.0, 8.5, 10.0, 13.0, 17.0), mass_kg=(1.0, 2.5)),
             {"height_above_com_m": 0.33, "damping_ratio": 0.03},
         ),

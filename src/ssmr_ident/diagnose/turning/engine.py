@@ -16,6 +16,8 @@ from ssmr_ident.diagnose.turning.bench import STEP, Bench
 from ssmr_ident.diagnose.turning.candidates import Candidate, candidates, pitches_heard
 from ssmr_ident.diagnose.turning.conditions import Condition, conditions_of, held_back
 from ssmr_ident.diagnose.turning.counter import Counter, Progress
+from ssmr_ident.diagnose.turning.ensemble import ROUNDS as ENSEMBLE_ROUNDS
+from ssmr_ident.diagnose.turning.ensemble import settled
 from ssmr_ident.diagnose.turning.grip import PATH, TRIED, GripProfile, grip_profile
 from ssmr_ident.diagnose.turning.likelihood import Score
 from ssmr_ident.diagnose.turning.regimes import widened
@@ -26,16 +28,16 @@ FREED, FREED_LOOSE, FREED_STRAIGHT = 5, 3, 3
 """Explanations that get the baseline set free beside them: with calibration, without, and without from the file's
 baseline."""
 FIRST_STEPS = 3
-HALVINGS = ((4, 4), (2, 10))  # how many of the best get how many more steps, as long as they gain
+HALVINGS = ((4, 4),)  # how many of the best get how many more steps, as long as they gain
+SETTLED = 2  # that an ensemble fits to the end
 FINAL_SEEDS = (1, 2, 3, 4)
-LAST_STEPS = 5  # of fitting the winner, with all of the final seeds and fine slopes
 LEFT = 20.0
 """What the model's own error may add to the baseline's log likelihood where nothing is missing (docs/theory)."""
 REFINE_FAR = 100.0
 """Of evidence: what lies further behind does not come first by being fitted (1.5 times the most seen)."""
 DISTORTED_DB = 2.0
 """Own error of a baseline fitted on the targets from which on it may have been bent by what is missing."""
-CLOSE = 30.0  # of evidence behind the first: who comes first may still be a matter of where the search began
+CLOSE = 100.0  # of evidence behind the first: as much as an ensemble was seen to add where slopes had ended
 MANY = 3  # target conditions from which on one run each has to do while searching
 
 
@@ -143,7 +145,6 @@ def examine(
 
     every = candidates(_pitches(anchor, targets), _ceilings(targets), anchor.values.get("floor.height_m", 3e-5))
     pairs = _tried(anchor, every, targets, show)
-    starts = {pair[0].id: pair[-1] for pair in pairs}
     if calibration:
         level = max(baseline.evidence, pairs[0][0].evidence) - REFINE_FAR
         pool = [one for pair in pairs[:FREED] for one in _both(pair) if one.evidence > level]
@@ -155,26 +156,26 @@ def examine(
             pool += [pair[0] for pair in _tried(straight, every, targets, show)[:FREED_STRAIGHT]]
     seconds["explanations"] = time.perf_counter() - clock - seconds["baseline"]
 
+    final = tuple(1000 * seed + s for s in FINAL_SEEDS)
     alone = 0 if calibration else FIRST_STEPS + sum(more for _, more in HALVINGS)  # steps of the baseline by itself
-    steps = FIRST_STEPS * len(pool) + sum(most * more for most, more in HALVINGS) + 2 + alone + 2 * LAST_STEPS
+    steps = FIRST_STEPS * len(pool) + sum(most * more for most, more in HALVINGS) + alone
+    steps += SETTLED * (1 + ENSEMBLE_ROUNDS) + (0 if calibration else ENSEMBLE_ROUNDS)
     count = Counter(show, "baseline set free beside them", steps)
     best = [replace(freed(one, targets, FIRST_STEPS, count.advance), slopes=None) for one in pool]
     for most, more in HALVINGS:
         best.sort(key=lambda one: one.evidence, reverse=True)
-        best = _one_each(best) if most == 2 else best
         reach = best[0].evidence - REFINE_FAR if best else 0.0
         for i, one in enumerate(best[:most]):
             if one.evidence > reach:
                 best[i] = freed(one, targets, more, count.advance, STEP)
     best = _one_each(best)
-    for i in _ahead(best[:2], baseline):
-        best[i] = polished(best[i], starts.get(best[i].id, best[i]), targets, count.advance)
+    for i in _ahead(best[:SETTLED], baseline):
+        best[i] = settled(polished(best[i], targets, count.advance), targets, seed, final, count.advance)
     if not calibration:  # the explanations had their baseline fitted further on the targets; so must it be
-        baseline = freed(baseline, targets, alone, count.advance, STEP)
+        baseline = settled(freed(baseline, targets, alone, count.advance, STEP), targets, seed, final, count.advance)
     finals = [_final(one, targets, seed) for one in [baseline, *_one_each(best)]]
-    finals[1:] = sorted(finals[1:], key=lambda one: one.evidence, reverse=True)
-    for i in _ahead(finals[1:3], finals[0]):
-        finals[i + 1] = freed(replace(finals[i + 1], slopes=None), targets, LAST_STEPS, count.advance, STEP)
+    if calibration:  # a better fit to the calibration, found beside an effect, is no merit of the effect's
+        finals[0] = max([finals[0], *_without(finals[1:], targets)], key=lambda one: one.evidence)
     count.finish()
     rest = [one for one in _one_each([pair[0] for pair in pairs]) if one.id not in {other.id for other in finals}]
     ranked = sorted(finals[1:], key=lambda one: one.evidence, reverse=True)
@@ -219,6 +220,12 @@ def _ahead(ranked: list[Explained], baseline: Explained) -> list[int]:
         i for i, one in enumerate(ranked)
         if one.evidence > baseline.evidence and one.evidence > ranked[0].evidence - CLOSE
     ]  # fmt: skip
+
+
+def _without(explanations: list[Explained], targets: tuple[Condition, ...]) -> list[Explained]:
+    """The baselines that go with explanations, each by itself."""
+    every = [explained(one.anchor, None, {}, targets) for one in explanations]
+    return [one for one in every if one is not None]
 
 
 def _one_each(explanations: list[Explained]) -> list[Explained]:

@@ -145,30 +145,15 @@ def refined(start: Explained, targets: tuple[Condition, ...], advance: Callable[
     return best[0]
 
 
-def polished(
-    best: Explained, start: Explained, targets: tuple[Condition, ...], advance: Callable[[], None]
-) -> Explained:
-    """The winner once more: from another start, with its first parameter half as large again, at other distances.
-
-    Spectra are no smooth functions of an effect's size, and what a search ends on depends on where it began.
-    """
-    candidate = best.candidate
-    if candidate is None or not candidate.free:
-        return best
-    first = candidate.free[0]
-    larger = dict(best.values)
-    larger[first.name] = first.outward(first.inward(larger[first.name]) + np.log(1.5)) if first.log else (
-        float(np.clip(1.5 * larger[first.name], first.lower, first.upper))
-    )  # fmt: skip
-    others = [start.values, larger]
+def polished(best: Explained, targets: tuple[Condition, ...], advance: Callable[[], None]) -> Explained:
+    """The winner once more from other distances, where it has one: lines of one comb fall on those of others."""
     if PITCH in best.values:
-        others += _other_pitches(best, targets)
-    for values in others:
-        again = explained(best.anchor, candidate, values, targets)
-        if again is not None and again.evidence > best.evidence - REACH:
-            found = freed(replace(again, slopes=best.slopes), targets, POLISH_STEPS, lambda: None, STEP)
-            if found.evidence > best.evidence:
-                best = found
+        for values in _other_pitches(best, targets):
+            again = explained(best.anchor, best.candidate, values, targets)
+            if again is not None and again.evidence > best.evidence - REACH:
+                found = freed(replace(again, slopes=best.slopes), targets, POLISH_STEPS, lambda: None, STEP)
+                if found.evidence > best.evidence:
+                    best = found
     advance()
     return best
 

@@ -1,0 +1,137 @@
+"""Baseline and effect fitted together by an ensemble: what many runs about one place say of all parameters at once.
+
+Spectra of stick-slip are no smooth functions of the parameters. A slope taken between two runs is half chance, and
+steps along such slopes end in the first hollow that they come to, often one that only these speeds and these runs
+have. An ensemble spread over what is known takes its slopes from all of its members (ensemble Kalman inversion with
+the priors as data: Iglesias, Law and Stuart 2013; Chada, Stuart and Tong 2020), so that hollows narrower than itself
+do not hold it; it draws together as the data's weight is turned up from round to round.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from ssmr_ident.diagnose.turning.anchor import Anchor
+from ssmr_ident.diagnose.turning.bench import COARSE
+from ssmr_ident.diagnose.turning.conditions import Condition
+from ssmr_ident.diagnose.turning.likelihood import Score, weight_of
+from ssmr_ident.diagnose.turning.search import Explained, explained
+
+ROUNDS, ROUGH = 6, 3  # all, and the first ones, that are simulated with coarse steps
+MOST, FEWEST, RUNS = 48, 24, 240
+"""Members at most and at least (more than twice the parameters), and runs of one round that decide between."""
+SPREAD = 0.5  # of the first ensemble, in standard deviations of the priors
+SHRUNK = 0.5  # of the way that a fit has gone from the file's values: what slopes began may have led astray
+OUTLIERS = 0.25  # of the members, the worst, give way to copies of others: robots that stick or fall over
+LARGEST = 3.0  # of a residual, natural logarithm: beyond it densities differ by nothing that a slope describes
+TAU_DB = (0.8, 6.0)
+WEIGHTS = (0.15, 0.25, 0.5, 1.0)  # of the data in the first rounds, and from then on
+KEPT = 4  # best members that are compared, with their mean, over several runs per speed
+
+
+def settled(
+    start: Explained, targets: tuple[Condition, ...], seed: int, final: tuple[int, ...], advance: Callable[[], None]
+) -> Explained:
+    """The explanation where an ensemble about it ends, if that is better.
+
+    Parameters
+    ----------
+    start : Explained
+    targets : tuple of Condition
+    seed : int
+        Of the draws, and of the simulated floors.
+    final : tuple of int
+        Floors over which start, mean, and best members are compared; other ones than the ensemble runs over.
+    advance : callable
+        Called once per round.
+    """
+    random = np.random.default_rng(seed)
+    candidate, size = start.candidate, len(start.anchor.priors)
+    conditions = len(start.anchor.calibration) + len(targets)
+    own = np.zeros(0) if candidate is None else candidate.position(start.values)
+    about = np.concatenate([SHRUNK * start.anchor.z, own])
+    spread = np.concatenate([np.full(size, SPREAD), [] if candidate is None else [f.spread for f in candidate.free]])
+    members = about + spread * random.standard_normal((int(np.clip(RUNS // conditions, FEWEST, MOST)), len(about)))
+    seen: list[tuple[float, np.ndarray]] = []
+    for done in range(ROUNDS):
+        step = COARSE if done < ROUGH else start.anchor.step
+        anchor = replace(start.anchor, seeds=(max(final) + 1 + done,), step=step)
+        seen, members = _moved(start, anchor, members, targets, random, WEIGHTS[min(done, len(WEIGHTS) - 1)])
+        advance()
+        if not len(members):
+            return start
+    several = replace(start.anchor, seeds=final)
+    seen.sort(key=lambda pair: pair[0], reverse=True)
+    places = [np.concatenate([start.anchor.z, own]), members.mean(axis=0), *(at for _, at in seen[:KEPT])]
+    _prefetch(start, several, places, targets)
+    found = [one for at in places if (one := _at(start, several, at, targets)) is not None]
+    best = max(found, key=lambda one: one.evidence, default=start)
+    return replace(best, anchor=replace(best.anchor, seeds=start.anchor.seeds), spread=start.spread)
+
+
+def _moved(
+    start: Explained, anchor: Anchor, members: np.ndarray, targets: tuple[Condition, ...],
+    random: np.random.Generator, weight: float,
+) -> tuple[list[tuple[float, np.ndarray]], np.ndarray]:  # fmt: skip
+    """One round: evidence and place of every member that could be simulated, and where they go."""
+    size = len(anchor.priors)
+    _prefetch(start, anchor, list(members), targets)
+    results = [(one, _residual(start, anchor, at, targets), at)
+               for at in members if (one := _at(start, anchor, at, targets)) is not None]  # fmt: skip
+    kept = [(one, residual, at) for one, residual, at in results if residual is not None]
+    if len(kept) < FEWEST // 2:
+        return [], np.empty((0, members.shape[1]))
+    evidence = np.array([one.evidence for one, _, _ in kept])
+    tau = float(np.clip(np.median([one.target.tau_db for one, _, _ in kept]), *TAU_DB))
+    place = np.array([at for _, _, at in kept])
+    data = np.sqrt(weight_of(tau)) * np.clip([residual for _, residual, _ in kept], -LARGEST, LARGEST)
+    data = np.column_stack([data, place[:, :size]])  # the priors' own residuals
+    good = np.flatnonzero(evidence >= np.quantile(evidence, OUTLIERS))
+    chosen = np.where(np.isin(np.arange(len(kept)), good), np.arange(len(kept)), random.choice(good, len(kept)))
+    deviation = [(x[good] - x[good].mean(axis=0)) / np.sqrt(len(good) - 1) for x in (data, place)]
+    noisy = data[chosen] + random.standard_normal(data.shape) / np.sqrt(weight)
+    gain = np.linalg.solve(deviation[0] @ deviation[0].T + np.eye(len(good)) / weight, deviation[0] @ noisy.T)
+    return list(zip(evidence.tolist(), place, strict=True)), place[chosen] - gain.T @ deviation[1]
+
+
+def _effects(start: Explained, own: np.ndarray) -> tuple[dict[str, float], dict]:
+    if start.candidate is None:
+        return {}, {}
+    values = start.candidate.values(own)
+    return values, start.candidate.effects(values)
+
+
+def _prefetch(start: Explained, anchor: Anchor, places: list[np.ndarray], targets: tuple[Condition, ...]) -> None:
+    jobs = []
+    for at in places:
+        values, (_, effects) = anchor.at(at[: len(anchor.priors)]), _effects(start, at[len(anchor.priors) :])
+        pairs = [*((c, {}) for c in anchor.calibration), *((c, effects) for c in targets)]
+        jobs += [(c, values, active, seed) for c, active in pairs for seed in anchor.seeds]
+    anchor.bench.prefetch(jobs, anchor.step)
+
+
+def _at(start: Explained, anchor: Anchor, at: np.ndarray, targets: tuple[Condition, ...]) -> Explained | None:
+    """The explanation with other values; None where they make no robot."""
+    z = at[: len(anchor.priors)]
+    moved = replace(anchor, z=z)
+    if anchor.calibration:
+        found = replace(anchor, calibration=()).score(anchor.calibration, {}, anchor.at(z))
+        if found is None:
+            return None
+        fit = found[0]
+        moved = replace(moved, fit=Score(fit.log_likelihood - 0.5 * float(z @ z), fit.tau_db, fit.rms_db))
+    return explained(moved, start.candidate, _effects(start, at[len(z) :])[0], targets)
+
+
+def _residual(start: Explained, anchor: Anchor, at: np.ndarray, targets: tuple[Condition, ...]) -> np.ndarray | None:
+    """Measured less simulated log densities of calibration and targets, nothing carried over."""
+    size = len(anchor.priors)
+    values, direct = anchor.at(at[:size]), replace(anchor, calibration=())
+    effects = _effects(start, at[size:])[1]
+    parts = [direct.blocks(anchor.calibration, {}, 0.0, values), direct.blocks(targets, effects, 0.0, values)]
+    if any(part is None for part in parts):
+        return None
+    return np.concatenate([block.residual for part in parts if part is not None for block in part])

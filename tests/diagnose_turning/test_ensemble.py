@@ -1,0 +1,53 @@
+"""An ensemble finds what a drawn session was made with, from a start that slopes do not lead away from."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from ssmr_ident.core.parameter import Estimate
+from ssmr_ident.diagnose.turning.anchor import Anchor, priors_of, scale_of
+from ssmr_ident.diagnose.turning.bench import COARSE, Bench
+from ssmr_ident.diagnose.turning.candidates import candidates
+from ssmr_ident.diagnose.turning.conditions import Condition
+from ssmr_ident.diagnose.turning.ensemble import settled
+from ssmr_ident.diagnose.turning.likelihood import Score
+from ssmr_ident.diagnose.turning.search import explained
+from ssmr_ident.diagnose.turning.spectra import look
+from ssmr_ident.session import read_parameters
+
+TRUE = {"height_m": 2.5e-4, "length_m": 0.015}
+
+
+def _target(bench: Bench, anchor_values: dict) -> Condition:
+    rates = np.atleast_2d([-1.5, 1.5])
+    white = np.random.default_rng(0).standard_normal((4000, 3))
+    blank = look(white, 500.0)
+    one = Condition("target", "swivel", ("a",), (blank,), blank, ("ax", "ay", "az"), np.full(3, 1e-8), np.zeros(3),
+                    rates, 1.0, 1.0, 6.0, 0.6, None, 1.0, 0.0)  # fmt: skip
+    run = bench.run(one, anchor_values, {"ground_roughness": TRUE}, (77,))
+    assert run is not None
+    seen = replace(run.look, level_variance=np.full(9, 0.01))
+    return replace(one, looks=(seen,), mean=seen)
+
+
+def test_settled_finds_a_floor_from_a_wrong_start() -> None:
+    parameters = read_parameters("p3at-extended").updated({"tire.sliding_speed_m_s": Estimate(0.3, 0.03, "m/s")})
+    bench = Bench(parameters)
+    priors = priors_of(parameters)
+    plain = Anchor(bench, np.ones(3), priors, np.zeros(len(priors)), (), Score(0.0, 0.0, 0.0), (1,), step=COARSE)
+    target = _target(bench, plain.values)
+    anchor = replace(plain, scale=scale_of((target,)))
+    floor = next(c for c in candidates((0.1,), (10.0,), 3e-5) if c.id == "ground_roughness")
+    start = explained(anchor, floor, {"height_m": 3.5e-4, "length_m": 0.012}, (target,))
+    assert start is not None
+    rounds: list[int] = []
+    found = settled(start, (target,), 0, (1, 2), lambda: rounds.append(1))
+    again = settled(start, (target,), 0, (1, 2), lambda: None)
+    assert found.values == again.values
+    assert np.array_equal(found.anchor.z, again.anchor.z)
+    several = explained(replace(anchor, seeds=(1, 2)), floor, start.values, (target,))
+    assert several is not None
+    assert found.evidence > several.evidence
+    assert abs(np.log(found.values["height_m"] / TRUE["height_m"])) < 0.25
+    assert found.anchor.seeds == start.anchor.seeds
+    assert len(rounds) > 1
