@@ -14,8 +14,8 @@ import pytest
 from ssmr_ident.identify.robot_map import predicted_modes
 from ssmr_ident.physics import slots
 from ssmr_ident.physics.effect import Effect, Site
-from ssmr_ident.physics.effects import CATALOGUE
-from ssmr_ident.physics.element import STATES, element_advance, element_force
+from ssmr_ident.physics.effects import CATALOGUE, unlisted
+from ssmr_ident.physics.element import STATES, element_advance, element_force, inner_slots
 from ssmr_ident.physics.motor import wheel_rates
 from ssmr_ident.physics.rig import Rig
 from ssmr_ident.physics.robot import Robot, robot_from_parameters
@@ -93,7 +93,7 @@ def test_the_declaration_is_complete(effect: Effect) -> None:
 @EACH
 def test_every_parameter_reaches_the_code(effect: Effect) -> None:
     names = [parameter.name for parameter in effect.parameters]
-    if effect.id == "unlisted":  # a vector of its own beside the slots
+    if effect.id == "unlisted":
         sizes = {"deflection": 5e-3, "speed": 0.2, "force": 20.0}
         motions = [_rig_motion({})]
         for name, probe in zip(names, effect.probes, strict=True):
@@ -123,7 +123,8 @@ def test_slots_and_their_indices_agree() -> None:
     assert vector[slots.BELT_STIFFNESS] == 1234.0
     assert vector[slots.GAP] == 0.003
     assert vector[slots.RIM_MASS] == CATALOGUE["motor_belt"].values()["rim_mass_kg"]
-    assert len(slots.SLOTS) - 1 == slots.RIM_MASS
+    assert slots.UNLISTED == slots.RIM_MASS + 1 == len(slots.SLOTS) - len(unlisted.TERMS)
+    assert slots.SLOTS.index("wheel_eccentricity.eccentricity_m") == slots.ECCENTRICITY == len(inner_slots(vector)) - 1
 
 
 def _experiments(robot: Robot, long: bool) -> dict[str, list[Scenario]]:

@@ -13,10 +13,12 @@ from scipy.optimize import brentq
 from scipy.special import ellipk
 
 from ssmr_ident.physics.effects import CATALOGUE, ground_roughness
+from ssmr_ident.physics.element import STATES, element_advance, element_force, element_loaded
 from ssmr_ident.physics.linear import linear_robot
 from ssmr_ident.physics.motor import wheel_rates
 from ssmr_ident.physics.rig import Rig
 from ssmr_ident.physics.robot import GRAVITY, Robot, robot_from_parameters
+from ssmr_ident.physics.slots import checked, effect_vector
 from ssmr_ident.physics.tire import grip_shares
 from ssmr_ident.session import read_parameters
 from ssmr_ident.simulate import Scenario, simulate
@@ -71,6 +73,56 @@ def test_duffing_period_is_the_elliptic_integral() -> None:
             expected, rel=1e-5
         )
         assert abs(expected * OMEGA / (2 * math.pi) - 1) > 0.05
+
+
+@law("nonlinear_stiffness")
+@pytest.mark.parametrize("share", [0.6, -0.4])
+def test_a_knee_gives_the_period_of_two_slopes(share: float) -> None:
+    """An arc at K up to the knee and one at (1 + a) K beyond it, each a part of its own circle."""
+    knee, top = 2e-3, 6e-3
+    beyond = OMEGA * math.sqrt(1.0 + share)
+    centre = knee - knee / (1.0 + share)  # about which the outer arc swings
+    radius = top - centre
+    through = math.acos((knee - centre) / radius) / beyond
+    speed = radius * beyond * math.sin(beyond * through)
+    expected = 4.0 * (through + math.atan(knee * OMEGA / speed) / OMEGA)
+    values = {"k3_N_m3": 0.0, "knee_share": share, "knee_m": knee}
+    assert _period(_swing({"nonlinear_stiffness": values}, top), 8000.0) == pytest.approx(expected, rel=1e-5)
+
+
+@law("dry_friction")
+@pytest.mark.parametrize("slider", [0.0, 1.0])
+def test_friction_takes_four_times_force_and_way_per_cycle(slider: float) -> None:
+    """4 F (A - F/k) of a spring with a slider, exactly; of Dahl's law up to the rounding of its corners."""
+    friction, stiffness, top = 2.0, 2e4, 1e-3
+    e = effect_vector(
+        checked({"dry_friction": {"F_c_N": friction, "element_stiffness_N_m": stiffness, "slider": slider}})
+    )
+    way = top * np.sin(2.0 * np.pi * np.linspace(0.0, 2.0, 8001))
+    hidden, force = np.zeros(STATES), []
+    for rate in np.diff(way):
+        element_advance(hidden, rate, 1.0, True, e)
+        force.append(element_force(0.0, 0.0, hidden, STIFFNESS, 1.0, 1.0, True, e))
+    work = float(np.sum(np.array(force[4000:]) * np.diff(way)[4000:]))
+    assert work == pytest.approx(4.0 * friction * (top - friction / stiffness), rel=2e-3 if slider else 2e-2)
+
+
+@law("dry_friction")
+def test_a_push_leaves_what_its_own_laws_leave() -> None:
+    """Dahl from rest: z = F/k (1 - exp(-s k/F)); Bouc and Wen with n = 2: y tanh(s/y); a dashpot has not moved."""
+    push, reach, y = 4e-4, 5e-4, 3e-4
+    e = effect_vector(
+        checked({
+            "dry_friction": {"F_c_N": reach * 3e3, "element_stiffness_N_m": 3e3},
+            "hysteresis": {"alpha": 0.8, "yield_m": y},
+            "viscoelastic_relaxation": {"K_m_N_m": 1e3, "tau_s": 1e-2},
+        })
+    )  # fmt: skip
+    for share in (1.0, -0.3):
+        found = element_loaded(push, share, True, e)
+        exact = reach * (1.0 - math.exp(-push / reach)), y * math.tanh(push / y), push
+        assert found == pytest.approx([share * z for z in exact], rel=1e-9)
+    assert element_loaded(push, 1.0, False, e)[:2] == (0.0, 0.0)
 
 
 @law("dry_friction")
@@ -136,6 +188,29 @@ def test_the_smooth_force_moves_a_shaken_mass_as_an_adaptive_solver_has_it(seed:
         size = np.abs(exact[column]).max()
         assert np.abs(found[:, column] - exact[column]).max() < 2e-4 * size
         assert np.abs(plain[:, column] - exact[column]).max() > 0.03 * size
+
+
+@law("unlisted")
+def test_a_tire_has_the_same_smooth_force_along_both_axes(robot: Robot) -> None:
+    """With its contacts about the CoM and at its height, a robot that slides nowhere is one mass on four springs."""
+    ahead = [robot.contact_points[:, 0].mean(), 0.0, 0.0]
+    low = robot.with_changes(contact_points=(robot.contact_points - ahead) * [1.0, 1.0, 1e-6], **HELD)
+    c, cubic = -60.0, 2e4
+    values = {"c_abs_v_N_s_m": c, "c_v3_N_s3_m3": cubic}
+    for axis, name in enumerate(("x", "y")):
+        k, d = low.stiffness[axis], low.damping[axis]
+
+        def rate(t: float, state: np.ndarray, k: float = k, d: float = d) -> tuple[float, float]:
+            s, v = state
+            return v, -4.0 / low.mass * (k * s + d * v + c * abs(v) + cubic * v**3)
+
+        time = np.arange(500) / 1000.0
+        exact = solve_ivp(rate, (0.0, 0.5), (1e-3, 0.0), t_eval=time, rtol=1e-9, atol=1e-13, max_step=1e-3).y[0]
+        scenario = Scenario("free_response", 0.5, offset={name: 1e-3})
+        found = simulate(low, scenario, 1000.0, effects={"unlisted": values})[name]
+        plain = simulate(low, scenario, 1000.0)[name]
+        assert np.abs(found - exact).max() < 1e-4 * 1e-3
+        assert np.abs(plain - exact).max() > 0.05 * 1e-3
 
 
 @law("free_play")

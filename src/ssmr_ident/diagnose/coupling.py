@@ -38,7 +38,8 @@ def coupled(setup: Setup, parameters: ParameterSet, kept: tuple[Trial, ...]) -> 
     logs: dict[str, Measurement] = {m.name: m for m in setup.campaign.measurements}
 
     def widened(trials: tuple[Trial, ...]) -> list[Trial]:
-        return [decay_trial(logs[t.name], builder) if t.part is None else t for t in trials]
+        free = [t.experiment == "free_response" and t.part is None for t in trials]
+        return [decay_trial(logs[t.name], builder) if wide else t for t, wide in zip(trials, free, strict=True)]
 
     wide = best_baseline(widened(setup.fitted), replace(setup, model=model), parameters)[0]
     fit = descend(evaluate(setup.fitted, model, wide.point, wide.nuisances), LAST)

@@ -44,10 +44,8 @@ FAR = 3.0
 """Prior standard deviations by which a parameter may have moved beside an effect before the fit is begun again."""
 
 CHANCE = 0.0027
-"""Probability, that of three standard deviations, with which an amplitude may be as far from off by chance."""
-
-RELEVANT = 0.97
-"""The same for the first effect: an effect that saves less of the variance predicts nothing better."""
+"""Probability, that of three standard deviations, with which an amplitude may be as far from off by chance, or
+n ln(RSS) on recordings kept back fall as far where the first effect is none."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -161,7 +159,8 @@ def turned(fit: JointFit, lengths: tuple[float, ...]) -> JointFit:
     effect_id = fit.model.ids[-1]
     own = fit.model.held[effect_id]
     best = fit
-    for tried in combinations(CATALOGUE[effect_id].holds):
+    effect = CATALOGUE[effect_id]
+    for tried in combinations({**effect.holds, **effect.forms}):
         if tried == {name: own[name] for name in tried} or not loud(fit):
             continue
         model = replace(fit.model, held={**fit.model.held, effect_id: {**own, **tried}})
@@ -203,8 +202,9 @@ def _better(leader: Explanation, before: Explanation, first: bool) -> bool:
     found = evidences([before, leader])
     if found[leader.id] - found[before.id] <= CERTAIN:
         return False
-    saved = float(np.exp(np.mean(np.log(leader.kept.parts / before.kept.parts))))
-    if saved < (RELEVANT if first else SECOND):
+    change = np.log(leader.kept.parts / before.kept.parts)
+    saved = float(np.exp(np.mean(change)))
+    if saved < SECOND or (first and -float(leader.kept.counted @ change) > chi2.isf(CHANCE, 1)):
         return True
     # a sensor clips in the loudest recording only: what was kept back need not show it, but must not suffer
     strongest = float(np.min(leader.fit.parts / before.fit.parts))

@@ -119,11 +119,11 @@ def search(
         The model has an effect already, and a second one is looked for.
     progress : callable, optional
     """
-    groups = scan(base, candidates(base, baseline))
     misfit = base.parts / [t.size for t in base.trials]
     # one recording that stands out may be the only one in which a wheel lifts; beside an effect that explains the
     # others it is more likely the effect's own formula
     loud = float(np.median(misfit)) > WIDE if beside else float(np.max(misfit)) > LOUD
+    groups = scan(base, candidates(base, baseline), small=not loud)
     rest = [np.inf]
     if loud and len(lengths) > 1:
         rough = _screened(base, groups, lengths, progress)

@@ -24,6 +24,9 @@ Array = np.ndarray
 ROUNDING = 1e-10
 """Share of a direction's own curvature below which what is left of it is rounding."""
 
+LEAST = 1e-3
+"""Smallest share of a probe at which an effect is tried."""
+
 SEEN = 1e-6
 """Share of the noise's variance below which a change cannot be told from rounding."""
 
@@ -74,7 +77,7 @@ def candidates(fit: JointFit, baseline: str) -> tuple[Effect, ...]:
     )
 
 
-def scan(fit: JointFit, effects: Sequence[Effect]) -> list[list[Suspect]]:
+def scan(fit: JointFit, effects: Sequence[Effect], small: bool = False) -> list[list[Suspect]]:
     """Per effect its suspects, the most promising probe first; effects that change nothing are left out.
 
     Parameters
@@ -82,6 +85,9 @@ def scan(fit: JointFit, effects: Sequence[Effect]) -> list[list[Suspect]]:
     fit : JointFit
         With slopes.
     effects : sequence of Effect
+    small : bool
+        The fit leaves hardly more than noise: what is missing is small, and each effect is tried as small as that. A
+        stiffness that turns a decay by a radian points nowhere, a hundredth of it points home.
     """
     clear = Cleared(fit)
     sizes = sizes_of(fit)
@@ -92,7 +98,7 @@ def scan(fit: JointFit, effects: Sequence[Effect]) -> list[list[Suspect]]:
             at = {name: p.value(sizes) if isinstance(p, Sized) else float(p) for name, p in probe.items()}
             at = {p.name: float(np.clip(at[p.name], p.lower, p.upper)) for p in effect.parameters if p.name in at}
             if all(np.isfinite(list(at.values()))):
-                suspect = _suspect(fit, clear, effect, at, held)
+                suspect = _suspect(fit, clear, effect, at, held, small)
                 if suspect is not None:
                     suspects.append(suspect)
         if suspects:
@@ -106,7 +112,7 @@ def combinations(holds: Mapping[str, Sequence[float]]) -> list[dict[str, float]]
 
 
 def _suspect(
-    fit: JointFit, clear: Cleared, effect: Effect, at: dict[str, float], held: dict[str, float]
+    fit: JointFit, clear: Cleared, effect: Effect, at: dict[str, float], held: dict[str, float], small: bool
 ) -> Suspect | None:
     signed = [p for p in effect.amplitudes if p.name in at and p.lower < 0.0]
     points = [at]
@@ -114,10 +120,16 @@ def _suspect(
         points = [{**at, **{p.name: float(p.off or 0.0) for p in signed if p is not chosen}} for chosen in signed]
     columns = []
     for point in points:
-        change = _change(fit, effect.id, {**point, **held})
+        change, size = _change(fit, effect.id, {**point, **held}), 1.0
         if change is None or float(change @ change) < SEEN * len(change):
             return None
-        columns.append(change)
+        rms = float(np.sqrt(change @ change / len(change)))
+        if small and rms > 1.0 and not effect.sudden:
+            size = max(1.0 / rms, LEAST)
+            change = _change(fit, effect.id, {**_smaller(effect, point, size), **held})
+            if change is None:
+                return None
+        columns.append(change / size)
     raw = np.column_stack(columns)
     gram, slope, cleared = clear(raw)
     # a direction that the baseline makes as well, and may, is rounding once it is cleared
@@ -129,8 +141,9 @@ def _suspect(
         shares = np.maximum(shares, 0.0)
     fall = float(2.0 * shares @ slope - shares @ gram @ shares)
     gain = -fit.independent * float(np.log(max(1.0 - fall / fit.independent, 1e-12)))
-    sizes = {p.name: abs(at[p.name]) for p in signed}
     start = dict(at)
+    if small and not signed and not effect.sudden:
+        start = _smaller(effect, at, float(np.clip(shares[0], LEAST, 1.0)))
     grown = [p for p in effect.parameters if p.name in at and _grows(effect, p)]
     if signed:
         start |= {
@@ -138,7 +151,21 @@ def _suspect(
             for p, share in zip(signed, shares, strict=True)
         }
     names = tuple(p.name for p in (*grown, *signed))
-    return Suspect(effect.id, start, held, sizes, gain, cleared @ shares, names)
+    natural = {p.name: abs(at[p.name]) for p in signed}
+    return Suspect(effect.id, start, held, natural, gain, cleared @ shares, names)
+
+
+def _smaller(effect: Effect, at: Mapping[str, float], share: float) -> dict[str, float]:
+    """The same effect at a share of its size: what switches it off moves there, an infinity by the reciprocal."""
+    smaller = dict(at)
+    for parameter in effect.parameters:
+        name, off = parameter.name, parameter.off
+        if name not in at or (name not in effect.grows if effect.grows else off is None):
+            continue
+        off = 0.0 if off is None else off
+        value = off + share * (at[name] - off) if np.isfinite(off) else at[name] / share
+        smaller[name] = float(np.clip(value, parameter.lower, parameter.upper))
+    return smaller
 
 
 def _grows(effect: Effect, parameter: Parameter) -> bool:
@@ -150,7 +177,7 @@ def _grows(effect: Effect, parameter: Parameter) -> bool:
 def _change(fit: JointFit, effect_id: str, parameters: dict[str, float]) -> Array | None:
     """Whitened difference that an effect makes at the fit's own point and nuisances, all trials in a row."""
     values, effects = fit.model.split(fit.point)
-    active = {**effects, effect_id: parameters}
+    active = {**effects, effect_id: CATALOGUE[effect_id].begun(parameters)}
 
     def one(index: int) -> Array:
         trial = fit.trials[index]

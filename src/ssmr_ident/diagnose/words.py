@@ -32,6 +32,12 @@ LAWS = {
 }
 """Laws in plain text, for reports that cannot set formulas."""
 
+FORMS = {
+    ("nonlinear_stiffness", "knee_share"): "F = K s + knee_share K sign(s) max(|s| - knee, 0)",
+    ("dry_friction", "slider"): "F = k z, z follows s and slides at |z| = F_c/k",
+}
+"""The same where a parameter that is not 0 chooses another formula."""
+
 
 def readable(effect_id: str) -> str:
     names = {"unlisted": "a force that no listed effect makes"}
@@ -42,6 +48,9 @@ def law(effect_id: str, parameters: Mapping[str, Estimate]) -> str:
     """The law as plain text."""
     if effect_id == "unlisted":
         return unlisted.law({name: float(e.value) for name, e in parameters.items()})
+    for (name, parameter), other in FORMS.items():
+        if name == effect_id and parameter in parameters and float(parameters[parameter].value) != 0.0:
+            return other
     return LAWS.get(effect_id) or CATALOGUE[effect_id].equation
 
 

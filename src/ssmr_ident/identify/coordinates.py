@@ -83,13 +83,14 @@ class Model:
         ----------
         effect_id : str
         at : mapping of parameter to value
-            Where the fit begins; parameters left out stay at their nominal value and are not fitted.
+            Where the fit begins; parameters left out are not fitted: they stay at their nominal value, or off where
+            others switch the effect on.
         scales : mapping of parameter to float
             Natural sizes of the parameters that may change sign.
         """
         effect = CATALOGUE[effect_id]
         free, begin = [], []
-        held = {p.name: p.nominal for p in effect.parameters if p.name not in at}
+        held = {name: value for name, value in effect.begun(at).items() if name not in at}
         for parameter in effect.parameters:
             if parameter.name not in at:
                 continue

@@ -204,7 +204,7 @@ def differentiate(fit: JointFit, shared: bool = True) -> JointFit:
         values, effects = model.split(point)
         own = np.zeros((len(centre), len(nuisance)))
         for column, name in enumerate(trial.nuisances):
-            if name in trial.idle and trial.idle[name] not in model.held:
+            if name in trial.idle and not any(effect_id in model.held for effect_id in trial.idle[name]):
                 continue
             width = NUISANCE_STEP * trial.coarse
             moved = nuisance.copy()

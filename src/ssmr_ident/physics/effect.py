@@ -94,8 +94,12 @@ class Effect(Shown):
         their nominal values; plain numbers are SI.
     holds : mapping of parameter to tuple of float
         Parameters that are not fitted but tried at each of these values.
+    forms : mapping of parameter to tuple of float
+        Parameters that choose between formulas: tried at each of these values once the effect leads.
     grows : tuple of str
         Parameters that a small effect is proportional to, where these are not the ones that switch it off.
+    sudden : bool
+        Acts beyond a threshold alone, and is not proportional to anything.
     """
 
     id: str
@@ -109,7 +113,9 @@ class Effect(Shown):
     rig: bool = False
     probes: tuple[Mapping[str, float | Sized], ...] = ()
     holds: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
+    forms: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
     grows: tuple[str, ...] = ()
+    sudden: bool = False
 
     @property
     def amplitudes(self) -> tuple[Parameter, ...]:
@@ -119,6 +125,13 @@ class Effect(Shown):
     def values(self, given: Mapping[str, float] | None = None) -> dict[str, float]:
         """All parameters: the given ones, nominal for the rest."""
         return {p.name: float((given or {}).get(p.name, p.nominal)) for p in self.parameters}
+
+    def begun(self, at: Mapping[str, float]) -> dict[str, float]:
+        """All parameters where a search begins: the given ones, nominal for the rest, and off what switches it off
+        besides."""
+        amplitudes = {p.name for p in self.amplitudes}
+        others = {} if amplitudes.isdisjoint(at) else {p.name: p.off for p in self.amplitudes}
+        return self.values({**others, **at})
 
     def is_off(self, values: Mapping[str, float]) -> bool:
         return all(values[parameter.name] == parameter.off for parameter in self.amplitudes)

@@ -22,15 +22,18 @@ from ssmr_ident.physics.slots import (
     FRICTION_STIFFNESS,
     GAP,
     GAP_ROUNDING,
+    KNEE,
+    KNEE_SHARE,
     LOOP_EXPONENT,
     LOOP_SHAPE,
     QUADRATIC,
     RELAXATION_STIFFNESS,
     RELAXATION_TIME,
+    SLIDER,
     YIELD,
 )
 
-_cubic = nonlinear_stiffness.force
+_cubic, _beyond = nonlinear_stiffness.force, nonlinear_stiffness.beyond
 _quadratic = quadratic_damping.force
 _friction, _friction_advance = dry_friction.force, dry_friction.advance
 _loop, _loop_advance = hysteresis.force, hysteresis.advance
@@ -38,6 +41,9 @@ _relaxation, _relaxation_advance = viscoelastic_relaxation.force, viscoelastic_r
 _play = free_play.force
 
 STATES = 3
+
+PUSH_PARTS = 8
+"""Of a push from rest; friction is exact in one, a loop goes on in parts of its own."""
 
 
 @kernel
@@ -67,6 +73,8 @@ def element_force(s, v, z, stiffness, ratio, gap_share, tangential, e):
     if e[RELAXATION_STIFFNESS] != 0.0:
         f += _relaxation(z[2], ratio * e[RELAXATION_STIFFNESS])
     if tangential:
+        if e[KNEE_SHARE] != 0.0:
+            f += _beyond(s, stiffness, e[KNEE_SHARE], e[KNEE])
         if e[QUADRATIC] != 0.0:
             f += _quadratic(v, e[QUADRATIC])
         if e[FRICTION_FORCE] != 0.0:
@@ -86,7 +94,7 @@ def element_next(z, v, step, tangential, e):
         relaxation = _relaxation_advance(relaxation, v, step, e[RELAXATION_TIME])
     if tangential:
         if e[FRICTION_FORCE] != 0.0:
-            friction = _friction_advance(friction, v, step, e[FRICTION_FORCE], e[FRICTION_STIFFNESS])
+            friction = _friction_advance(friction, v, step, e[FRICTION_FORCE], e[FRICTION_STIFFNESS], e[SLIDER])
         if e[ALPHA] != 1.0:
             loop = _loop_advance(loop, v, step, e[YIELD], e[LOOP_EXPONENT], e[LOOP_SHAPE])
     return friction, loop, relaxation
@@ -99,9 +107,23 @@ def element_advance(z, v, step, tangential, e):
 
 
 @kernel
+def element_loaded(s, share, tangential, e):
+    """Hidden states, (STATES,) tuple, that a push from rest to s [m] leaves, times ``share``.
+
+    Friction and loops go by the path alone. A relaxing branch has had no time: a push that is held leaves it a part
+    of that.
+    """
+    z = (0.0, 0.0, 0.0)
+    for _ in range(PUSH_PARTS):
+        z = element_next(z, s, 1.0 / PUSH_PARTS, tangential, e)
+    relaxation = s if e[RELAXATION_STIFFNESS] != 0.0 else 0.0
+    return share * z[0], share * z[1], share * relaxation
+
+
+@kernel
 def inner_slots(e):
     """The slots that tires and floor look at, as a tuple that stands in for ``e`` in an inner loop."""
     return (
         e[0], e[1], e[2], e[3], e[4], e[5], e[6], e[7], e[8], e[9],
-        e[10], e[11], e[12], e[13], e[14], e[15], e[16], e[17], e[18], e[19], e[20], e[21],
+        e[10], e[11], e[12], e[13], e[14], e[15], e[16], e[17], e[18], e[19], e[20], e[21], e[22], e[23], e[24],
     )  # fmt: skip

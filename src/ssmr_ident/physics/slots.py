@@ -8,13 +8,16 @@ import numpy as np
 
 from ssmr_ident.core.errors import InputError, did_you_mean
 from ssmr_ident.core.parameter import ParameterSet
-from ssmr_ident.physics.effects import CATALOGUE
+from ssmr_ident.physics.effects import CATALOGUE, unlisted
 
 SLOTS = (
     "nonlinear_stiffness.k3_N_m3",
+    "nonlinear_stiffness.knee_share",
+    "nonlinear_stiffness.knee_m",
     "quadratic_damping.d2_N_s2_m2",
     "dry_friction.F_c_N",
     "dry_friction.element_stiffness_N_m",
+    "dry_friction.slider",
     "hysteresis.alpha",
     "hysteresis.yield_m",
     "hysteresis.exponent",
@@ -43,13 +46,16 @@ SLOTS = (
     "motor_belt.K_b_N_m",
     "motor_belt.D_b_N_s_m",
     "motor_belt.rim_mass_kg",
+    *(f"unlisted.{name}" for name in unlisted.TERMS),
 )
-CUBIC, QUADRATIC, FRICTION_FORCE, FRICTION_STIFFNESS, ALPHA, YIELD, LOOP_EXPONENT, LOOP_SHAPE = range(8)
-RELAXATION_STIFFNESS, RELAXATION_TIME, GAP, GAP_ROUNDING, GAP_SHARE_X = range(8, 13)
-KINETIC_SHARE, STRIBECK_SPEED, STRIBECK_EXPONENT, LOAD_EXPONENT, ROLLING = range(13, 18)
-JOINT_DEPTH, JOINT_PITCH, JOINT_WIDTH, ECCENTRICITY, ROUGHNESS = range(18, 23)
-LIFT, CORIOLIS, MAST_HZ, MAST_MASS, MAST_HEIGHT, MAST_DAMPING = range(23, 29)
-BELT_STIFFNESS, BELT_DAMPING, RIM_MASS = range(29, 32)
+CUBIC, KNEE_SHARE, KNEE, QUADRATIC, FRICTION_FORCE, FRICTION_STIFFNESS, SLIDER = range(7)
+ALPHA, YIELD, LOOP_EXPONENT, LOOP_SHAPE = range(7, 11)
+RELAXATION_STIFFNESS, RELAXATION_TIME, GAP, GAP_ROUNDING, GAP_SHARE_X = range(11, 16)
+KINETIC_SHARE, STRIBECK_SPEED, STRIBECK_EXPONENT, LOAD_EXPONENT, ROLLING = range(16, 21)
+JOINT_DEPTH, JOINT_PITCH, JOINT_WIDTH, ECCENTRICITY, ROUGHNESS = range(21, 26)
+LIFT, CORIOLIS, MAST_HZ, MAST_MASS, MAST_HEIGHT, MAST_DAMPING = range(26, 32)
+BELT_STIFFNESS, BELT_DAMPING, RIM_MASS, UNLISTED = range(32, 36)
+"""First of the terms that no list holds; they are the last slots."""
 
 Effects = Mapping[str, Mapping[str, float]]
 

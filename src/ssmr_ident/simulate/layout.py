@@ -8,6 +8,7 @@ MU_STATIC, MU_KINETIC, LAMBDA_MAX, SLIP_COUPLING, MOTOR_GAIN, GRAVITY_G, RELEASE
 SENSOR, POINTS, INVERSE_INERTIA, INERTIA, GRIPPING, SLIDING_SPEED, PARAMETERS = 16, 19, 31, 40, 49, 53, 54
 
 # x y z roll pitch yaw | u v w p q r | left right | carcass deflections (x, y) of each wheel | sway and its rate (x, y)
-START = 26
+# | share of a push's hidden states | how far each wheel was pressed in by it
+LOADED, START = 26, 31
 OUTPUTS = ("ax", "ay", "az", "wx", "wy", "wz", "x", "y", "z", "roll", "pitch", "yaw", "vx", "vy", "force", "head",
            "rate_left", "rate_right", "sliding", "load_1", "load_2", "load_3", "load_4")  # fmt: skip

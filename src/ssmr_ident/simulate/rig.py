@@ -13,7 +13,7 @@ from ssmr_ident.physics.effects import CATALOGUE, unlisted
 from ssmr_ident.physics.element import STATES, element_advance, element_force
 from ssmr_ident.physics.rig import Rig
 from ssmr_ident.physics.sensor import filter_step, low_pass_coefficients
-from ssmr_ident.physics.slots import Effects, checked, effect_vector
+from ssmr_ident.physics.slots import UNLISTED, Effects, checked, effect_vector
 from ssmr_ident.simulate.sensed import sensed
 
 _unlisted = unlisted.force
@@ -79,9 +79,8 @@ def simulate_rig(
     step = 1.0 / (sample_rate * oversampling)
     out = np.empty((n, 3))
     e = effect_vector(active)
-    free = unlisted.coefficients(active)
-    beside = bool(free.any()) or not np.array_equal(e, effect_vector({}))
-    laws = (rig.mass, rig.damping, rig.stiffness, e, free, beside, low_pass_coefficients(bandwidth_hz, step))
+    beside = not np.array_equal(e, effect_vector({}))
+    laws = (rig.mass, rig.damping, rig.stiffness, e, beside, low_pass_coefficients(bandwidth_hz, step))
     _run(*_propagators(rig, step), *laws, driving, position, velocity, step, oversampling, out)
     if not np.isfinite(out[-1]).all():
         row = int(np.flatnonzero(~np.isfinite(out).all(axis=1))[0])
@@ -120,11 +119,12 @@ def _propagators(rig: Rig, step: float) -> tuple[np.ndarray, np.ndarray, np.ndar
 
 @kernel
 def _run(
-    transition, weight_now, weight_next, mass, damping, stiffness, e, free, beside, low_pass,
+    transition, weight_now, weight_next, mass, damping, stiffness, e, beside, low_pass,
     force, position, velocity, step, every, out,
 ):  # fmt: skip
     x, v = position, velocity
     hidden = np.zeros(STATES)
+    free = e[UNLISTED:]
     extra = element_force(x, v, hidden, stiffness, 1.0, 1.0, True, e) + _unlisted(x, v, free) if beside else 0.0
     first = (force[0] - damping * v - stiffness * x - extra) / mass
     history = np.full(4, first)

@@ -22,9 +22,10 @@ from ssmr_ident.physics.effects import (
     motor_belt,
     rolling_resistance,
     stribeck,
+    unlisted,
 )
 from ssmr_ident.physics.effects import wheel_lift as lift_effect
-from ssmr_ident.physics.element import STATES, element_force, element_next, inner_slots
+from ssmr_ident.physics.element import STATES, element_force, element_loaded, element_next, inner_slots
 from ssmr_ident.physics.sensor import filter_step
 from ssmr_ident.physics.slots import (
     BELT_DAMPING,
@@ -52,6 +53,7 @@ from ssmr_ident.simulate.layout import (
     KY,
     KZ,
     LAMBDA_MAX,
+    LOADED,
     MASS,
     MOTOR_GAIN,
     MU_KINETIC,
@@ -79,14 +81,16 @@ from ssmr_ident.simulate.pulling import (
 )
 
 _JOINT_DEPTH, _ECCENTRICITY, _ROUGHNESS = slots.JOINT_DEPTH, slots.ECCENTRICITY, slots.ROUGHNESS
-_CUBIC, _QUADRATIC, _FRICTION, _ALPHA = slots.CUBIC, slots.QUADRATIC, slots.FRICTION_FORCE, slots.ALPHA
+_CUBIC, _KNEE, _QUADRATIC = slots.CUBIC, slots.KNEE_SHARE, slots.QUADRATIC
+_FRICTION, _ALPHA = slots.FRICTION_FORCE, slots.ALPHA
 _RELAXATION, _GAP, _LIFT, _CORIOLIS = slots.RELAXATION_STIFFNESS, slots.GAP, slots.LIFT, slots.CORIOLIS
+_FREE = slots.UNLISTED
 _stribeck, _load_law, _rolling = (
     stribeck.coefficient,
     load_sensitive_friction.coefficient,
     rolling_resistance.force,
 )
-_belt_force, _lifted = motor_belt.force, lift_effect.load
+_belt_force, _lifted, _unlisted = motor_belt.force, lift_effect.load, unlisted.force
 
 
 @kernel
@@ -127,7 +131,7 @@ def run(
     sliding_speed, together = p[SLIDING_SPEED], p[SLIDING_SPEED] > 0.0
     inv, tensor = p[INVERSE_INERTIA : INVERSE_INERTIA + 9], p[INERTIA : INERTIA + 9]
     beside = (
-        e[_CUBIC] != 0.0 or e[_QUADRATIC] != 0.0 or e[_FRICTION] != 0.0 or e[_ALPHA] != 1.0
+        e[_CUBIC] != 0.0 or e[_KNEE] != 0.0 or e[_QUADRATIC] != 0.0 or e[_FRICTION] != 0.0 or e[_ALPHA] != 1.0
         or e[_RELAXATION] != 0.0 or e[_GAP] != 0.0
     )  # fmt: skip
     patterned, rough = e[_JOINT_DEPTH] != 0.0 or e[_ECCENTRICITY] != 0.0, e[_ROUGHNESS] != 0.0
@@ -150,6 +154,13 @@ def run(
     sliding = np.zeros((4, 2), dtype=np.bool_)
     hidden = np.zeros((12, STATES))  # of x, y, z of the first wheel, then of the next
     law = inner_slots(e)
+    f = _FREE
+    free = (e[f], e[f + 1], e[f + 2], e[f + 3], e[f + 4], e[f + 5], e[f + 6], e[f + 7])
+    smooth = np.any(e[f:] != 0.0)
+    if beside and start[LOADED] != 0.0:
+        for i in range(12):
+            pressed = start[LOADED + 1 + i // 3] if i % 3 == 2 else deflection[i // 3, i % 3]
+            hidden[i, 0], hidden[i, 1], hidden[i, 2] = element_loaded(pressed, start[LOADED], i % 3 < 2, law)
     arm, load, path, ground_rate = np.zeros((4, 3)), np.zeros(4), np.zeros(4), np.zeros(4)
     belt, belt_rate, belt_pull = np.zeros(2), np.zeros(2), np.zeros(2)
     sway, sway_rate, sway_acceleration = np.zeros(2), np.zeros(2), np.zeros(2)
@@ -247,6 +258,9 @@ def run(
                 beside_x = element_force(deflection[i, 0], rate_x, kept, kx, kx / ky, share_x_gap, True, law)
                 kept = hidden[3 * i + 1, 0], hidden[3 * i + 1, 1], hidden[3 * i + 1, 2]
                 beside_y = element_force(deflection[i, 1], rate_y, kept, ky, 1.0, 1.0, True, law)
+            if smooth:
+                beside_x += _unlisted(deflection[i, 0], slip[i, 0] - contact[i, 0], free)
+                beside_y += _unlisted(deflection[i, 1], hub_y - contact[i, 1], free)
             if together:
                 slides, contact_x, contact_y, force_x, force_y = sliding_force(
                     (deflection[i, 0], deflection[i, 1]), (contact[i, 0], contact[i, 1]), (slip[i, 0], hub_y),

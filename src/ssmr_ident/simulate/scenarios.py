@@ -31,7 +31,8 @@ class Scenario:
         Start away from rest: ``x``, ``y``, ``z`` [m], ``roll``, ``pitch``, ``yaw`` [rad]; with a flexible mast also
         ``sway_x``, ``sway_y`` [m]. ``brace_x`` is how far the front tires are strained forward and the rear ones
         backward against each other, ``brace_y`` the same for left and right [m]: what a light wheel that slid while
-        the robot was pushed leaves behind.
+        the robot was pushed leaves behind. ``loaded`` is the share of the state in which a quick push to this place
+        leaves friction, loops and relaxing branches of the tires; 0 is at rest.
     velocity : mapping
         Start velocities: ``x``, ``y``, ``z`` [m/s], ``roll``, ``pitch``, ``yaw`` [rad/s], ``sway_x``, ``sway_y`` [m/s].
     wheel_rates : (k, 2) float [rad/s]

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ssmr_ident.core.errors import InputError, SimulationError
+from ssmr_ident.core.errors import SimulationError
 from ssmr_ident.core.recording import Channel, Provenance, Recording
 from ssmr_ident.core.shown import Shown
 from ssmr_ident.physics.effect import Site
@@ -110,8 +110,6 @@ def simulate(
         An unknown effect or parameter.
     """
     active = checked(effects or {})
-    if "unlisted" in active and not CATALOGUE["unlisted"].is_off(active["unlisted"]):
-        raise InputError("effects: unlisted", "acts on a rig with one mass, not on a robot", "Leave it out")
     e = effect_vector(active)
     for effect_id, values in active.items():
         change = CATALOGUE[effect_id].acts.get(Site.ROBOT)
@@ -216,4 +214,7 @@ def _start(robot: Robot, scenario: Scenario, cubic: float) -> np.ndarray:
     deflection = (now - set_down[:, :2]) @ heading
     deflection += np.sign(robot.contact_points[:, :2]) * (offset.get("brace_x", 0.0), offset.get("brace_y", 0.0))
     sway = [part.get(name, 0.0) for part in (offset, velocity) for name in ("sway_x", "sway_y")]
-    return np.concatenate([pose, rates, np.zeros(2), deflection.ravel(), sway])
+    hubs = pose[2] + (robot.contact_points @ tilt(pose[3], pose[4]).T)[:, 2]
+    pressed = height + set_down[:, 2] - hubs
+    loaded = [offset.get("loaded", 0.0)]
+    return np.concatenate([pose, rates, np.zeros(2), deflection.ravel(), sway, loaded, pressed])

@@ -91,8 +91,8 @@ class Trial:
         How names of parameters begin that this recording does not depend on.
     coarse : float
         Factor on the steps of differences: where contacts slide and stick anew, small ones see only that.
-    idle : mapping of str to str
-        Nuisances that do nothing unless an effect is active: name to the effect's id.
+    idle : mapping of str to tuple of str
+        Nuisances that do nothing unless one of these effects is active.
     even : tuple of str
         Nuisances that a recording may depend on by their square alone: a difference to one side would take its
         rounding for a slope, and a step along it be as wide as the prior allows.
@@ -123,7 +123,7 @@ class Trial:
     facts: Mapping[str, float] = field(default_factory=dict)
     blind: tuple[str, ...] = ()
     coarse: float = 1.0
-    idle: Mapping[str, str] = field(default_factory=dict)
+    idle: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     even: tuple[str, ...] = ()
     searched: bool = False
     shorten: Callable[[float], Trial] | None = None

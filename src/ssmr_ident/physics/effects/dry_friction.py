@@ -16,15 +16,18 @@ def force(z, stiffness):
 
 
 @kernel
-def advance(z, v, step, friction, stiffness):
-    """Dahl's law dz/dt = v - |v| k z/F_c over one step at constant v, exactly.
+def advance(z, v, step, friction, stiffness, slider):
+    """Dahl's law dz/dt = v - |v| k z/F_c, or a spring in series with a slider, over one step at constant v, exactly.
 
-    z : float [m], v : float [m/s], friction : float [N], stiffness : float [N/m].
+    z : float [m], v : float [m/s], friction : float [N], stiffness : float [N/m], slider : float, 0 for Dahl's law.
     """
     speed = abs(v)
     if speed == 0.0:
         return z
-    end = math.copysign(friction / stiffness, v)
+    reach = friction / stiffness
+    if slider != 0.0:
+        return min(max(z + v * step, -reach), reach)
+    end = math.copysign(reach, v)
     return end + (z - end) * math.exp(-speed * step * stiffness / friction)
 
 
@@ -38,10 +41,12 @@ EFFECT = Effect(
     parameters=(
         Parameter("F_c_N", "N", 1.0, 0.0, 200.0, "friction of one tire and axis, or of the rig", off=0.0),
         Parameter("element_stiffness_N_m", "N/m", 3e5, 1e2, 1e8, "elastic travel before it slides"),
+        Parameter("slider", "1", 0.0, 0.0, 1.0, "1: a spring in series with a slider, 0: Dahl's law"),
     ),
     experiments=("free_response", "forced"),
     acts={Site.ELEMENT: force, Site.STATE: advance},
     rig=True,
+    forms={"slider": (0.0, 1.0)},
     probes=(
         {"F_c_N": Sized(0.005, "force"), "element_stiffness_N_m": Sized(10.0, "stiffness")},
         {"F_c_N": Sized(0.03, "force"), "element_stiffness_N_m": Sized(10.0, "stiffness")},

@@ -13,18 +13,32 @@ def force(s, k3):
     return k3 * s * s * s
 
 
+@kernel
+def beyond(s, stiffness, share, knee):
+    """Further force [N] of a spring of slope (1 + share)·K beyond a knee; s, knee : float [m], stiffness K [N/m]."""
+    if s > knee:
+        return share * stiffness * (s - knee)
+    return share * stiffness * (s + knee) if s < -knee else 0.0
+
+
 EFFECT = Effect(
     id="nonlinear_stiffness",
     sentence="The tires (or the rig's spring) stiffen or soften as they are pressed.",
-    equation=r"F = K s + k_3 s^3",
+    equation=r"F = K s + k_3 s^3 + a K\,\mathrm{sign}(s)\,\max(|s| - s_k, 0)",
     source="Thesis section 3.3; Kovacic and Brennan, The Duffing Equation, Wiley 2011",
     signature="natural frequency rises (hardening) or falls (softening) with amplitude; third harmonic",
-    parameters=(Parameter("k3_N_m3", "N/m^3", 5e8, -1e10, 1e11, "cubic stiffness of one spring", off=0.0),),
+    parameters=(
+        Parameter("k3_N_m3", "N/m^3", 5e8, -1e10, 1e11, "cubic stiffness of one spring", off=0.0),
+        Parameter("knee_share", "1", 0.0, -0.95, 20.0, "a: slope beyond the knee over K, less one", off=0.0),
+        Parameter("knee_m", "m", 5e-4, 1e-7, 0.1, "deflection at which the slope changes"),
+    ),
     experiments=("free_response", "pull", "wheel_drag", "vertical_compression", "forced"),
     acts={Site.ELEMENT: force},
     rig=True,
     probes=(
         {"k3_N_m3": Sized(0.1, "stiffness/deflection^2")},
         {"k3_N_m3": Sized(-0.1, "stiffness/deflection^2")},
+        {"knee_share": 0.2, "knee_m": Sized(0.4, "deflection")},
+        {"knee_share": -0.2, "knee_m": Sized(0.4, "deflection")},
     ),
 )

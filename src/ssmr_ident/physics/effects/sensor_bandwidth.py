@@ -33,4 +33,5 @@ EFFECT = Effect(
         {"bandwidth_hz": 50.0},
         {"bandwidth_hz": 25.0},
     ),
+    sudden=True,  # nothing changes down to the bandwidth that the sheet gives
 )

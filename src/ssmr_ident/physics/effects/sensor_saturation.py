@@ -44,4 +44,5 @@ EFFECT = Effect(
         {"range_m_s2": Sized(0.9, "acceleration")},
         {"range_N": Sized(0.99, "load")},
     ),
+    sudden=True,
 )

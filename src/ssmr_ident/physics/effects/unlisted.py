@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-import numpy as np
-
 from ssmr_ident.core.kernel import kernel
 from ssmr_ident.core.parameter import Parameter
 from ssmr_ident.physics.effect import Effect, Site, Sized
@@ -25,17 +23,11 @@ TERMS = {
 
 @kernel
 def force(s, v, c):
-    """Σ c_i f_i(s, v) [N]; s : float [m], v : float [m/s], c : (8,) float in the order of ``TERMS``."""
+    """Σ c_i f_i(s, v) [N]; s : float [m], v : float [m/s]; c : (8,) float or tuple in the order of ``TERMS``."""
     return (
         c[0] * abs(v) + c[1] * abs(s) + c[2] * s * s + c[3] * v * v
         + c[4] * s * v + c[5] * s * s * v + c[6] * v * v * v + c[7] * s * abs(v)
     )  # fmt: skip
-
-
-def coefficients(active: Mapping[str, Mapping[str, float]]) -> np.ndarray:
-    """(8,) float of the active effects, 0 where there is none."""
-    values = active.get("unlisted", {})
-    return np.array([values.get(name, 0.0) for name in TERMS])
 
 
 def law(values: Mapping[str, float]) -> str:
@@ -60,8 +52,8 @@ EFFECT = Effect(
         Parameter(name, unit, 0.0, -1e12, 1e12, f"of {term}", off=0.0)
         for (name, term), unit in zip(TERMS.items(), _UNITS, strict=True)
     ),
-    experiments=("forced",),
-    acts={Site.BODY: force},
+    experiments=("free_response", "forced"),
+    acts={Site.ELEMENT: force},
     rig=True,
     probes=tuple({name: Sized(0.05, size)} for name, size in zip(TERMS, _SIZES, strict=True)),
 )

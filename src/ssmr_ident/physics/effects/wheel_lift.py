@@ -24,4 +24,5 @@ EFFECT = Effect(
     acts={Site.BODY: load},
     probes=({},),
     holds={"active": (1.0,)},
+    sudden=True,
 )
