@@ -2,8 +2,13 @@
 
     python benchmarks/bench_swivel.py effects 60 --seed 1 -o effects.jsonl
     python benchmarks/bench_swivel.py null 20 --seed 2 -o null.jsonl
-    python benchmarks/bench_swivel.py repeat 200 --seed 3
-    python benchmarks/bench_swivel.py report effects.jsonl null.jsonl
+    python benchmarks/bench_swivel.py repeat 200 --seed 3 -o repeat.jsonl
+    python benchmarks/bench_swivel.py loose 20 --seed 4 -o loose.jsonl
+    python benchmarks/bench_swivel.py report effects.jsonl repeat.jsonl loose.jsonl
+
+``null`` are sessions with nothing missing, two of three with calibration; ``repeat`` have calibration, and only those
+whose targets do not repeat it within chance are diagnosed further, since a diagnosis of the others ends there;
+``loose`` have none.
 
 Every session has a robot of its own, drawn about the bundled one; its file knows the robot as well as a lab does. The
 recordings are simulated with shorter steps than a diagnosis takes, over floors that it does not know, and go through
@@ -25,6 +30,7 @@ from scipy.stats import beta
 
 from ssmr_ident.campaign import Campaign, Measurement, to_quantities
 from ssmr_ident.core.parameter import Estimate, ParameterSet
+from ssmr_ident.diagnose.diagnosis import MISSING, NOTHING
 from ssmr_ident.diagnose.turning.anchor import scale_of
 from ssmr_ident.diagnose.turning.assemble import MODEL_SPREAD, SPREAD_FACTOR, diagnosis_of
 from ssmr_ident.diagnose.turning.bench import Bench
@@ -218,8 +224,8 @@ def run_many(kind: str, count: int, seed: int, output: Path) -> None:
         number = 1000 * seed + i
         if number in done:
             continue
-        effect = None if kind == "null" else names[i % len(names)]
-        campaign, truth = session(number, effect, calibrated=(i + i // len(names)) % 3 != 2)
+        effect = names[i % len(names)] if kind == "effects" else None
+        campaign, truth = session(number, effect, calibrated=kind != "loose" and (i + i // len(names)) % 3 != 2)
         begun = time.perf_counter()
         row = truth if campaign is None else row_of(examine(campaign), truth, begun)
         with output.open("a") as file:
@@ -228,26 +234,34 @@ def run_many(kind: str, count: int, seed: int, output: Path) -> None:
         print(number, effect, row.get("calibrated"), row.get("seconds"), said, flush=True)
 
 
-def repeats(count: int, seed: int) -> None:
+def repeats(count: int, seed: int, output: Path) -> None:
     """Null sessions with calibration: the whole diagnosis of those alone whose targets do not repeat it within chance.
 
     A diagnosis of the others ends there, with nothing missing.
     """
-    left, said = [], []
-    for i in range(count):
-        campaign, truth = session(1000 * seed + i, None, calibrated=True)
+    rows = [json.loads(line) for line in output.read_text().splitlines()] if output.exists() else []
+    done = {row["seed"] for row in rows}
+    for number in range(1000 * seed, 1000 * seed + count):
+        if number in done:
+            continue
+        campaign, truth = session(number, None, calibrated=True)
         conditions, _ = conditions_of(campaign, campaign.parameters)
         calibration = tuple(c for c in conditions if c.role == "calibration")
         targets = tuple(c for c in conditions if c.role == "target")
         found = repeated(Bench(campaign.parameters), calibration, targets, scale_of(calibration), (1, 2))
-        left.append(found.left)
+        row = {**truth, "verdict": NOTHING, "named": []}
         if found.left > LEFT:
-            row = row_of(examine(campaign), truth, time.perf_counter())
-            said.append(row["verdict"])
-            print(truth["seed"], round(found.left, 1), row["verdict"], row["named"], flush=True)
-        if (i + 1) % 20 == 0:
-            print(f"{i + 1} null sessions: {len(said)} above {LEFT:g}: {dict(Counter(said))}; "
-                  f"false alarms {_interval(said.count('missing_physics'), i + 1)}", flush=True)  # fmt: skip
+            begun = time.perf_counter()
+            row = row_of(examine(campaign), truth, begun)
+            print(number, round(found.left, 1), row["verdict"], row["named"], flush=True)
+        rows.append({**row, "left": found.left})
+        with output.open("a") as file:
+            file.write(json.dumps(rows[-1]) + "\n")
+        if len(rows) % 20 == 0:
+            said = Counter(row["verdict"] for row in rows if row["left"] > LEFT)
+            alarms = sum(row["verdict"] == MISSING for row in rows)
+            print(f"{len(rows)} null sessions: {said.total()} above {LEFT:g}: {dict(said)}; "
+                  f"false alarms {_interval(alarms, len(rows))}", flush=True)  # fmt: skip
 
 
 def report(paths: list[Path]) -> None:
@@ -288,8 +302,8 @@ def report(paths: list[Path]) -> None:
             print(f"parameters within {width:g} printed standard deviations: {sum(inside)} of {len(inside)}")
     if unseen:
         print(f"\nnever moved the spectra by {VISIBLE:g} times their scatter: {dict(unseen)}")
-    seconds = [row["seconds"] for row in rows]
-    print(f"\nseconds per session: median {np.median(seconds):.0f}, longest {np.max(seconds):.0f}")
+    seconds = [row["seconds"] for row in rows if "seconds" in row]
+    print(f"\nseconds per whole diagnosis: median {np.median(seconds):.0f}, longest {np.max(seconds):.0f}")
 
 
 def _interval(hits: int, count: int) -> str:
@@ -315,7 +329,7 @@ def _inside(row: dict, width: float) -> list[bool]:
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("kind", choices=("effects", "null", "repeat", "report"))
+    parser.add_argument("kind", choices=("effects", "null", "loose", "repeat", "report"))
     parser.add_argument("arguments", nargs="+")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("-o", "--output", type=Path, default=Path("swivel.jsonl"))
@@ -323,6 +337,6 @@ if __name__ == "__main__":
     if given.kind == "report":
         report([Path(path) for path in given.arguments])
     elif given.kind == "repeat":
-        repeats(int(given.arguments[0]), given.seed)
+        repeats(int(given.arguments[0]), given.seed, given.output)
     else:
         run_many(given.kind, int(given.arguments[0]), given.seed, given.output)

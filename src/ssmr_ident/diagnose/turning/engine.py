@@ -29,6 +29,7 @@ FREED, FREED_LOOSE, FREED_STRAIGHT = 5, 3, 3
 baseline."""
 FIRST_STEPS = 3
 HALVINGS = ((4, 4),)  # how many of the best get how many more steps, as long as they gain
+ALONE = FIRST_STEPS + sum(more for _, more in HALVINGS)  # of the baseline by itself, without calibration
 SETTLED = 2  # that an ensemble fits to the end
 FINAL_SEEDS = (1, 2, 3, 4)
 LEFT = 20.0
@@ -135,6 +136,13 @@ def examine(
     seconds["baseline"] = time.perf_counter() - clock
     baseline = explained(anchor, None, {}, targets)
     assert baseline is not None
+    final = tuple(1000 * seed + s for s in FINAL_SEEDS)
+    if not calibration:
+        # as far as explanations are fitted later: what the parameters can bring about by themselves needs no effect
+        count = Counter(show, "baseline fitted to the end", ALONE + ENSEMBLE_ROUNDS)
+        baseline = settled(freed(baseline, targets, ALONE, count.advance, STEP), targets, seed, final, count.advance)
+        anchor = replace(baseline.anchor, fit=baseline.target, slopes=None)
+        count.finish()
 
     if quiet:  # the targets repeat the calibration: nothing is left that an effect could explain
         seconds["explanations"] = 0.0
@@ -156,10 +164,7 @@ def examine(
             pool += [pair[0] for pair in _tried(straight, every, targets, show)[:FREED_STRAIGHT]]
     seconds["explanations"] = time.perf_counter() - clock - seconds["baseline"]
 
-    final = tuple(1000 * seed + s for s in FINAL_SEEDS)
-    alone = 0 if calibration else FIRST_STEPS + sum(more for _, more in HALVINGS)  # steps of the baseline by itself
-    steps = FIRST_STEPS * len(pool) + sum(most * more for most, more in HALVINGS) + alone
-    steps += SETTLED * (1 + ENSEMBLE_ROUNDS) + (0 if calibration else ENSEMBLE_ROUNDS)
+    steps = FIRST_STEPS * len(pool) + sum(most * more for most, more in HALVINGS) + SETTLED * (1 + ENSEMBLE_ROUNDS)
     count = Counter(show, "baseline set free beside them", steps)
     best = [replace(freed(one, targets, FIRST_STEPS, count.advance), slopes=None) for one in pool]
     for most, more in HALVINGS:
@@ -171,11 +176,9 @@ def examine(
     best = _one_each(best)
     for i in _ahead(best[:SETTLED], baseline):
         best[i] = settled(polished(best[i], targets, count.advance), targets, seed, final, count.advance)
-    if not calibration:  # the explanations had their baseline fitted further on the targets; so must it be
-        baseline = settled(freed(baseline, targets, alone, count.advance, STEP), targets, seed, final, count.advance)
     finals = [_final(one, targets, seed) for one in [baseline, *_one_each(best)]]
-    if calibration:  # a better fit to the calibration, found beside an effect, is no merit of the effect's
-        finals[0] = max([finals[0], *_without(finals[1:], targets)], key=lambda one: one.evidence)
+    # a baseline that fits better, found beside an effect, is no merit of the effect's
+    finals[0] = max([finals[0], *_without(finals[1:], targets)], key=lambda one: one.evidence)
     count.finish()
     rest = [one for one in _one_each([pair[0] for pair in pairs]) if one.id not in {other.id for other in finals}]
     ranked = sorted(finals[1:], key=lambda one: one.evidence, reverse=True)
@@ -215,11 +218,9 @@ def _both(pair: list[Explained]) -> list[Explained]:
 
 
 def _ahead(ranked: list[Explained], baseline: Explained) -> list[int]:
-    """Which of the first two are to be fitted to the end: ahead of the baseline, and near the first."""
-    return [
-        i for i, one in enumerate(ranked)
-        if one.evidence > baseline.evidence and one.evidence > ranked[0].evidence - CLOSE
-    ]  # fmt: skip
+    """Which are to be fitted to the end: near the first, or the baseline where that is ahead."""
+    reach = max([baseline.evidence, *(one.evidence for one in ranked)]) - CLOSE
+    return [i for i, one in enumerate(ranked) if one.evidence > reach]
 
 
 def _without(explanations: list[Explained], targets: tuple[Condition, ...]) -> list[Explained]:

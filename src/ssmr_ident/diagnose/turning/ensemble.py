@@ -21,7 +21,7 @@ from ssmr_ident.diagnose.turning.likelihood import Score, weight_of
 from ssmr_ident.diagnose.turning.search import Explained, explained
 
 ROUNDS, ROUGH = 6, 3  # all, and the first ones, that are simulated with coarse steps
-MOST, FEWEST, RUNS = 48, 24, 240
+MOST, FEWEST, RUNS = 40, 24, 240
 """Members at most and at least (more than twice the parameters), and runs of one round that decide between."""
 SPREAD = 0.5  # of the first ensemble, in standard deviations of the priors
 SHRUNK = 0.5  # of the way that a fit has gone from the file's values: what slopes began may have led astray
