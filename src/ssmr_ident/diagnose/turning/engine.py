@@ -178,7 +178,8 @@ def examine(
         best[i] = settled(polished(best[i], targets, count.advance), targets, seed, final, count.advance)
     finals = [_final(one, targets, seed) for one in [baseline, *_one_each(best)]]
     # a baseline that fits better, found beside an effect, is no merit of the effect's
-    finals[0] = max([finals[0], *_without(finals[1:], targets)], key=lambda one: one.evidence)
+    alone = max(one.evidence for one in (finals[0], *_without(finals[1:], targets)))
+    finals[0] = replace(finals[0], evidence=alone)
     count.finish()
     rest = [one for one in _one_each([pair[0] for pair in pairs]) if one.id not in {other.id for other in finals}]
     ranked = sorted(finals[1:], key=lambda one: one.evidence, reverse=True)
