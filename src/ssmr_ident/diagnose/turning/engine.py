@@ -136,11 +136,11 @@ def examine(
     seconds["baseline"] = time.perf_counter() - clock
     baseline = explained(anchor, None, {}, targets)
     assert baseline is not None
-    final = tuple(1000 * seed + s for s in FINAL_SEEDS)
+    several = tuple(1000 * seed + s for s in FINAL_SEEDS)
     if not calibration:
         # as far as explanations are fitted later: what the parameters can bring about by themselves needs no effect
         count = Counter(show, "baseline fitted to the end", ALONE + ENSEMBLE_ROUNDS)
-        baseline = settled(freed(baseline, targets, ALONE, count.advance, STEP), targets, seed, final, count.advance)
+        baseline = settled(freed(baseline, targets, ALONE, count.advance, STEP), targets, seed, several, count.advance)
         anchor = replace(baseline.anchor, fit=baseline.target, slopes=None)
         count.finish()
 
@@ -175,7 +175,7 @@ def examine(
                 best[i] = freed(one, targets, more, count.advance, STEP)
     best = _one_each(best)
     for i in _ahead(best[:SETTLED], baseline):
-        best[i] = settled(polished(best[i], targets, count.advance), targets, seed, final, count.advance)
+        best[i] = settled(polished(best[i], targets, count.advance), targets, seed, several, count.advance)
     finals = [_final(one, targets, seed) for one in [baseline, *_one_each(best)]]
     # a baseline that fits better, found beside an effect, is no merit of the effect's
     alone = max(one.evidence for one in (finals[0], *_without(finals[1:], targets)))
