@@ -9,6 +9,7 @@ from ssmr_ident.diagnose.diagnosis import MISSING, UNDETERMINED
 from ssmr_ident.diagnose.turning import rivals
 from ssmr_ident.diagnose.turning.anchor import between
 from ssmr_ident.diagnose.turning.candidates import pitches_heard
+from ssmr_ident.diagnose.turning.engine import CLOSE, _ahead
 from ssmr_ident.diagnose.turning.grip import _doubtful, profile
 from ssmr_ident.diagnose.turning.likelihood import NEPER_DB, Block, log_variance, score
 from ssmr_ident.diagnose.turning.maps import follows
@@ -154,3 +155,10 @@ def test_rivals_no_further_off_than_the_best_itself_are_named_with_it(
     )
     found = rivals.with_rivals(outcome, Decision(MISSING, ("stribeck",), 0.9, ""))
     assert (found.verdict, found.named) == (verdict, named)
+
+
+@pytest.mark.parametrize(("baseline", "expected"), [(-50.0, [0, 1]), (0.5 * CLOSE, [0]), (2.0 * CLOSE, [])])
+def test_what_lies_behind_is_fitted_to_the_end_too(baseline, expected):
+    """An effect that slopes left behind a baseline fitted to the end may be the one that acted."""
+    ranked = [SimpleNamespace(evidence=value) for value in (0.0, -0.75 * CLOSE)]
+    assert _ahead(ranked, SimpleNamespace(evidence=baseline)) == expected

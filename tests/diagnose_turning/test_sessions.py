@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 from pathlib import Path
 
@@ -138,3 +139,5 @@ def test_practice(shared, name, verdict, effect):
             compare(load(folder / "heldout"), p).overall["log_psd_db"] for p in (found.before, found.after)
         )
         assert after < 2.0 / 3.0 * before
+        repeats = json.loads((folder / "truth.json").read_text(encoding="utf-8"))["heldout"]["noise_floor"]
+        assert after < repeats + 1.5
