@@ -29,6 +29,7 @@ import numpy as np
 from scipy.stats import beta
 
 from ssmr_ident.campaign import Campaign, Measurement, to_quantities
+from ssmr_ident.core.errors import SimulationError
 from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.diagnose.diagnosis import MISSING, NOTHING
 from ssmr_ident.diagnose.turning.anchor import scale_of
@@ -180,7 +181,10 @@ def session(seed: int, effect: str | None, calibrated: bool) -> tuple[Campaign, 
                 key = str(random.choice(list(UNLISTED)))
                 draw = UNLISTED[key]
             effects = {key: draw(random)}
-            seen = lab.change_db(speeds, effects)
+            try:
+                seen = lab.change_db(speeds, effects)
+            except SimulationError:  # too stiff a law for the robot drawn
+                continue
             if seen[0] > VISIBLE * seen[1]:
                 break
         else:
