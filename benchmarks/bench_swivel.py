@@ -33,10 +33,11 @@ from ssmr_ident.core.errors import SimulationError
 from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.diagnose.diagnosis import MISSING, NOTHING
 from ssmr_ident.diagnose.turning.anchor import scale_of
-from ssmr_ident.diagnose.turning.assemble import MODEL_SPREAD, SPREAD_FACTOR, diagnosis_of
+from ssmr_ident.diagnose.turning.assemble import MODEL_SPREAD, diagnosis_of
 from ssmr_ident.diagnose.turning.bench import Bench
 from ssmr_ident.diagnose.turning.conditions import conditions_of
 from ssmr_ident.diagnose.turning.engine import LEFT, Outcome, examine, repeated
+from ssmr_ident.diagnose.turning.search import SPREAD_FACTOR
 from ssmr_ident.diagnose.turning.spectra import look
 from ssmr_ident.diagnose.turning.verdict import findings_of
 from ssmr_ident.diagnose.turning.worth import channel_logs, distance_db

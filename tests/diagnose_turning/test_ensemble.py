@@ -5,13 +5,14 @@ from dataclasses import replace
 import numpy as np
 
 from ssmr_ident.core.parameter import Estimate
+from ssmr_ident.diagnose.turning import ensemble
 from ssmr_ident.diagnose.turning.anchor import Anchor, priors_of, scale_of
 from ssmr_ident.diagnose.turning.bench import COARSE, Bench
 from ssmr_ident.diagnose.turning.candidates import candidates
 from ssmr_ident.diagnose.turning.conditions import Condition
 from ssmr_ident.diagnose.turning.ensemble import settled
 from ssmr_ident.diagnose.turning.likelihood import Score
-from ssmr_ident.diagnose.turning.search import explained
+from ssmr_ident.diagnose.turning.search import SPREAD_FACTOR, Explained, explained
 from ssmr_ident.diagnose.turning.spectra import look
 from ssmr_ident.session import read_parameters
 
@@ -51,3 +52,20 @@ def test_settled_finds_a_floor_from_a_wrong_start() -> None:
     assert abs(np.log(found.values["height_m"] / TRUE["height_m"])) < 0.25
     assert found.anchor.seeds == start.anchor.seeds
     assert len(rounds) > 1
+
+
+def test_a_distance_is_known_no_better_than_what_fits_alike(monkeypatch) -> None:
+    """Two combs that end alike lie half a logarithm apart: as far does the printed deviation reach."""
+    joints = next(c for c in candidates((0.03,), (10.0,), 3e-5) if c.id == "ground_joints")
+    values = {"depth_m": 3e-4, "pitch_m": 0.03, "width_m": 6e-3}
+    other = {**values, "pitch_m": 0.03 * float(np.exp(0.5))}
+    plain = Anchor(Bench(read_parameters("p3at-extended")), np.ones(3), (), np.zeros(0), (), Score(0.0, 0.0, 0.0))
+    start = Explained(joints, values, plain, Score(0.0, 1.0, 1.0), 0.0, 10.0, np.full(3, 0.01))
+    behind = replace(start, values=other, evidence=5.0)
+    monkeypatch.setattr(ensemble, "other_pitches", lambda best, targets: [other])
+    monkeypatch.setattr(ensemble, "explained", lambda *_: behind)
+    monkeypatch.setattr(ensemble, "settled", lambda one, *_: one)
+    found = ensemble.settled_at_distances(start, (), 0, (1,), lambda: None)
+    assert found.values == values
+    assert found.spread is not None
+    np.testing.assert_allclose(SPREAD_FACTOR * found.spread, [0.03, 0.5, 0.03])

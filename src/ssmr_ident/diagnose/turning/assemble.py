@@ -17,7 +17,7 @@ from ssmr_ident.diagnose.turning.located import located
 from ssmr_ident.diagnose.turning.maps import follows, speed_maps
 from ssmr_ident.diagnose.turning.next_run import next_run
 from ssmr_ident.diagnose.turning.rivals import ONE_SIDED, with_rivals
-from ssmr_ident.diagnose.turning.search import Explained
+from ssmr_ident.diagnose.turning.search import SPREAD_FACTOR, Explained
 from ssmr_ident.diagnose.turning.verdict import Decision, decide, findings_of
 from ssmr_ident.diagnose.turning.words import EQUATIONS
 from ssmr_ident.diagnose.turning.worth import against_simulation, repeatability_db
@@ -25,9 +25,8 @@ from ssmr_ident.physics.effects import CATALOGUE
 
 METRIC = "log_psd_db"
 NEW_UNITS = {"tire.sliding_speed_m_s": "m/s", "floor.height_m": "m"}
-SPREAD_FACTOR, MODEL_SPREAD = 3.0, 0.07
-"""The curvature's standard deviations times this, and this share of a size on top: what errors of simulated sessions
-need, whose baselines are fitted too (docs/theory/swivel.md)."""
+MODEL_SPREAD = 0.07
+"""Share of a size on top of its standard deviation: what errors of simulated sessions need (docs/theory/swivel.md)."""
 NEARER, WITHIN = 0.95, 1.25
 """Share of the distance that an effect may leave on recordings kept back, and the distance over the repeatability below
 which nothing is left to name."""

@@ -17,7 +17,7 @@ from ssmr_ident.diagnose.turning.candidates import Candidate, candidates, pitche
 from ssmr_ident.diagnose.turning.conditions import Condition, conditions_of, held_back
 from ssmr_ident.diagnose.turning.counter import Counter, Progress
 from ssmr_ident.diagnose.turning.ensemble import ROUNDS as ENSEMBLE_ROUNDS
-from ssmr_ident.diagnose.turning.ensemble import settled
+from ssmr_ident.diagnose.turning.ensemble import settled, settled_at_distances
 from ssmr_ident.diagnose.turning.grip import PATH, TRIED, GripProfile, grip_profile
 from ssmr_ident.diagnose.turning.likelihood import Score
 from ssmr_ident.diagnose.turning.regimes import widened
@@ -175,7 +175,8 @@ def examine(
                 best[i] = freed(one, targets, more, count.advance, STEP)
     best = _one_each(best)
     for i in _ahead(best[:SETTLED], baseline):
-        best[i] = settled(polished(best[i], targets, count.advance), targets, seed, several, count.advance)
+        one = polished(best[i], targets, count.advance)
+        best[i] = settled_at_distances(one, targets, seed, several, count.advance)
     finals = [_final(one, targets, seed) for one in [baseline, *_one_each(best)]]
     # a baseline that fits better, found beside an effect, is no merit of the effect's
     alone = max(one.evidence for one in (finals[0], *_without(finals[1:], targets)))

@@ -18,7 +18,7 @@ from ssmr_ident.diagnose.turning.anchor import Anchor
 from ssmr_ident.diagnose.turning.bench import COARSE
 from ssmr_ident.diagnose.turning.conditions import Condition
 from ssmr_ident.diagnose.turning.likelihood import Score, weight_of
-from ssmr_ident.diagnose.turning.search import Explained, explained
+from ssmr_ident.diagnose.turning.search import PITCH, SPREAD_FACTOR, Explained, explained, other_pitches
 
 ROUNDS, ROUGH = 6, 3  # all, and the first ones, that are simulated with coarse steps
 MOST, FEWEST, RUNS = 40, 24, 240
@@ -29,6 +29,7 @@ OUTLIERS = 0.25  # of the members, the worst, give way to copies of others: robo
 LARGEST = 3.0  # of a residual, natural logarithm: beyond it densities differ by nothing that a slope describes
 TAU_DB = (0.8, 6.0)
 WEIGHTS = (0.15, 0.25, 0.5, 1.0)  # of the data in the first rounds, and from then on
+ALIKE = 20.0  # of evidence, that ensembles about one place were seen to end apart
 KEPT = 4  # best members that are compared, with their mean, over several runs per speed
 
 
@@ -69,7 +70,32 @@ def settled(
     _prefetch(start, several, places, targets)
     found = [one for at in places if (one := _at(start, several, at, targets)) is not None]
     best = max(found, key=lambda one: one.evidence, default=start)
-    return replace(best, anchor=replace(best.anchor, seeds=start.anchor.seeds), spread=start.spread)
+    left = None if candidate is None else members[:, size:].std(axis=0)
+    known = left if start.spread is None or left is None else np.maximum(start.spread, left)
+    return replace(best, anchor=replace(best.anchor, seeds=start.anchor.seeds), spread=known)
+
+
+def settled_at_distances(
+    start: Explained, targets: tuple[Condition, ...], seed: int, final: tuple[int, ...], advance: Callable[[], None]
+) -> Explained:
+    """``settled``; an effect with a distance also from the likeliest other one, and the better of both.
+
+    No ensemble goes from one comb of lines to another. Where both end alike, the distance is known no better than they
+    lie apart.
+    """
+    best = settled(start, targets, seed, final, advance)
+    for values in other_pitches(best, targets)[:1]:
+        again = explained(best.anchor, best.candidate, values, targets)
+        if again is None:
+            continue
+        other = settled(replace(again, spread=best.spread), targets, seed, final, lambda: None)
+        if other.evidence > best.evidence:
+            best, other = other, best
+        if other.evidence > best.evidence - ALIKE and best.candidate is not None and best.spread is not None:
+            named = np.array([free.name == PITCH for free in best.candidate.free])
+            apart = abs(float(np.log(best.values[PITCH] / other.values[PITCH])))
+            best = replace(best, spread=np.where(named, np.maximum(best.spread, apart / SPREAD_FACTOR), best.spread))
+    return best
 
 
 def _moved(

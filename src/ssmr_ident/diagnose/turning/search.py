@@ -21,6 +21,8 @@ REACH = 100.0  # of evidence that another start may gain by being fitted
 PITCH = "pitch_m"
 RATIOS = (0.5, 2.0 / 3.0, 0.75, 0.8, 1.25, 4.0 / 3.0, 1.5, 2.0, 3.0)
 BEHIND = 40.0  # of evidence, from which on a second start is not followed
+SPREAD_FACTOR = 3.0
+"""Of the curvature's standard deviations, to what errors of simulated sessions need, whose baselines are fitted too."""
 _STEP = 0.35  # of a logarithm, or of a hundredth of the bounds
 
 
@@ -147,20 +149,20 @@ def refined(start: Explained, targets: tuple[Condition, ...], advance: Callable[
 
 def polished(best: Explained, targets: tuple[Condition, ...], advance: Callable[[], None]) -> Explained:
     """The winner once more from other distances, where it has one: lines of one comb fall on those of others."""
-    if PITCH in best.values:
-        for values in _other_pitches(best, targets):
-            again = explained(best.anchor, best.candidate, values, targets)
-            if again is not None and again.evidence > best.evidence - REACH:
-                found = freed(replace(again, slopes=best.slopes), targets, POLISH_STEPS, lambda: None, STEP)
-                if found.evidence > best.evidence:
-                    best = found
+    for values in other_pitches(best, targets):
+        again = explained(best.anchor, best.candidate, values, targets)
+        if again is not None and again.evidence > best.evidence - REACH:
+            found = freed(replace(again, slopes=best.slopes), targets, POLISH_STEPS, lambda: None, STEP)
+            if found.evidence > best.evidence:
+                best = found
     advance()
     return best
 
 
-def _other_pitches(best: Explained, targets: tuple[Condition, ...]) -> list[Values]:
-    """The two best distances of which some lines fall on those of the one found."""
-    assert best.candidate is not None
+def other_pitches(best: Explained, targets: tuple[Condition, ...]) -> list[Values]:
+    """The two best distances of which some lines fall on those of the one found; none for effects without."""
+    if best.candidate is None or PITCH not in best.values:
+        return []
     coarse = replace(best.anchor, step=COARSE)
     others = [{**best.values, PITCH: ratio * best.values[PITCH]} for ratio in RATIOS]
     jobs = [
