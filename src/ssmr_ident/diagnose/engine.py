@@ -113,7 +113,9 @@ def examine(setup: Setup, parameters: ParameterSet, progress: Progress | None = 
         first = chosen is baseline
         if not _better(leader, chosen, first) or not significant(found_fit):
             break
-        bare = explained(kept, differentiate(descend(without(leader.fit, leader.fit.model.ids[-1]), LAST)), leader.kept)
+        bare = explained(
+            kept, differentiate(descend(without(leader.fit, leader.fit.model.ids[-1]), LAST // 2)), leader.kept
+        )
         if _cost(bare, chosen) < _cost(chosen, chosen):
             # the effect had only shown the way to a better fit without it
             tried[tried.index(chosen)], chosen = bare, bare

@@ -134,11 +134,13 @@ def search(
         chosen = [g for g in groups if g[0].gain > PROMISING + len(g[0].at)][: REFITTED if beside else SCREENED]
         rough = _ranked([_started(base, suspect) for group in chosen for suspect in _variants(group)])
     tried: list[JointFit] = []
-    rough = _finalists(_close(rough))
+    rough = _finalists([fit for fit in rough if _close(rough, fit)])
     for index, fit in enumerate(rough):
         if progress:
             progress("refitting explanations", index, len(rough))
-        tried.append(mended(led(base.trials, fit.model, fit.point, rest, LAST, _all_nuisances(base, fit, lengths))))
+        begun = led(base.trials, fit.model, fit.point, rest, LAST // 2, _all_nuisances(base, fit, lengths))
+        # what is as far behind as this halfway does not win, and where exactly it ends decides nothing
+        tried.append(mended(descend(begun, LAST - LAST // 2)) if _close(_ranked([begun, *tried]), begun) else begun)
     if progress:
         progress("refitting explanations", 1, 1)
     return Search(base, tuple(tuple(g) for g in groups), tuple(_each_once(tried)), tuple(lengths))
@@ -153,13 +155,12 @@ def mended(fit: JointFit) -> JointFit:
     return descend(follow(fit.trials, fit.model, fit.point, fit.nuisances), LAST)
 
 
-def _close(ranked: Sequence[JointFit]) -> list[JointFit]:
-    """Those that a refit to the end may still bring before the first one."""
+def _close(ranked: Sequence[JointFit], fit: JointFit) -> bool:
+    """Whether a refit to the end may still bring one before the first."""
     if not ranked:
-        return []
+        return False
     counted = ranked[0].counted
-    far = CLOSE * float(counted.sum())
-    return [f for f in ranked if f.cost(counted) < ranked[0].cost(counted) + far]
+    return fit.cost(counted) < ranked[0].cost(counted) + CLOSE * float(counted.sum())
 
 
 def _finalists(ranked: Sequence[JointFit]) -> list[JointFit]:

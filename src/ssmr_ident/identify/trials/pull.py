@@ -27,10 +27,13 @@ from ssmr_ident.simulate.simulation import simulate
 STARTING = 3
 """Samples at the start that do not count: how the head takes up speed is not in the log."""
 
-JOLT = (-0.1, 0.3)
+JOLT = (-0.15, 0.35)
 """Seconds about the tightening of the cable that do not count. Its damper takes up the head's speed with a jolt of some
 20 N for each mm/s, which the body swings out within two periods: larger than all else that is left, it would hold the
 fit by the moment at which the slack ends."""
+
+RISE = (0.06, 0.18)
+"""Shares of a pull's largest force between which its beginning counts as a straight line."""
 
 LONGEST_BLOCK, FEWEST_BLOCKS = 0.25, 150.0
 """Seconds that are averaged into one number at the most, and numbers that a recording keeps at the least: a pull is
@@ -40,13 +43,19 @@ ENDS, STILL_RISES = 6, 0.3
 """Parts of a drag, and the gain of mean force into its last part over the largest from part to part, from which the
 contact holds: a sliding one keeps its force, and a carcass that creeps or softens loses half of its slope at most."""
 
-COARSE = 10.0
-"""On the steps of differences: a percent of a stiffness, and a thousandth of the travel."""
+COARSE, COARSE_TEETH = 2.0, 10.0
+"""On the steps of differences. Where teeth come at other times after every step, slopes want a wide one: a percent of a
+stiffness, and a thousandth of the travel."""
 
 BLIND = {
     "pull": ("inertia_", "accelerometer.", "tire.damping_"),
     "wheel": ("inertia_", "accelerometer.", "contact_shift", "height", "tire.damping_"),
 }
+
+SIDEWAYS = ("contact_shift_y_m", "inertia_kg_m2.xy", "inertia_kg_m2.yz")
+"""What a pull lengthwise is taken not to depend on. Its force hardly does; but the wheels of a robot that is alike left
+and right to the last bit let go at one moment, and a millionth of a metre makes another run of it: then no step away
+from what is known beforehand is ever an improvement."""
 
 POINTS = 1000
 """Samples at which a slack is looked for."""
@@ -113,8 +122,8 @@ def pull_trial(measurement: Measurement, parameters: ParameterSet) -> Trial:
         return np.array([find_slack(measured[rising], travel[rising], tight[rising]) / size])
 
     target = averaged(measured)
-    slack_there = find_slack(measured[rising], travel[rising], simulated({}, {}, 0.0)[rising])
-    since = elapsed[: count * block].reshape(count, block).mean(axis=1) - elapsed[int(np.argmax(travel > slack_there))]
+    tightens = elapsed[tightening(measured, block)]
+    since = elapsed[: count * block].reshape(count, block).mean(axis=1) - tightens
     counts[(since > JOLT[0]) & (since < JOLT[1])] = False
     return Trial(
         measurement.name,
@@ -132,11 +141,16 @@ def pull_trial(measurement: Measurement, parameters: ParameterSet) -> Trial:
         Course(start + elapsed, measured[:, None], whole, ("N",), None),
         counts,
         {"travel_m": size, "teeth": 0.0 if teeth is None else float(teeth.count)},
-        BLIND["wheel" if measurement.entry.experiment != "pull" else "pull"],
-        COARSE,
+        _blind(measurement.entry),
+        COARSE if teeth is None else COARSE_TEETH,
         searched=True,
         quiet=teeth is not None,
     )
+
+
+def _blind(entry: Entry) -> tuple[str, ...]:
+    blind = BLIND["pull" if entry.experiment == "pull" else "wheel"]
+    return (*blind, *SIDEWAYS) if entry.direction == "longitudinal" else blind
 
 
 def travelled(measurement: Measurement) -> tuple[Array, Array, float, float]:
@@ -175,12 +189,21 @@ def force_model(entry: Entry, parameters: ParameterSet, held: bool = False) -> F
         block = block_from_parameters(parameters)
         return lambda values, effects, head, step, inner: pull_block(_block(block, values), head, step, effects)
     builder = RobotBuilder.of(parameters)
+    if builder.nominal.mu_kinetic == builder.nominal.mu_static:
+        # one coefficient is Coulomb's law; the relay has no depth of release then, and chatters
+        builder = RobotBuilder(builder.nominal.sliding_together())
     if entry.experiment == "vertical_compression":
         return lambda values, effects, head, step, inner: compress_wheel(builder(values), head, step, effects=effects)
     if entry.experiment == "wheel_drag":
         free = entry.free_normal and not held
         return lambda values, effects, head, step, inner: drag_wheel(builder(values), head, step, free, effects)
-    return lambda values, effects, head, step, inner: _pulled(builder(values), entry, head, step, effects, inner)
+    unseen = SIDEWAYS if entry.direction == "longitudinal" else ()
+
+    def pulled(values: Values, effects: Effects, head: Array, step: float, inner: float | None) -> Array:
+        seen = {name: value for name, value in values.items() if name not in unseen}
+        return _pulled(builder(seen), entry, head, step, effects, inner)
+
+    return pulled
 
 
 def _pulled(robot: Robot, entry: Entry, head: Array, step: float, effects: Effects, inner: float | None) -> Array:
@@ -210,6 +233,18 @@ def _block(nominal: Block, values: Values) -> Block:
         values.get("mu_kinetic", mu_static if nominal.mu_kinetic == nominal.mu_static else nominal.mu_kinetic),
         values.get("cable.stiffness_N_m", nominal.cable_stiffness),
     )
+
+
+def tightening(force: Array, block: int) -> int:
+    """Sample at which the cable tightens: the straight line through the first rise, back to where it began.
+
+    From the log alone: a stiffness that is not yet known would misplace it, and with it what does not count.
+    """
+    count = len(force) // block
+    smooth = force[: count * block].reshape(count, block).mean(axis=1)
+    low, high = smooth[0], float(smooth.max())
+    first, second = (int(np.argmax(smooth > low + share * (high - low))) for share in RISE)
+    return block * max(first - round((second - first) * RISE[0] / (RISE[1] - RISE[0])), 0)
 
 
 def find_slack(force: Array, travel: Array, tight: Array) -> float:
