@@ -5,7 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ssmr_ident.identify.trials.pull import find_slack, holds
+from ssmr_ident.campaign import Measurement
+from ssmr_ident.core.recording import Channel, Provenance, Recording
+from ssmr_ident.identify.trials.pull import find_slack, holds, pull_trial, tightening
+from ssmr_ident.session import Entry, read_parameters
 
 STEP, SPEED, STIFFNESS = 0.01, 1e-3, 2e4
 
@@ -46,3 +49,29 @@ def test_a_wheel_that_lets_go_is_told_from_one_that_holds() -> None:
 
 def test_a_head_that_never_moves_holds_nothing() -> None:
     assert not holds(np.zeros(50), np.zeros(50))
+    assert tightening(np.zeros(50), block=5) == 0
+
+
+def test_where_the_cable_tightens_is_read_from_the_log_alone() -> None:
+    random = np.random.default_rng(5)
+    travel = ramp_and_hold(8.0, 0.0)
+    for slack, block in ((0.0, 5), (0.3e-3, 5), (0.9e-3, 20)):
+        force = 12.0 + np.minimum(STIFFNESS * np.maximum(travel - slack, 0.0), 100.0)
+        found = STEP * tightening(force + 0.5 * random.standard_normal(len(force)), block=block)
+        assert found == pytest.approx(slack / SPEED, abs=0.04)
+
+
+@pytest.mark.parametrize("direction", ["lateral", "longitudinal"])
+def test_a_pull_of_one_friction_coefficient_moves_smoothly_with_what_it_hardly_depends_on(direction: str) -> None:
+    """Chatter, and wheels that let go at one moment by symmetry alone, once made jumps of half a newton of this."""
+    known = read_parameters("p3at-extended")
+    known = known.updated({"tire.mu_kinetic": known["tire.mu_static"]})
+    time = np.arange(900) / 100.0
+    log = Recording(time, (Channel("force", 8.0 * time, "N"),), Provenance("made", "", "test"))
+    entry = Entry("pull.csv", "pull", direction=direction, speed_mm_s=1.0 if direction == "lateral" else 2.0)
+    trial = pull_trial(Measurement(entry, log), known)
+    plain = trial.run({}, {}, np.array([0.02]))
+    assert plain.max() > 180.0  # all wheels slide
+    for name, value in (("tire.damping_x_N_s_m", 50.1), ("inertia_kg_m2.zz", 0.925), ("contact_shift_y_m", 1e-6)):
+        moved = trial.run({name: value}, {}, np.array([0.02]))
+        assert 0.0 <= np.std(moved - plain) < 0.01, name

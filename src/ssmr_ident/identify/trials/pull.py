@@ -242,9 +242,17 @@ def tightening(force: Array, block: int) -> int:
     """
     count = len(force) // block
     smooth = force[: count * block].reshape(count, block).mean(axis=1)
-    low, high = smooth[0], float(smooth.max())
-    first, second = (int(np.argmax(smooth > low + share * (high - low))) for share in RISE)
-    return block * max(first - round((second - first) * RISE[0] / (RISE[1] - RISE[0])), 0)
+    low, high = float(smooth[0]), float(smooth.max())
+    if not high > low:
+        return 0
+    crossings = []
+    for share in RISE:
+        level = low + share * (high - low)
+        after = max(int(np.argmax(smooth > level)), 1)
+        below, above = smooth[after - 1], smooth[after]
+        crossings.append(after - (above - level) / (above - below))
+    onset = crossings[0] - (crossings[1] - crossings[0]) * RISE[0] / (RISE[1] - RISE[0])
+    return max(round(block * (onset + 0.5)), 0)
 
 
 def find_slack(force: Array, travel: Array, tight: Array) -> float:
