@@ -157,6 +157,22 @@ def test_rivals_no_further_off_than_the_best_itself_are_named_with_it(
     assert (found.verdict, found.named) == (verdict, named)
 
 
+@pytest.mark.parametrize(
+    ("best", "other", "named"),
+    [(2.0, 1.0, ()), (4.0, 3.9, ()), (4.0, 3.0, ("ground_roughness",))],  # reached; no nearer; nearer
+)
+def test_what_predicts_better_is_named_whatever_its_evidence(monkeypatch, best, other, named):
+    off = {"stribeck": best, "ground_roughness": other, "unlisted": 0.1}
+    monkeypatch.setattr(rivals, "repeatability_db", lambda conditions: 2.0 / rivals.ONE_SIDED)
+    monkeypatch.setattr(rivals, "against_simulation", lambda bench, heldout, values, effects, seeds: {"a": effects})
+    tried = {name: SimpleNamespace(id=name, anchor=SimpleNamespace(values={}), effects=off[name]) for name in off}
+    outcome = SimpleNamespace(
+        bench=None, targets=(), heldout=("a",), explanations=(tried["stribeck"],),
+        screened=(tried["ground_roughness"], tried["unlisted"]),
+    )  # fmt: skip
+    assert tuple(rivals._better_predictions(outcome, tried["stribeck"])) == named
+
+
 @pytest.mark.parametrize(("baseline", "expected"), [(-50.0, [0, 1]), (0.5 * CLOSE, [0]), (2.0 * CLOSE, [])])
 def test_what_lies_behind_is_fitted_to_the_end_too(baseline, expected):
     """An effect that slopes left behind a baseline fitted to the end may be the one that acted."""

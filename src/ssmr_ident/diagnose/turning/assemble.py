@@ -16,7 +16,7 @@ from ssmr_ident.diagnose.turning.engine import FINAL_SEEDS, Outcome
 from ssmr_ident.diagnose.turning.located import located
 from ssmr_ident.diagnose.turning.maps import follows, speed_maps
 from ssmr_ident.diagnose.turning.next_run import next_run
-from ssmr_ident.diagnose.turning.rivals import ONE_SIDED, with_rivals
+from ssmr_ident.diagnose.turning.rivals import NEARER, ONE_SIDED, WITHIN, with_rivals
 from ssmr_ident.diagnose.turning.search import SPREAD_FACTOR, Explained
 from ssmr_ident.diagnose.turning.verdict import Decision, decide, findings_of
 from ssmr_ident.diagnose.turning.words import EQUATIONS
@@ -27,9 +27,6 @@ METRIC = "log_psd_db"
 NEW_UNITS = {"tire.sliding_speed_m_s": "m/s", "floor.height_m": "m"}
 MODEL_SPREAD = 0.07
 """Share of a size on top of its standard deviation: what errors of simulated sessions need (docs/theory/swivel.md)."""
-NEARER, WITHIN = 0.95, 1.25
-"""Share of the distance that an effect may leave on recordings kept back, and the distance over the repeatability below
-which nothing is left to name."""
 CONFLICT = 3.0  # standard deviations of the prior
 
 

@@ -16,6 +16,9 @@ from ssmr_ident.diagnose.turning.worth import against_simulation, repeatability_
 
 LEVEL = 0.95  # of the one-sided test by which the best has to lie nearer
 FEWEST = 4  # recordings for such a test
+NEARER, WITHIN = 0.95, 1.25
+"""Share of a distance to recordings kept back below which another one is nearer, and how many times what runs differ
+by counts as reached."""
 ONE_SIDED = float(np.sqrt(0.5 * (1.0 + 1.0 / len(FINAL_SEEDS))))
 """Distance of a run from the mean of several, over that of two runs from each other."""
 
@@ -26,7 +29,9 @@ def with_rivals(outcome: Outcome, decision: Decision) -> Decision:
     Evidence counts the bins of a spectrum as if a model erred in each of them anew. Where no calibration takes its
     errors away, they are the same from bin to bin, and only recordings are independent: the best has to lie nearer by
     the paired t-test over them. And where the best is itself off by more than two runs differ, its law is not quite the
-    world's; a rival that is off by no more than that again is as near. More than three that are alike are no answer.
+    world's; a rival that is off by no more than that again is as near. Whatever predicts the recordings kept back
+    better than a best that does not reach them is no worse either, evidence or not: what was not followed to the end
+    lacks evidence for that alone. More than three that are alike are no answer.
     """
     if outcome.calibrated or decision.verdict != MISSING or not outcome.explanations:
         return decision
@@ -44,11 +49,28 @@ def with_rivals(outcome: Outcome, decision: Decision) -> Decision:
         nearer = np.array([rival[name] - best[name] for name in best if name in rival])
         if len(nearer) and ((len(nearer) >= FEWEST and not _clear(nearer)) or float(nearer.mean()) < own_error):
             named.append(one.id)
+    named += [name for name in _better_predictions(outcome, found[decision.named[0]]) if name not in named]
     if len(named) == len(decision.named):
         return decision
     if len(named) > MOST:
         return Decision(UNDETERMINED, (), 0.0, f"{', '.join(named)} come equally near, none of them near enough")
     return replace(decision, named=tuple(named), confidence=min(decision.confidence, 1.0 / len(named)))
+
+
+def _better_predictions(outcome: Outcome, best: Explained) -> list[str]:
+    """Explanations nearer to the recordings kept back than the best one, where that is further off than runs differ."""
+    if not outcome.heldout:
+        return []
+
+    def off(one: Explained) -> float:
+        found = against_simulation(outcome.bench, outcome.heldout, one.anchor.values, one.effects, FINAL_SEEDS)
+        return float(np.mean(list(found.values()))) if found else np.inf
+
+    reached = off(best)
+    if reached < WITHIN * ONE_SIDED * repeatability_db((*outcome.targets, *outcome.heldout)):
+        return []
+    others = {one.id: one for one in (*outcome.screened[::-1], *outcome.explanations[::-1])}
+    return [name for name, one in others.items() if name not in (best.id, UNLISTED) and off(one) < NEARER * reached]
 
 
 def _distances(outcome: Outcome, one: Explained) -> dict[str, float]:
