@@ -1,0 +1,76 @@
+"""Slopes between differences, and the time scale by which first horizons are cut."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from ssmr_ident.compare.recorded import radian
+from ssmr_ident.identify.coordinates import Model
+from ssmr_ident.identify.descent import corrected
+from ssmr_ident.identify.joint import JointFit, differentiate, evaluate
+from ssmr_ident.identify.noise import AutoregressiveNoise
+from ssmr_ident.identify.objective import Unknown
+from ssmr_ident.identify.trials import Trial
+from ssmr_ident.identify.trials.trial import Course
+
+MODEL = Model(tuple(Unknown(name, "1", 0.0, 1.0, positive=False) for name in ("a", "b")))
+RATE, COUNT = 100.0, 400
+
+
+def _trial(target: np.ndarray, run=None, noise: float = 1.0, quiet: bool = False) -> Trial:
+    times = np.arange(len(target)) / RATE
+    return Trial(
+        "drawn.csv", "free_response", "roll", ("ay",), times, target[:, None],
+        (AutoregressiveNoise(np.ones(1), noise),), np.ones((len(target), 1)), run, lambda values, effects: np.zeros(1),
+        ("start",), np.ones(1), Course(times, target[:, None], run, ("m/s^2",), None), quiet=quiet,
+    )  # fmt: skip
+
+
+def _curved(point: np.ndarray, start: float) -> JointFit:
+    """A decaying swing whose frequency, damping and size bend what is seen of them."""
+    times = np.arange(COUNT) / RATE
+
+    def run(values, effects, nuisance):
+        omega, rate = 20.0 * np.exp(0.1 * values["a"]), 2.0 * np.exp(0.5 * values["b"])
+        return ((1.0 + nuisance[0]) * np.exp(-rate * times) * np.cos(omega * times))[:, None]
+
+    return evaluate([_trial(np.zeros(COUNT), run, 0.1)], MODEL, point, [np.array([start])])
+
+
+def test_corrected_slopes_say_what_the_step_did_and_nothing_new_across_it() -> None:
+    before = differentiate(_curved(np.zeros(2), 0.0))
+    after = _curved(np.array([0.3, -0.2]), 0.1)
+    found = corrected(before, replace(after, slopes=before.slopes))
+    (old,), (new,) = before.slopes, found.slopes
+    move, own = after.point - before.point, after.nuisances[0] - before.nuisances[0]
+    done = before.residuals[0] - after.residuals[0]
+    assert new.shared @ move + new.own @ own == pytest.approx(done, abs=1e-9 * np.abs(done).max())
+    assert np.abs(old.shared @ move + old.own @ own - done).max() > 0.05 * np.abs(done).max()
+    # a step across, in units of what coordinates do, is told as before
+    metric = np.concatenate([np.sum(old.shared**2, axis=0), np.sum(old.own**2, axis=0)])
+    along = metric * np.concatenate([move, own])
+    across = np.array([along[1], -along[0], 0.0])
+    change = np.hstack([new.shared - old.shared, new.own - old.own])
+    assert change @ across == pytest.approx(
+        np.zeros(len(change)), abs=1e-9 * np.abs(change).max() * np.abs(across).max()
+    )
+    assert not found.exact
+
+
+@pytest.mark.parametrize("hertz", [2.0, 8.0])
+def test_a_radian_of_a_swing_is_found_under_hum_and_noise(hertz: float) -> None:
+    """1/omega; noise and a mains line, whose slopes are steep, would have it several times shorter."""
+    times = np.arange(1200) / RATE
+    random = np.random.default_rng(2)
+    swing = np.cos(2.0 * np.pi * hertz * times)
+    noise, line = 0.1, 0.8 * np.cos(2.0 * np.pi * 40.0 * times)
+    trial = _trial(swing + line + noise * random.standard_normal(len(times)), noise=noise, quiet=True)
+    basis = np.column_stack([np.ones(len(times)), np.cos(80.0 * np.pi * times), np.sin(80.0 * np.pi * times)])
+    found = radian([replace(trial, basis=basis)])
+    # the slope of samples: sin(omega h/2)/(omega h/2) of the true one
+    half = np.pi * hertz / RATE
+    assert found == pytest.approx(1.0 / (2.0 * np.pi * hertz) * half / np.sin(half), rel=0.15)
+    assert radian([trial]) < 0.6 * found  # with the line
