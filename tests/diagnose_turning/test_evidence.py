@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ssmr_ident.diagnose.diagnosis import MISSING, UNDETERMINED
-from ssmr_ident.diagnose.turning import rivals
+from ssmr_ident.diagnose.turning import assemble, rivals
 from ssmr_ident.diagnose.turning.anchor import between
 from ssmr_ident.diagnose.turning.candidates import pitches_heard
 from ssmr_ident.diagnose.turning.engine import CLOSE, _ahead
@@ -178,3 +178,23 @@ def test_what_lies_behind_is_fitted_to_the_end_too(baseline, expected):
     """An effect that slopes left behind a baseline fitted to the end may be the one that acted."""
     ranked = [SimpleNamespace(evidence=value) for value in (0.0, -0.75 * CLOSE)]
     assert _ahead(ranked, SimpleNamespace(evidence=baseline)) == expected
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "left", "expected"),
+    [
+        (5.0, 2.0, 100.0, True),
+        (5.0, 4.9, 100.0, False),
+        (1.0, 1.0, 100.0, True),  # kept back where the effect does nothing
+        (1.0, 3.0, 100.0, False),
+        (1.0, 1.0, 1.0, False),  # and the targets show nothing either
+    ],
+)
+def test_kept_back_recordings_that_show_nothing_speak_against_nothing(monkeypatch, before, after, left, expected):
+    monkeypatch.setattr(
+        assemble, "against_simulation", lambda bench, kept, values, active, seeds: {"a": active or before}
+    )
+    anchor = SimpleNamespace(values={})
+    baseline = SimpleNamespace(target=SimpleNamespace(left=left))
+    outcome = SimpleNamespace(bench=None, heldout=("a",), targets=(), anchor=anchor, calibrated=True, baseline=baseline)
+    assert assemble._predicts(outcome, {}, after, 1.5) is expected

@@ -12,7 +12,7 @@ from ssmr_ident.diagnose.evidence import Evidence
 from ssmr_ident.diagnose.turning.anchor import Anchor
 from ssmr_ident.diagnose.turning.candidates import UNLISTED
 from ssmr_ident.diagnose.turning.conditions import Condition
-from ssmr_ident.diagnose.turning.engine import FINAL_SEEDS, Outcome
+from ssmr_ident.diagnose.turning.engine import FINAL_SEEDS, LEFT, Outcome
 from ssmr_ident.diagnose.turning.located import located
 from ssmr_ident.diagnose.turning.maps import follows, speed_maps
 from ssmr_ident.diagnose.turning.next_run import next_run
@@ -72,7 +72,9 @@ def diagnosis_of(outcome: Outcome, session: str) -> Diagnosis:
 def _predicts(outcome: Outcome, added: Mapping[str, float], effects: Mapping, floor: float) -> bool:
     """Whether there was anything to explain beyond repeatability, and the effect brings the spectra nearer.
 
-    Against the mean of several runs: one run's chance is as large as what a small effect changes.
+    Against the mean of several runs: one run's chance is as large as what a small effect changes. Where targets differ
+    from the calibration, recordings kept back that show nothing of it (at speeds where the effect does nothing) do not
+    speak against an effect that leaves them as they are.
     """
     conditions = outcome.heldout or outcome.targets
     distances = [
@@ -80,7 +82,10 @@ def _predicts(outcome: Outcome, added: Mapping[str, float], effects: Mapping, fl
             outcome.bench, conditions, values, active, FINAL_SEEDS)) else np.inf
         for values, active in ((outcome.anchor.values, {}), (added, effects))
     ]  # fmt: skip
-    return distances[0] > WITHIN * floor * ONE_SIDED and distances[1] < NEARER * distances[0]
+    reached = WITHIN * floor * ONE_SIDED
+    if outcome.calibrated and outcome.baseline.target.left > LEFT and max(distances) <= reached:
+        return True
+    return distances[0] > reached and distances[1] < NEARER * distances[0]
 
 
 def _chosen(outcome: Outcome, decision: Decision) -> Explained | None:

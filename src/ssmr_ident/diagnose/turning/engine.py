@@ -37,7 +37,7 @@ LEFT = 20.0
 REFINE_FAR = 100.0
 """Of evidence: what lies further behind does not come first by being fitted (1.5 times the most seen)."""
 DISTORTED_DB = 2.0
-"""Own error of a baseline fitted on the targets from which on it may have been bent by what is missing."""
+"""Own error of a baseline fitted on the targets by slopes, from which on it may be bent by what is missing."""
 CLOSE = 100.0  # of evidence behind the first: as much as an ensemble was seen to add where slopes had ended
 MANY = 3  # target conditions from which on one run each has to do while searching
 
@@ -136,6 +136,7 @@ def examine(
     seconds["baseline"] = time.perf_counter() - clock
     baseline = explained(anchor, None, {}, targets)
     assert baseline is not None
+    distorted = not calibration and baseline.target.tau_db > DISTORTED_DB
     several = tuple(1000 * seed + s for s in FINAL_SEEDS)
     if not calibration:
         # as far as explanations are fitted later: what the parameters can bring about by themselves needs no effect
@@ -158,7 +159,7 @@ def examine(
         pool = [one for pair in pairs[:FREED] for one in _both(pair) if one.evidence > level]
     else:
         pool = [one for pair in pairs[:FREED_LOOSE] for one in _both(pair)]
-        if baseline.target.tau_db > DISTORTED_DB:
+        if distorted:
             # fitted on the targets, the baseline may have bent itself round what is missing: once more from the file
             straight = replace(anchor, z=np.zeros(len(anchor.priors)))
             pool += [pair[0] for pair in _tried(straight, every, targets, show)[:FREED_STRAIGHT]]
