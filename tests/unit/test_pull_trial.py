@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from ssmr_ident.campaign import Measurement
+from ssmr_ident.core.parameter import Estimate
 from ssmr_ident.core.recording import Channel, Provenance, Recording
 from ssmr_ident.identify.trials.pull import find_slack, holds, pull_trial, tightening
 from ssmr_ident.session import Entry, read_parameters
@@ -65,7 +66,8 @@ def test_where_the_cable_tightens_is_read_from_the_log_alone() -> None:
 def test_a_pull_of_one_friction_coefficient_moves_smoothly_with_what_it_hardly_depends_on(direction: str) -> None:
     """Chatter, and wheels that let go at one moment by symmetry alone, once made jumps of half a newton of this."""
     known = read_parameters("p3at-extended")
-    known = known.updated({"tire.mu_kinetic": known["tire.mu_static"]})
+    together = {"tire.mu_kinetic": known["tire.mu_static"], "tire.sliding_speed_m_s": Estimate(0.3, None, "m/s")}
+    known = known.updated(together)
     time = np.arange(900) / 100.0
     log = Recording(time, (Channel("force", 8.0 * time, "N"),), Provenance("made", "", "test"))
     entry = Entry("pull.csv", "pull", direction=direction, speed_mm_s=1.0 if direction == "lateral" else 2.0)

@@ -103,12 +103,12 @@ def examine(setup: Setup, parameters: ParameterSet, progress: Progress | None = 
         found = evidences([chosen, *new])
         leader = max(new, key=lambda e: found[e.id])
         if chosen is not baseline and _cost(leader, chosen) > _cost(chosen, chosen):
-            tried += new
+            tried = _with(tried, new)
             break
         polished = explained(kept, turned(polish(leader.fit, lengths), lengths), leader.kept)
         if polished.fit.cost(polished.fit.counted) < leader.fit.cost(polished.fit.counted):
             new[new.index(leader)], leader = polished, polished
-        tried += new
+        tried = _with(tried, new)
         found_fit = differentiate(leader.fit)
         first = chosen is baseline
         if not _better(leader, chosen, first) or not significant(found_fit):
@@ -193,6 +193,12 @@ def anew(fit: JointFit, lengths: tuple[float, ...]) -> JointFit:
     short = [t.until(lengths[0]) for t in fit.trials]
     begun = follow(short, fit.model, point, kin=fit)
     return mended(led(fit.trials, fit.model, point, lengths, LAST, begun.nuisances))
+
+
+def _with(tried: Sequence[Explanation], new: Sequence[Explanation]) -> list[Explanation]:
+    """Each model once, as last fitted: beside a better baseline all are tried again."""
+    ids = {e.id for e in new}
+    return [*(e for e in tried if e.id not in ids), *new]
 
 
 def _cost(explanation: Explanation, reference: Explanation) -> float:

@@ -52,9 +52,10 @@ def diagnose(
         return diagnose_turning(campaign, known, seed, progress)
     from ssmr_ident.diagnose.assemble import assembled, refitted_on_all
     from ssmr_ident.diagnose.engine import examine
-    from ssmr_ident.diagnose.setup import set_up
+    from ssmr_ident.diagnose.sliding import with_law_of_sliding
 
-    outcome = examine(set_up(campaign, known), known, progress)
+    setup, known = with_law_of_sliding(campaign, known)
+    outcome = examine(setup, known, progress)
     return assembled(outcome, known, refitted_on_all(outcome), seed)
 
 

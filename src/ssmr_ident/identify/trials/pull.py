@@ -27,10 +27,11 @@ from ssmr_ident.simulate.simulation import simulate
 STARTING = 3
 """Samples at the start that do not count: how the head takes up speed is not in the log."""
 
-JOLT = (-0.15, 0.35)
-"""Seconds about the tightening of the cable that do not count. Its damper takes up the head's speed with a jolt of some
-20 N for each mm/s, which the body swings out within two periods: larger than all else that is left, it would hold the
-fit by the moment at which the slack ends."""
+JOLT, SHARE = (-0.15, 0.35), 0.1
+"""Seconds about the tightening of the cable, and the share by which they count. Its damper takes up the head's speed
+with a jolt of some 20 N for each mm/s, which the body swings out within two periods: larger than all else that is left,
+it would hold the fit by the moment at which the slack ends. But a log that begins without slack has the cell's zero
+nowhere else."""
 
 RISE = (0.06, 0.18)
 """Shares of a pull's largest force between which its beginning counts as a straight line."""
@@ -43,9 +44,9 @@ ENDS, STILL_RISES = 6, 0.3
 """Parts of a drag, and the gain of mean force into its last part over the largest from part to part, from which the
 contact holds: a sliding one keeps its force, and a carcass that creeps or softens loses half of its slope at most."""
 
-COARSE, COARSE_TEETH = 2.0, 10.0
-"""On the steps of differences. Where teeth come at other times after every step, slopes want a wide one: a percent of a
-stiffness, and a thousandth of the travel."""
+SMOOTH, COARSE = 2.0, 10.0
+"""On the steps of differences. Where teeth come at other times after every step, or a relay chatters, slopes want a
+wide one: a percent of a stiffness, and a thousandth of the travel."""
 
 BLIND = {
     "pull": ("inertia_", "accelerometer.", "tire.damping_"),
@@ -67,6 +68,10 @@ the integration, None for the simulator's own choice."""
 QUICK = 2e-3
 """Integration step of fits [s]: averages of a pull without teeth then differ by 0.01 to 0.12 N rms from those at the
 simulator's own choice (the body's swing after the start), a load cell's noise being some 0.5 N."""
+
+
+FIXTURE_STEP = 2e-4
+"""The same where a stiff fixture holds the robot while its wheels spin: its own vibration would burst beyond 4e-4 s."""
 
 
 def pull_trial(measurement: Measurement, parameters: ParameterSet) -> Trial:
@@ -97,10 +102,12 @@ def pull_trial(measurement: Measurement, parameters: ParameterSet) -> Trial:
 
     teeth = find_teeth(measured, travel, block)
     rising = slice(None) if teeth is None else slice(teeth.rise)
+    since = step * (block * np.arange(count) + 0.5 * (block - 1) - tightening(measured, block))
+    share = np.where((since > JOLT[0]) & (since < JOLT[1]), SHARE, 1.0)[:, None]
 
     def averaged(signal: Array) -> Array:
         averages = signal[: count * block].reshape(count, block).mean(axis=1)[:, None]
-        return averages if teeth is None else teeth.ordered(averages)
+        return share * (averages if teeth is None else teeth.ordered(averages))
 
     def simulated(values: Values, effects: Effects, slack: float, inner: float | None = QUICK) -> Array:
         try:
@@ -121,10 +128,8 @@ def pull_trial(measurement: Measurement, parameters: ParameterSet) -> Trial:
         tight = simulated(values, effects, 0.0)
         return np.array([find_slack(measured[rising], travel[rising], tight[rising]) / size])
 
+    noise = spread(averaged(measured)[:, 0] / share[:, 0]) if teeth is None else teeth.noise
     target = averaged(measured)
-    tightens = elapsed[tightening(measured, block)]
-    since = elapsed[: count * block].reshape(count, block).mean(axis=1) - tightens
-    counts[(since > JOLT[0]) & (since < JOLT[1])] = False
     return Trial(
         measurement.name,
         measurement.entry.experiment,
@@ -132,8 +137,8 @@ def pull_trial(measurement: Measurement, parameters: ParameterSet) -> Trial:
         ("force",),
         start + step * (block * np.arange(count) + 0.5 * (block - 1)),
         target,
-        (AutoregressiveNoise(np.ones(1), spread(target[:, 0]) if teeth is None else teeth.noise),),
-        np.ones((count, 1)) if teeth is None else teeth.weight[:, None],
+        (AutoregressiveNoise(np.ones(1), noise),),
+        share if teeth is None else share * teeth.weight[:, None],
         run,
         begin,
         ("slack_m",),
@@ -142,7 +147,7 @@ def pull_trial(measurement: Measurement, parameters: ParameterSet) -> Trial:
         counts,
         {"travel_m": size, "teeth": 0.0 if teeth is None else float(teeth.count)},
         _blind(measurement.entry),
-        COARSE if teeth is None else COARSE_TEETH,
+        SMOOTH if teeth is None and parameters.number("tire.sliding_speed_m_s", 0.0) > 0.0 else COARSE,
         searched=True,
         quiet=teeth is not None,
     )
@@ -189,9 +194,6 @@ def force_model(entry: Entry, parameters: ParameterSet, held: bool = False) -> F
         block = block_from_parameters(parameters)
         return lambda values, effects, head, step, inner: pull_block(_block(block, values), head, step, effects)
     builder = RobotBuilder.of(parameters)
-    if builder.nominal.mu_kinetic == builder.nominal.mu_static:
-        # one coefficient is Coulomb's law; the relay has no depth of release then, and chatters
-        builder = RobotBuilder(builder.nominal.sliding_together())
     if entry.experiment == "vertical_compression":
         return lambda values, effects, head, step, inner: compress_wheel(builder(values), head, step, effects=effects)
     if entry.experiment == "wheel_drag":
@@ -209,6 +211,9 @@ def force_model(entry: Entry, parameters: ParameterSet, held: bool = False) -> F
 def _pulled(robot: Robot, entry: Entry, head: Array, step: float, effects: Effects, inner: float | None) -> Array:
     stiffness, damping = cable_properties(entry.cable)
     rate = entry.wheel_rate_rad_s or 0.0
+    held = fixture_needed(entry.wheels_gripping, rate)
+    if held and inner is not None:
+        inner = min(inner, FIXTURE_STEP)
     scenario = Scenario(
         "pull",
         len(head) * step,
@@ -220,7 +225,7 @@ def _pulled(robot: Robot, entry: Entry, head: Array, step: float, effects: Effec
         cable_stiffness=stiffness,
         cable_damping=damping,
         wheel_rates=np.full((1, 2), rate),
-        held=fixture_needed(entry.wheels_gripping, rate),
+        held=held,
     )
     return simulate(robot, scenario, 1.0 / step, step=inner, effects=effects)["force"]
 
