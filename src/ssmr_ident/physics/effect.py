@@ -129,9 +129,8 @@ class Effect(Shown):
     def begun(self, at: Mapping[str, float]) -> dict[str, float]:
         """All parameters where a search begins: the given ones, nominal for the rest, and off what switches it off
         besides."""
-        amplitudes = {p.name for p in self.amplitudes}
-        others = {} if amplitudes.isdisjoint(at) else {p.name: p.off for p in self.amplitudes}
-        return self.values({**others, **at})
+        off = {p.name: p.off for p in self.parameters if p.off is not None}
+        return self.values({**({} if off.keys().isdisjoint(at) else off), **at})
 
     def is_off(self, values: Mapping[str, float]) -> bool:
         return all(values[parameter.name] == parameter.off for parameter in self.amplitudes)
