@@ -8,14 +8,16 @@ import numpy as np
 
 from ssmr_ident.campaign import Campaign
 from ssmr_ident.core.parameter import Estimate, ParameterSet
-from ssmr_ident.diagnose.explore import best_baseline
+from ssmr_ident.diagnose.explore import Progress, best_baseline
 from ssmr_ident.diagnose.setup import Setup, set_up
 from ssmr_ident.physics.robot import SLIDING_SPEED
 
 KEY = "tire.sliding_speed_m_s"
 
 
-def with_law_of_sliding(campaign: Campaign, known: ParameterSet) -> tuple[Setup, ParameterSet]:
+def with_law_of_sliding(
+    campaign: Campaign, known: ParameterSet, progress: Progress | None = None
+) -> tuple[Setup, ParameterSet]:
     """A session set up with the relay of each axis (6.4) or with Coulomb's cone, whichever its recordings prefer.
 
     Under one friction coefficient both are Coulomb's law, and differ where a wheel slides along two axes at once. A
@@ -25,6 +27,7 @@ def with_law_of_sliding(campaign: Campaign, known: ParameterSet) -> tuple[Setup,
     ----------
     campaign : Campaign
     known : ParameterSet
+    progress : callable, optional
 
     Returns
     -------
@@ -35,6 +38,8 @@ def with_law_of_sliding(campaign: Campaign, known: ParameterSet) -> tuple[Setup,
     one = known.number("tire.mu_static", np.nan) == known.number("tire.mu_kinetic", np.nan)
     if KEY in known or not one or all(trial.experiment != "pull" for trial in relay.fitted):
         return relay, known
+    if progress:
+        progress("fitting the baseline", 0, 1)
     decided = known.updated({KEY: Estimate(SLIDING_SPEED, None, "m/s", fixed=True)})
     cone = set_up(replace(campaign, parameters=decided), decided)
     fits = [best_baseline(s.fitted, s, p)[0] for s, p in ((relay, known), (cone, decided))]

@@ -54,7 +54,7 @@ def diagnose(
     from ssmr_ident.diagnose.engine import examine
     from ssmr_ident.diagnose.sliding import with_law_of_sliding
 
-    setup, known = with_law_of_sliding(campaign, known)
+    setup, known = with_law_of_sliding(campaign, known, progress)
     outcome = examine(setup, known, progress)
     return assembled(outcome, known, refitted_on_all(outcome), seed)
 
