@@ -184,6 +184,16 @@ def _each_once(fits: Sequence[JointFit]) -> list[JointFit]:
     return list(best.values())
 
 
+def _each_form(ranked: Sequence[JointFit]) -> list[JointFit]:
+    """Of every effect, in each of its formulas, the fit that leaves least: a first step says little of where one ends."""
+    best: dict[tuple[tuple[str, ...], ...], JointFit] = {}
+    for fit in ranked:
+        ids = fit.model.ids
+        form = () if ids[-1] == "unlisted" else tuple(c.parameter.name for c in fit.model.free if c.effect == ids[-1])
+        best.setdefault((ids, form), fit)
+    return list(best.values())
+
+
 def _raced(base: JointFit, groups: Sequence[Sequence[Suspect]], progress: Progress | None) -> list[JointFit]:
     """All effects on whole recordings, a few steps each; the most likely first, each effect once."""
     field = []
@@ -221,7 +231,7 @@ def _screened(
     for heat, (kept, steps) in enumerate(HEATS[1:]):
         ranked = _ranked(field)
         # after a step or two the first dozen may all be of two effects
-        once = [] if heat else _each_once(ranked)
+        once = [] if heat else _each_form(ranked)
         field = [*once, *(f for f in ranked[:kept] if f not in once)]
         field = [led(few.trials, f.model, f.point, second, steps, f.nuisances) for f in field]
         if progress:
@@ -236,7 +246,8 @@ def _ranked(fits: Sequence[JointFit]) -> list[JointFit]:
     if not finite:
         return []
     counted = min(finite, key=lambda f: float(np.log(f.parts).sum())).counted
-    return sorted(finite, key=lambda f: f.cost(counted))
+    # a formula with one number more has to be that much better (Schwarz)
+    return sorted(finite, key=lambda f: f.cost(counted) + len(f.model.free) * float(np.log(counted.sum())))
 
 
 def _loudest(base: JointFit) -> list[int]:

@@ -30,7 +30,7 @@ EFFECT = Effect(
     parameters=(
         Parameter("k3_N_m3", "N/m^3", 5e8, -1e10, 1e11, "cubic stiffness of one spring", off=0.0),
         Parameter("knee_share", "1", 0.0, -0.95, 20.0, "a: slope beyond the knee over K, less one", off=0.0),
-        Parameter("knee_m", "m", 5e-4, 1e-7, 0.1, "deflection at which the slope changes"),
+        Parameter("knee_m", "m", 5e-4, 1e-7, 10.0, "deflection at which the slope changes"),
     ),
     experiments=("free_response", "pull", "wheel_drag", "vertical_compression", "forced"),
     acts={Site.ELEMENT: force},
