@@ -185,7 +185,7 @@ def _each_once(fits: Sequence[JointFit]) -> list[JointFit]:
 
 
 def _each_form(ranked: Sequence[JointFit]) -> list[JointFit]:
-    """Of every effect, in each of its formulas, the fit that leaves least: a first step says little of where one ends."""
+    """Of every effect, in each formula, the fit that leaves least: a first step says little of where one ends."""
     best: dict[tuple[tuple[str, ...], ...], JointFit] = {}
     for fit in ranked:
         ids = fit.model.ids
