@@ -125,6 +125,13 @@ def test_a_rope_adds_its_compliance_to_a_dragged_wheel(robot: Robot) -> None:
     assert np.polyfit(head[50:], force[50:], 1)[0] == pytest.approx(6000.0 * tire / (6000.0 + tire), rel=1e-3)
 
 
+def test_a_force_of_no_list_acts_on_a_dragged_wheel(robot: Robot) -> None:
+    head = 1e-5 * np.arange(300)
+    plain = drag_wheel(robot, head, 0.01)
+    force = drag_wheel(robot, head, 0.01, effects={"unlisted": {"c_s2_N_m2": 4e5}})
+    assert force[50:] - plain[50:] == pytest.approx(4e5 * head[50:] ** 2, rel=1e-6, abs=1e-9)
+
+
 def test_a_pressed_wheel_follows_spring_and_damper(robot: Robot) -> None:
     head = np.concatenate([np.zeros(10), 1e-5 * np.arange(1, 200), np.full(20, 2e-3)])
     force = compress_wheel(robot, head, 0.01, gap=5e-4)

@@ -71,16 +71,12 @@ def channels_of(
             assumed.append(label or f"column {len(channels) + 2}")
             unit = table.assumed_unit
         elif column.unit is None and quantity is not None:
-            raise source.error(
-                f"unit of {label} unknown", f"Give --units {label}=…, such as N, mm, V or g.", table.part
-            )
+            raise source.error(f"unit of {label} unknown", _given(label, "N, mm, V or g"), table.part)
         elif conversion is None:
             unit = column.unit or ""
             why = f"unit {unit!r} is not known" if unit else "states no unit"
             if quantity is not None:
-                raise source.error(
-                    f"unit {unit!r} of {label} is not known", f"Give --units {label}=N, mm, V, …", table.part
-                )
+                raise source.error(f"unit {unit!r} of {label} is not known", _given(label, "N, mm or V"), table.part)
             notes.append(Note("warning", f"{label or 'a column'}: {why}; numbers kept as they are"))
         else:
             unit = conversion.unit
@@ -88,7 +84,7 @@ def channels_of(
             if unit not in (expected, "V"):
                 raise source.error(
                     f"{label} is in {column.unit}, which is no unit of {quantity}",
-                    f"Give --units {label}=…, such as {_EXAMPLES.get(expected, expected)}.",
+                    _given(label, _EXAMPLES.get(expected, expected)),
                     table.part,
                 )
             if conversion.changes:
@@ -105,6 +101,11 @@ def channels_of(
             )
         )
     return _named(channels, table, notes)
+
+
+def _given(label: str, such_as: str) -> str:
+    """How a unit is told: on the command line, or where a session lists the recording."""
+    return f"Give --units {label}=…, such as {such_as}; in session.yaml, units: {{{label}: …}} beside the file."
 
 
 def _named(channels: list[Channel], table: Table, notes: list[Note]) -> list[Channel]:

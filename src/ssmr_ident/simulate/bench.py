@@ -8,16 +8,24 @@ import numpy as np
 
 from ssmr_ident.core.kernel import kernel
 from ssmr_ident.physics.effect import Site
-from ssmr_ident.physics.effects import CATALOGUE, stribeck
+from ssmr_ident.physics.effects import CATALOGUE, stribeck, unlisted
 from ssmr_ident.physics.element import STATES, element_advance, element_force
 from ssmr_ident.physics.rig import Block
 from ssmr_ident.physics.robot import GRAVITY, Robot
-from ssmr_ident.physics.slots import KINETIC_SHARE, STRIBECK_EXPONENT, STRIBECK_SPEED, Effects, checked, effect_vector
+from ssmr_ident.physics.slots import (
+    KINETIC_SHARE,
+    STRIBECK_EXPONENT,
+    STRIBECK_SPEED,
+    UNLISTED,
+    Effects,
+    checked,
+    effect_vector,
+)
 from ssmr_ident.physics.tire import contact_force
 from ssmr_ident.simulate.sensed import sensed
 
 _LONGEST_STEP = 2e-4  # s; a tenth of the carcass' time constant D/K
-_friction_law = stribeck.coefficient
+_friction_law, _unlisted = stribeck.coefficient, unlisted.force
 
 
 def drag_wheel(
@@ -122,13 +130,15 @@ def _read(force: np.ndarray, step: float, active: Effects) -> np.ndarray:
 @kernel
 def _drag(stiffness, damping, mass, breakaway, grip, load, cable, e, head, step, substeps, out):
     deflection, velocity, sliding, hub_position = 0.0, 0.0, False, 0.0
-    hidden = np.zeros(STATES)
+    hidden, free = np.zeros(STATES), e[UNLISTED:]
     h = step / substeps
     series, falling = math.isfinite(cable), e[KINETIC_SHARE] != 1.0 and math.isfinite(grip)
     for n in range(out.shape[0]):
         rate = (head[n + 1] - head[n]) / step if n + 1 < out.shape[0] else 0.0
         for m in range(substeps):
-            beside = element_force(deflection, rate - velocity, hidden, stiffness, 1.0, 1.0, True, e)
+            slip = rate - velocity
+            beside = element_force(deflection, slip, hidden, stiffness, 1.0, 1.0, True, e)
+            beside += _unlisted(deflection, slip, free)
             hub = rate
             if series:  # the hub is light: cable and tire carry the same force, taken implicitly
                 target = head[n] + rate * (m + 1) * h
