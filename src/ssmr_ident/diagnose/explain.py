@@ -8,12 +8,17 @@ import numpy as np
 
 from ssmr_ident.diagnose.scan import Suspect
 from ssmr_ident.identify.coordinates import Model
+from ssmr_ident.identify.descent import descend
 from ssmr_ident.identify.joint import JointFit, Slopes, evaluate
+from ssmr_ident.physics.effects import CATALOGUE
 
 Array = np.ndarray
 
 SHRINKING = (1.0, 0.3, 0.1)
 """Shares of a suspect's start that are tried."""
+
+SETTLING = 3
+"""Gauss-Newton steps of all else beside an effect that is held."""
 
 
 def with_suspect(fit: JointFit, suspect: Suspect, share: float = 1.0) -> tuple[Model, Array]:
@@ -24,16 +29,23 @@ def with_suspect(fit: JointFit, suspect: Suspect, share: float = 1.0) -> tuple[M
     return replace(model, held=held), np.concatenate([fit.point, begin])
 
 
-def begin_with(fit: JointFit, suspect: Suspect) -> tuple[Model, Array]:
-    """A suspect's start, as large as it can be simulated.
+def beside(fit: JointFit, suspect: Suspect) -> JointFit:
+    """A suspect's start beside a fit, as large as it can be simulated.
 
-    Not where it fits best unrefitted: that is next to nothing, where the baseline's optimum holds the fit.
+    Not where it fits best unrefitted: that is next to nothing, where the baseline's optimum holds the fit. What acts
+    beyond a threshold alone is held at its probe until all else has settled beside it: the straight line from a model
+    that knows nothing of a slow sensor leads back over a hill to that model.
     """
     for share in SHRINKING:
         model, point = with_suspect(fit, suspect, share)
-        if np.isfinite(evaluate(fit.trials, model, point, fit.nuisances).rss):
+        begun = evaluate(fit.trials, model, point, fit.nuisances)
+        if np.isfinite(begun.rss):
             break
-    return model, point
+    if not CATALOGUE[suspect.effect].sudden or not np.isfinite(begun.rss):
+        return begun
+    frozen = replace(fit.model, held={**fit.model.held, suspect.effect: model.split(point)[1][suspect.effect]})
+    settled = descend(evaluate(fit.trials, frozen, fit.point, fit.nuisances), SETTLING)
+    return evaluate(fit.trials, model, np.concatenate([settled.point, point[len(fit.point) :]]), settled.nuisances)
 
 
 def without(fit: JointFit, effect_id: str) -> JointFit:

@@ -9,7 +9,7 @@ import numpy as np
 
 from ssmr_ident.compare.recorded import follow, radian
 from ssmr_ident.core.parameter import ParameterSet
-from ssmr_ident.diagnose.explain import begin_with
+from ssmr_ident.diagnose.explain import beside
 from ssmr_ident.diagnose.scan import Suspect, candidates, scan
 from ssmr_ident.diagnose.setup import Setup
 from ssmr_ident.diagnose.start import begin
@@ -102,7 +102,7 @@ def search(
     base: JointFit,
     baseline: str,
     lengths: Sequence[float],
-    beside: bool = False,
+    further: bool = False,
     progress: Progress | None = None,
 ) -> Search:
     """Every effect of the catalogue beside a model.
@@ -115,14 +115,14 @@ def search(
         The session's.
     lengths : sequence of float [s]
         Horizons.
-    beside : bool
+    further : bool
         The model has an effect already, and a second one is looked for.
     progress : callable, optional
     """
     misfit = base.parts / [t.size for t in base.trials]
     # one recording that stands out may be the only one in which a wheel lifts; beside an effect that explains the
     # others it is more likely the effect's own formula
-    loud = float(np.median(misfit)) > WIDE if beside else float(np.max(misfit)) > LOUD
+    loud = float(np.median(misfit)) > WIDE if further else float(np.max(misfit)) > LOUD
     groups = scan(base, candidates(base, baseline), small=not loud)
     rest = [np.inf]
     if loud and len(lengths) > 1:
@@ -131,8 +131,8 @@ def search(
     elif loud:
         rough = _raced(base, groups, progress)
     else:
-        chosen = [g for g in groups if g[0].gain > PROMISING + len(g[0].at)][: REFITTED if beside else SCREENED]
-        rough = _ranked([_started(base, suspect) for group in chosen for suspect in _variants(group)])
+        chosen = [g for g in groups if g[0].gain > PROMISING + len(g[0].at)][: REFITTED if further else SCREENED]
+        rough = ranked([_started(base, suspect) for group in chosen for suspect in _variants(group)])
     tried: list[JointFit] = []
     rough = _finalists([fit for fit in rough if _close(rough, fit)])
     for index, fit in enumerate(rough):
@@ -140,7 +140,7 @@ def search(
             progress("refitting explanations", index, len(rough))
         begun = led(base.trials, fit.model, fit.point, rest, LAST // 2, _all_nuisances(base, fit, lengths))
         # what is as far behind as this halfway does not win, and where exactly it ends decides nothing
-        tried.append(mended(descend(begun, LAST - LAST // 2)) if _close(_ranked([begun, *tried]), begun) else begun)
+        tried.append(mended(descend(begun, LAST - LAST // 2)) if _close(ranked([begun, *tried]), begun) else begun)
     if progress:
         progress("refitting explanations", 1, 1)
     return Search(base, tuple(tuple(g) for g in groups), tuple(_each_once(tried)), tuple(lengths))
@@ -179,7 +179,7 @@ def _finalists(ranked: Sequence[JointFit]) -> list[JointFit]:
 def _each_once(fits: Sequence[JointFit]) -> list[JointFit]:
     """Of every effect the fit that leaves least."""
     best: dict[tuple[str, ...], JointFit] = {}
-    for fit in _ranked(fits):
+    for fit in ranked(fits):
         best.setdefault(fit.model.ids, fit)
     return list(best.values())
 
@@ -201,11 +201,10 @@ def _raced(base: JointFit, groups: Sequence[Sequence[Suspect]], progress: Progre
         if progress:
             progress("trying effects", index, len(groups))
         for suspect in group:
-            model, point = begin_with(base, suspect)
-            field.append(descend(evaluate(base.trials, model, point, base.nuisances), 2))
+            field.append(_started(base, suspect))
     if progress:
         progress("trying effects", 1, 1)
-    return _ranked([descend(f, 2) for f in _ranked(field)[: HEATS[2][0]]])
+    return ranked([descend(f, 2) for f in ranked(field)[: HEATS[2][0]]])
 
 
 def _screened(
@@ -224,24 +223,24 @@ def _screened(
         if progress:
             progress("trying effects", index, len(groups) + 3)
         for suspect in group:
-            model, point = begin_with(first, suspect)
-            begun.append(led(few.trials, model, point, lengths[:1], HEATS[0][1], first.nuisances))
+            begun.append(descend(beside(first, suspect), HEATS[0][1]))
     field = begun
     second = lengths[1:2] if len(lengths) > 2 else lengths[:1]
     for heat, (kept, steps) in enumerate(HEATS[1:]):
-        ranked = _ranked(field)
+        ordered = ranked(field)
         # after a step or two the first dozen may all be of two effects
-        once = [] if heat else _each_form(ranked)
-        field = [*once, *(f for f in ranked[:kept] if f not in once)]
+        once = [] if heat else _each_form(ordered)
+        field = [*once, *(f for f in ordered[:kept] if f not in once)]
         field = [led(few.trials, f.model, f.point, second, steps, f.nuisances) for f in field]
         if progress:
             progress("trying effects", len(groups) + heat, len(groups) + 3)
     if progress:
         progress("trying effects", 1, 1)
-    return _ranked(field)
+    return ranked(field)
 
 
-def _ranked(fits: Sequence[JointFit]) -> list[JointFit]:
+def ranked(fits: Sequence[JointFit]) -> list[JointFit]:
+    """Fits, the best first: by what they leave, in the best one's independent samples, and by their numbers."""
     finite = [f for f in fits if np.isfinite(f.rss)]
     if not finite:
         return []
@@ -274,8 +273,7 @@ def _all_nuisances(base: JointFit, fit: JointFit, lengths: Sequence[float]) -> l
 
 
 def _started(base: JointFit, suspect: Suspect) -> JointFit:
-    model, point = begin_with(base, suspect)
-    return descend(evaluate(base.trials, model, point, base.nuisances), 2)
+    return descend(beside(base, suspect), 2)
 
 
 def _variants(group: Sequence[Suspect]) -> list[Suspect]:

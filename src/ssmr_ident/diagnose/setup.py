@@ -24,6 +24,9 @@ KEPT_BACK = 1 / 3
 
 BANDWIDTH = "accelerometer.bandwidth_hz"
 
+SHEET = 3.0
+"""Standard deviations by which a sensor's bandwidth may be off its sheet before it is an effect."""
+
 
 @dataclass(frozen=True, eq=False)
 class Setup:
@@ -207,5 +210,8 @@ def unknowns_of(campaign: Campaign, parameters: ParameterSet) -> tuple[Unknown, 
         value = float(parameters[key].value)
         if np.isfinite(value):
             std = parameters[key].std
-            found.append(Unknown(key, parameters[key].unit, value, None if std is None else max(std, 1e-9)))
+            known = None if std is None else max(std, 1e-9)
+            # a sensor slower than any uncertainty of its sheet is an effect
+            reach = SHEET if key == BANDWIDTH else np.inf
+            found.append(Unknown(key, parameters[key].unit, value, known, reach=reach))
     return tuple(found)

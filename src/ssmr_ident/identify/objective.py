@@ -31,6 +31,9 @@ class Unknown:
         None: unknown, taken as ``WIDE`` in the logarithm.
     positive : bool
         Fitted as its logarithm, so that half and double are equally far and nothing ends at 0.
+    reach : float
+        Prior standard deviations beyond which the value does not go, however far its coordinate does: what is further
+        off is no matter of an uncertain number, but has a name of its own.
     """
 
     name: str
@@ -38,6 +41,7 @@ class Unknown:
     prior: float
     prior_std: float | None
     positive: bool = True
+    reach: float = math.inf
 
     @property
     def logarithmic(self) -> bool:
@@ -52,9 +56,14 @@ class Unknown:
 
     def value(self, scaled: float) -> float:
         """From the scaled coordinate (0 at the prior, 1 at one standard deviation)."""
+        within = scaled * self._bent(scaled)
         if self.logarithmic:
-            return self.prior * math.exp(min(max(scaled * self.spread, -12.0), 12.0))
-        return self.prior + scaled * self.spread
+            return self.prior * math.exp(min(max(within * self.spread, -12.0), 12.0))
+        return self.prior + within * self.spread
+
+    def _bent(self, scaled: float) -> float:
+        """Share of a coordinate that is gone: 1 about the prior, less towards the end of its reach."""
+        return (1.0 + (scaled / self.reach) ** 4) ** -0.25
 
     @property
     def prior_spread(self) -> float:
@@ -63,11 +72,12 @@ class Unknown:
 
     def slope(self, scaled: float) -> float:
         """Derivative of the value by the scaled coordinate."""
-        return self.spread * (self.value(scaled) if self.logarithmic else 1.0)
+        return self.spread * (self.value(scaled) if self.logarithmic else 1.0) * self._bent(scaled) ** 5
 
     def scaled(self, value: float) -> float:
         """Back from a value to the scaled coordinate."""
-        return (math.log(value / self.prior) if self.logarithmic else value - self.prior) / self.spread
+        within = (math.log(value / self.prior) if self.logarithmic else value - self.prior) / self.spread
+        return within / max(1.0 - (within / self.reach) ** 4, 1e-8) ** 0.25
 
     def std(self, scaled: float, scaled_std: float) -> float:
         return scaled_std * self.slope(scaled)

@@ -1,0 +1,103 @@
+"""Whether an explanation is good enough: certainly better, by more than a formula, on unseen recordings as well."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.stats import chi2
+
+from ssmr_ident.diagnose.explore import LOUD
+from ssmr_ident.diagnose.weigh import CERTAIN, Explanation, evidences
+from ssmr_ident.identify.joint import JointFit
+
+SECOND = 0.7
+"""Share of the first effect's unexplained variance, mean over all recordings, that may be left when a second one is
+added: the right effect in a formula that is not quite the world's leaves structure, of which any other takes a part.
+How large a part, and how much a true second effect takes: docs/theory/diagnosis.md."""
+
+FORMULA = 0.02
+"""Share of the baseline's error below which what one effect leaves is put down to its own formula: a friction that is
+rounded otherwise than the catalogue's leaves a hundredth, which some second effect always mends a little."""
+
+UNHARMED, STRONG = 1.02, 0.5
+"""Where no recording kept back shows an effect: the variance that it may add to those that it leaves unexplained, and
+the share that the first one must leave in the recording that shows it best."""
+
+ALIKE = 2.0
+"""Unexplained variance over that of the best explanation, up to which another counts as near as it."""
+
+CHANCE = 0.0027
+"""Probability, that of three standard deviations, with which an amplitude may be as far from off by chance, or
+n ln(RSS) on recordings kept back fall as far where the first effect is none."""
+
+
+def better(leader: Explanation, before: Explanation, first: bool) -> bool:
+    """Whether an explanation is certainly better, and predicts recordings better that it has not seen."""
+    if not _certain(leader, before):
+        return False
+    change = np.log(leader.kept.parts / before.kept.parts)
+    # the baseline may have fitted one recording better than its noise, at the expense of all others
+    explained = leader.kept.parts < LOUD * np.array([t.size for t in leader.kept.trials])
+    unharmed = float(np.exp(np.mean(np.where(explained, np.minimum(change, 0.0), change)))) < UNHARMED
+    if not first:
+        # the loudest recordings, which show a second effect best, are never kept back
+        return unharmed and mends(leader, before)
+    if -float(leader.kept.counted @ change) > chi2.isf(CHANCE, 1):
+        return True
+    # a sensor clips in the loudest recording only: what was kept back need not show it, but must not suffer
+    strongest = float(np.min(leader.fit.parts / before.fit.parts))
+    return unharmed and strongest < STRONG
+
+
+def _certain(leader: Explanation, before: Explanation) -> bool:
+    found = evidences([before, leader])
+    return found[leader.id] - found[before.id] > CERTAIN
+
+
+def mends(pair: Explanation, single: Explanation) -> bool:
+    """Whether the effect that a pair has more takes what no formula of the other one would leave."""
+    return _certain(pair, single) and _left(pair, single) < SECOND
+
+
+def _left(leader: Explanation, before: Explanation) -> float:
+    """Unexplained variance over that of another explanation, geometric mean over all recordings."""
+    pairs = ((leader.fit, before.fit), (leader.kept, before.kept))
+    return float(np.exp(np.mean(np.concatenate([np.log(a.parts / b.parts) for a, b in pairs]))))
+
+
+def leading(chosen: Explanation, new: Sequence[Explanation]) -> Explanation:
+    found = evidences([chosen, *new])
+    return max(new, key=lambda e: found[e.id])
+
+
+def left_over(chosen: Explanation, baseline: Explanation) -> float:
+    """Size of what an explanation leaves over what the baseline left, mean over all recordings."""
+    return float(np.sqrt(_left(chosen, baseline)))
+
+
+def as_near(rival: Explanation, chosen: Explanation) -> bool:
+    """Whether neither of two laws is the world's, and one is about as near to it as the other.
+
+    Where the best law leaves more than the noise, its formula is wrong by that much; a rival whose error is no more
+    than that again cannot be told from it by how well it fits.
+    """
+    left = chosen.kept.parts / [t.size for t in chosen.kept.trials]
+    if float(np.median(left)) < LOUD or len(rival.fit.model.ids) != len(chosen.fit.model.ids):
+        return False
+    return float(np.exp(np.mean(np.log(rival.kept.parts / chosen.kept.parts)))) < ALIKE
+
+
+def significant(fit: JointFit) -> bool:
+    """Whether every effect's own amplitudes are away from off by more than their uncertainty allows (Wald's test)."""
+    first = len(fit.model.physics)
+    covariance, point = fit.covariance()[first:, first:], fit.point[first:]
+    for effect_id in {c.effect for c in fit.model.free}:
+        own = [k for k, c in enumerate(fit.model.free) if c.effect == effect_id and c.parameter.off is not None]
+        away = np.array(
+            # off is infinitely far in a logarithm; one that is known to a third is three deviations from nothing
+            [1.0 / fit.model.free[k].unknown.spread if fit.model.free[k].unknown.logarithmic else point[k] for k in own]
+        )
+        if own and float(away @ np.linalg.solve(covariance[np.ix_(own, own)], away)) < chi2.isf(CHANCE, len(own)):
+            return False
+    return True

@@ -1,0 +1,75 @@
+"""An explanation led to its best: further, from other starts, in other formulas."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ssmr_ident.compare.recorded import follow
+from ssmr_ident.diagnose.explore import LAST, LOUD, mended, ranked
+from ssmr_ident.diagnose.scan import combinations
+from ssmr_ident.identify.descent import descend
+from ssmr_ident.identify.horizons import led
+from ssmr_ident.identify.joint import JointFit, evaluate
+from ssmr_ident.physics.effects import CATALOGUE
+
+FAR = 3.0
+"""Prior standard deviations by which a parameter may have moved beside an effect before the fit is begun again."""
+
+
+def turned(fit: JointFit, lengths: tuple[float, ...]) -> JointFit:
+    """The better of a fit and its like with other values of what is tried of its last effect and not fitted."""
+    effect_id = fit.model.ids[-1]
+    own = fit.model.held[effect_id]
+    best = fit
+    effect = CATALOGUE[effect_id]
+    for tried in combinations({**effect.holds, **effect.forms}):
+        if tried == {name: own[name] for name in tried} or not loud(fit):
+            continue
+        model = replace(fit.model, held={**fit.model.held, effect_id: {**own, **tried}})
+        other = led(fit.trials, model, fit.point, lengths[1:] or lengths, LAST, fit.nuisances)
+        best = min((best, other), key=lambda f: f.cost(best.counted))
+    return best
+
+
+def loud(fit: JointFit) -> bool:
+    """Whether the median recording is left with more than noise."""
+    return float(np.median(fit.parts / [t.size for t in fit.trials])) > LOUD
+
+
+def polish(fit: JointFit, lengths: tuple[float, ...]) -> JointFit:
+    """An explanation led to its best: on from where it stands, and where that is far from what is known or leaves more
+    than noise, once more from what is known."""
+    further = mended(descend(fit, LAST))
+    physics = len(further.model.physics)
+    further = heard(further)
+    if len(lengths) == 1 or not (loud(further) or float(np.max(np.abs(further.point[:physics]), initial=0.0)) > FAR):
+        return further
+    return min((anew(further, lengths), further), key=lambda f: f.cost(further.counted))
+
+
+def anew(fit: JointFit, lengths: tuple[float, ...]) -> JointFit:
+    """The effects as they are, everything else begun from what is known of it."""
+    point = fit.point.copy()
+    point[: len(fit.model.physics)] = 0.0
+    short = [t.until(lengths[0]) for t in fit.trials]
+    begun = follow(short, fit.model, point, kin=fit)
+    return mended(led(fit.trials, fit.model, point, lengths, LAST, begun.nuisances))
+
+
+def heard(fit: JointFit) -> JointFit:
+    """A fit that leaves much in some recordings, led by those alone and then on with all, where that is better.
+
+    What a recording leaves is what it is measured by: those that are explained to the noise hold the fit where it is,
+    and those that are not have no say.
+    """
+    left = fit.parts / [t.size for t in fit.trials]
+    unheard = [k for k, size in enumerate(left) if size > LOUD]
+    if not unheard or len(unheard) == len(left):
+        return fit
+    few = [fit.trials[k] for k in unheard], [fit.nuisances[k] for k in unheard]
+    led_by = descend(evaluate(few[0], fit.model, fit.point, few[1]), LAST)
+    own = dict(enumerate(fit.nuisances)) | dict(zip(unheard, led_by.nuisances, strict=True))
+    other = descend(evaluate(fit.trials, fit.model, led_by.point, [own[k] for k in range(len(left))]), LAST)
+    return ranked((fit, other))[0]
