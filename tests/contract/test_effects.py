@@ -34,7 +34,7 @@ IDS = (
 )  # fmt: skip
 UNITS = {
     "1", "N", "N/m", "N/m^2", "N/m^3", "N s/m", "N s/m^2", "N s/m^3", "N s^2/m^2", "N s^3/m^3", "N/s", "1/s", "m",
-    "m/s", "m/s^2", "s", "kg", "Hz", "rad",
+    "N s^0.5/m^0.5", "m/s", "m/s^2", "s", "kg", "Hz", "rad",
 }  # fmt: skip
 EXPERIMENTS = {"free_response", "pull", "wheel_drag", "vertical_compression", "swivel", "straight", "forced"}
 NO_SLOT = {

@@ -162,26 +162,40 @@ def test_a_damper_that_only_works_one_way_gives_back_what_it_took() -> None:
 
 
 @law("unlisted")
+def test_under_a_root_damper_the_root_of_the_amplitude_falls_in_a_straight_line() -> None:
+    """The work per period, c w^(1/2) A^(3/2) ∮|cos|^(3/2), over k A: an average, good to the second order in c."""
+    c, amplitude = 1.5, 5e-3
+    tops = np.sqrt(_extremes(_swing({"unlisted": {"c_root_v_N_s05_m05": c}}, amplitude))[1::2])
+    loop = 2.0 * math.sqrt(math.pi) * math.gamma(1.25) / math.gamma(1.75)
+    fall = c * math.sqrt(OMEGA) * loop / (2.0 * STIFFNESS)
+    assert len(tops) > 10
+    assert tops[0] - tops[10] > 0.05 * tops[0]
+    assert (tops[0] - tops[10]) / 10.0 == pytest.approx(fall, rel=0.01)
+
+
+@law("unlisted")
 @pytest.mark.parametrize("seed", range(3))
 def test_the_smooth_force_moves_a_shaken_mass_as_an_adaptive_solver_has_it(seed: int) -> None:
-    """All eight terms at once, up to 5 N each, the formula written out again."""
+    """All terms at once, up to 5 N each, the formula written out again."""
     random = np.random.default_rng(seed)
     names = (
         "c_abs_v_N_s_m", "c_abs_s_N_m", "c_s2_N_m2", "c_v2_N_s2_m2", "c_sv_N_s_m2", "c_s2v_N_s_m3", "c_v3_N_s3_m3",
-        "c_s_abs_v_N_s_m2",
+        "c_s_abs_v_N_s_m2", "c_root_v_N_s05_m05",
     )  # fmt: skip
     s, v = 5e-3, 0.2
-    a, b, c, d, e, f, g, h = random.uniform(-5.0, 5.0, 8) / [v, s, s**2, v**2, s * v, s**2 * v, v**3, s * v]
+    sizes = [v, s, s**2, v**2, s * v, s**2 * v, v**3, s * v, v**0.5]
+    a, b, c, d, e, f, g, h, i = random.uniform(-5.0, 5.0, 9) / sizes
     push = lambda t: 60.0 * np.sin(2 * np.pi * 5.0 * t) * np.sin(2 * np.pi * 0.9 * t)  # noqa: E731
 
     def rate(t: float, state: np.ndarray) -> tuple[float, float]:
         x, u = state
         extra = a * abs(u) + b * abs(x) + c * x**2 + d * u**2 + e * x * u + f * x**2 * u + g * u**3 + h * x * abs(u)
+        extra += i * u / (u**2 + 1e-6) ** 0.25
         return u, (push(t) - 120.0 * u - STIFFNESS * x - extra) / MASS
 
     time = np.arange(2000) / 2000.0
     exact = solve_ivp(rate, (0.0, 1.0), (2e-3, 0.0), t_eval=time, rtol=1e-9, atol=1e-12, max_step=1e-3).y
-    values = dict(zip(names, (a, b, c, d, e, f, g, h), strict=True))
+    values = dict(zip(names, (a, b, c, d, e, f, g, h, i), strict=True))
     rig = Rig(MASS, 120.0, STIFFNESS)
     found, plain = (simulate_rig(rig, push(time), 2000.0, 2e-3, effects=x) for x in ({"unlisted": values}, {}))
     for column in (0, 1):

@@ -62,7 +62,7 @@ def _product(text: str, sizes: Mapping[str, float]) -> float:
     result = 1.0
     for factor in text.split("*") if text else ():
         name, _, power = factor.partition("^")
-        result *= sizes[name] ** int(power or 1)
+        result *= sizes[name] ** float(power or 1)
     return result
 
 

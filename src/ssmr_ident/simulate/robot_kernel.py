@@ -155,7 +155,7 @@ def run(
     hidden = np.zeros((12, STATES))  # of x, y, z of the first wheel, then of the next
     law = inner_slots(e)
     f = _FREE
-    free = (e[f], e[f + 1], e[f + 2], e[f + 3], e[f + 4], e[f + 5], e[f + 6], e[f + 7])
+    free = (e[f], e[f + 1], e[f + 2], e[f + 3], e[f + 4], e[f + 5], e[f + 6], e[f + 7], e[f + 8])
     smooth = np.any(e[f:] != 0.0)
     if beside and start[LOADED] != 0.0:
         for i in range(12):

@@ -17,16 +17,21 @@ TERMS = {
     "c_s2v_N_s_m3": "s^2 v",
     "c_v3_N_s3_m3": "v^3",
     "c_s_abs_v_N_s_m2": "s |v|",
+    "c_root_v_N_s05_m05": "sign(v) sqrt|v|",
 }
 """Terms by parameter. What is odd in s alone or |v| v is hardening or quadratic damping, which are listed."""
+
+_SLOW = 1e-3
+"""m/s; below it the root is a straight line, so that its slope stays finite."""
 
 
 @kernel
 def force(s, v, c):
-    """Σ c_i f_i(s, v) [N]; s : float [m], v : float [m/s]; c : (8,) float or tuple in the order of ``TERMS``."""
+    """Σ c_i f_i(s, v) [N]; s : float [m], v : float [m/s]; c : (9,) float or tuple in the order of ``TERMS``."""
     return (
         c[0] * abs(v) + c[1] * abs(s) + c[2] * s * s + c[3] * v * v
         + c[4] * s * v + c[5] * s * s * v + c[6] * v * v * v + c[7] * s * abs(v)
+        + (c[8] * v * (v * v + _SLOW * _SLOW) ** -0.25 if c[8] != 0.0 else 0.0)
     )  # fmt: skip
 
 
@@ -36,10 +41,11 @@ def law(values: Mapping[str, float]) -> str:
     return "F = K s + D v + " + " + ".join(parts or ["0"])
 
 
-_UNITS = ("N s/m", "N/m", "N/m^2", "N s^2/m^2", "N s/m^2", "N s/m^3", "N s^3/m^3", "N s/m^2")
+_UNITS = ("N s/m", "N/m", "N/m^2", "N s^2/m^2", "N s/m^2", "N s/m^3", "N s^3/m^3", "N s/m^2", "N s^0.5/m^0.5")
 _SIZES = (
     "force/speed", "force/deflection", "force/deflection^2", "force/speed^2", "force/deflection*speed",
     "force/deflection^2*speed", "force/speed^3", "force/deflection*speed",
+    "force/speed^0.5",
 )  # fmt: skip
 
 EFFECT = Effect(
