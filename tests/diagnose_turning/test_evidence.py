@@ -9,6 +9,7 @@ from ssmr_ident.diagnose.diagnosis import MISSING, UNDETERMINED
 from ssmr_ident.diagnose.turning import assemble, rivals
 from ssmr_ident.diagnose.turning.anchor import between
 from ssmr_ident.diagnose.turning.candidates import pitches_heard
+from ssmr_ident.diagnose.turning.counter import Counter
 from ssmr_ident.diagnose.turning.engine import CLOSE, _ahead
 from ssmr_ident.diagnose.turning.grip import _doubtful, profile
 from ssmr_ident.diagnose.turning.likelihood import NEPER_DB, Block, log_variance, score
@@ -198,3 +199,15 @@ def test_kept_back_recordings_that_show_nothing_speak_against_nothing(monkeypatc
     baseline = SimpleNamespace(target=SimpleNamespace(left=left))
     outcome = SimpleNamespace(bench=None, heldout=("a",), targets=(), anchor=anchor, calibrated=True, baseline=baseline)
     assert assemble._predicts(outcome, {}, after, 1.5) is expected
+
+
+def test_what_a_search_did_not_need_counts_as_done() -> None:
+    seen: list[tuple[str, int, int]] = []
+    count = Counter(lambda *told: seen.append(told), "stage", 10)
+    count.advance()
+    count.reach(6)
+    count.reach(4)
+    for _ in range(7):
+        count.advance()
+    assert [done for _, done, _ in seen] == [0, 1, 6, 6, 7, 8, 9, 10, 10, 10, 10]
+    assert {told[0::2] for told in seen} == {("stage", 10)}

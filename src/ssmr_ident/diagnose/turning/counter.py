@@ -18,5 +18,10 @@ class Counter:
         self.done = min(self.done + 1, self.total)
         self.show(self.stage, self.done, self.total)
 
+    def reach(self, done: int) -> None:
+        """What was not needed counts as done."""
+        self.done = min(max(self.done, done), self.total)
+        self.show(self.stage, self.done, self.total)
+
     def finish(self) -> None:
         self.show(self.stage, self.total, self.total)

@@ -13,7 +13,7 @@ from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.turning.anchor import SEEDS, Anchor, scale_of
 from ssmr_ident.diagnose.turning.baseline import ROUNDS, anchored
 from ssmr_ident.diagnose.turning.bench import STEP, Bench
-from ssmr_ident.diagnose.turning.candidates import Candidate, candidates, pitches_heard
+from ssmr_ident.diagnose.turning.candidates import Candidate, candidates
 from ssmr_ident.diagnose.turning.conditions import Condition, conditions_of, held_back
 from ssmr_ident.diagnose.turning.counter import Counter, Progress
 from ssmr_ident.diagnose.turning.ensemble import ROUNDS as ENSEMBLE_ROUNDS
@@ -22,6 +22,7 @@ from ssmr_ident.diagnose.turning.grip import PATH, TRIED, GripProfile, grip_prof
 from ssmr_ident.diagnose.turning.likelihood import Score
 from ssmr_ident.diagnose.turning.regimes import widened
 from ssmr_ident.diagnose.turning.search import Explained, explained, freed, polished, refined, screened
+from ssmr_ident.diagnose.turning.starts import ceilings, pitches
 
 REFINED = 5  # explanations whose own parameters are searched first, with calibration
 FREED, FREED_LOOSE, FREED_STRAIGHT = 5, 3, 3
@@ -152,7 +153,7 @@ def examine(
             bench, calibration, targets, heldout, anchor, final, (), (), grip, (*kept_notes, *notes), seconds,
         )  # fmt: skip
 
-    every = candidates(_pitches(anchor, targets), _ceilings(targets), anchor.values.get("floor.height_m", 3e-5))
+    every = candidates(pitches(anchor, targets), ceilings(targets), anchor.values.get("floor.height_m", 3e-5))
     pairs = _tried(anchor, every, targets, show)
     if calibration:
         level = max(baseline.evidence, pairs[0][0].evidence) - REFINE_FAR
@@ -165,8 +166,8 @@ def examine(
             pool += [pair[0] for pair in _tried(straight, every, targets, show)[:FREED_STRAIGHT]]
     seconds["explanations"] = time.perf_counter() - clock - seconds["baseline"]
 
-    steps = FIRST_STEPS * len(pool) + sum(most * more for most, more in HALVINGS) + SETTLED * (1 + ENSEMBLE_ROUNDS)
-    count = Counter(show, "baseline set free beside them", steps)
+    pooled = FIRST_STEPS * len(pool) + sum(most * more for most, more in HALVINGS)
+    count = Counter(show, "baseline set free beside them", pooled + SETTLED * (1 + ENSEMBLE_ROUNDS))
     best = [replace(freed(one, targets, FIRST_STEPS, count.advance), slopes=None) for one in pool]
     for most, more in HALVINGS:
         best.sort(key=lambda one: one.evidence, reverse=True)
@@ -175,7 +176,9 @@ def examine(
             if one.evidence > reach:
                 best[i] = freed(one, targets, more, count.advance, STEP)
     best = _one_each(best)
-    for i in _ahead(best[:SETTLED], baseline):
+    ahead = _ahead(best[:SETTLED], baseline)
+    for fitted, i in enumerate(ahead):
+        count.reach(pooled + (SETTLED - len(ahead) + fitted) * (1 + ENSEMBLE_ROUNDS))
         one = polished(best[i], targets, count.advance)
         best[i] = settled_at_distances(one, targets, seed, several, count.advance)
     finals = [_final(one, targets, seed) for one in [baseline, *_one_each(best)]]
@@ -260,41 +263,3 @@ def _final(one: Explained, targets: tuple[Condition, ...], seed: int) -> Explain
     many.bench.prefetch(jobs)
     again = explained(many, one.candidate, one.values, targets)
     return one if again is None else replace(again, spread=one.spread, slopes=one.slopes)
-
-
-def _pitches(anchor: Anchor, targets: tuple[Condition, ...]) -> tuple[float, ...]:
-    """Joint distances to try: what the excess over the baseline speaks for."""
-    excess, speeds = [], []
-    for c in targets:
-        blocks = anchor.blocks((c,), {}, anchor.shares[0])
-        run = anchor.bench.run(c, anchor.values, {}, anchor.seeds)
-        if blocks is None or run is None:
-            continue
-        channels = blocks[0].residual.reshape(len(c.mean.frequency), -1)[:, : len(c.names)]
-        excess.append(channels.mean(axis=1))
-        speeds.append(abs(run.yaw_rate) * lever(anchor) if c.experiment == "swivel" else _forward(c, anchor))
-    frequency = min((c.mean.frequency for c in targets), key=len)
-    return pitches_heard(frequency, [course[: len(frequency)] for course in excess], speeds)
-
-
-def lever(anchor: Anchor) -> float:
-    """Mean distance of the contacts from the centre of mass [m]."""
-    points = np.asarray(anchor.bench.parameters["contact_points_m"].value, dtype=float)
-    return float(np.hypot(points[:, 0], points[:, 1]).mean())
-
-
-def _forward(c: Condition, anchor: Anchor) -> float:
-    return float(np.abs(c.rates).mean()) * anchor.bench.parameters.number("tire.radius_m")
-
-
-def _ceilings(targets: tuple[Condition, ...]) -> tuple[float, ...]:
-    """Levels at which a sensor may have clipped: near the largest readings of each channel."""
-    levels = []
-    for c in targets:
-        n = len(c.names)
-        top = np.maximum(
-            c.mean.levels[:n] + np.exp(c.mean.levels[n : 2 * n]), np.exp(c.mean.levels[2 * n :]) - c.mean.levels[:n]
-        )
-        levels.append(np.abs(top))
-    highest = np.max(levels, axis=0)
-    return tuple(sorted({float(h * f) for h in highest for f in (0.93, 0.98, 1.03)}))

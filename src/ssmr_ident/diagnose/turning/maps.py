@@ -8,8 +8,9 @@ import numpy as np
 
 from ssmr_ident.diagnose.evidence import SpeedMap
 from ssmr_ident.diagnose.turning.conditions import Condition
-from ssmr_ident.diagnose.turning.engine import Outcome, lever
+from ssmr_ident.diagnose.turning.engine import Outcome
 from ssmr_ident.diagnose.turning.likelihood import NEPER_DB
+from ssmr_ident.diagnose.turning.starts import lever
 from ssmr_ident.diagnose.turning.worth import channel_logs
 from ssmr_ident.physics.slots import Effects
 
