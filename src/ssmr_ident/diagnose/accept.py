@@ -16,6 +16,9 @@ SECOND = 0.7
 added: the right effect in a formula that is not quite the world's leaves structure, of which any other takes a part.
 How large a part, and how much a true second effect takes: docs/theory/diagnosis.md."""
 
+BESIDES = 0.95
+"""The same without the recording that shows it best: one alone may be an accident, a stick that lets go elsewhere."""
+
 FORMULA = 0.02
 """Share of the baseline's error below which what one effect leaves is put down to its own formula: a friction that is
 rounded otherwise than the catalogue's leaves a hundredth, which some second effect always mends a little."""
@@ -57,13 +60,16 @@ def _certain(leader: Explanation, before: Explanation) -> bool:
 
 def mends(pair: Explanation, single: Explanation) -> bool:
     """Whether the effect that a pair has more takes what no formula of the other one would leave."""
-    return _certain(pair, single) and _left(pair, single) < SECOND
+    if not _certain(pair, single):
+        return False
+    change = np.sort(_changes(pair, single))
+    return float(np.exp(change.mean())) < SECOND and float(np.exp(change[1:].mean())) < BESIDES
 
 
-def _left(leader: Explanation, before: Explanation) -> float:
-    """Unexplained variance over that of another explanation, geometric mean over all recordings."""
-    pairs = ((leader.fit, before.fit), (leader.kept, before.kept))
-    return float(np.exp(np.mean(np.concatenate([np.log(a.parts / b.parts) for a, b in pairs]))))
+def _changes(one: Explanation, other: Explanation) -> np.ndarray:
+    """Logarithm of the unexplained variance over another explanation's, recording by recording."""
+    pairs = ((one.fit, other.fit), (one.kept, other.kept))
+    return np.concatenate([np.log(a.parts / b.parts) for a, b in pairs])
 
 
 def leading(chosen: Explanation, new: Sequence[Explanation]) -> Explanation:
@@ -73,7 +79,7 @@ def leading(chosen: Explanation, new: Sequence[Explanation]) -> Explanation:
 
 def left_over(chosen: Explanation, baseline: Explanation) -> float:
     """Size of what an explanation leaves over what the baseline left, mean over all recordings."""
-    return float(np.sqrt(_left(chosen, baseline)))
+    return float(np.exp(0.5 * _changes(chosen, baseline).mean()))
 
 
 def as_near(rival: Explanation, chosen: Explanation) -> bool:

@@ -94,9 +94,8 @@ def examine(setup: Setup, parameters: ParameterSet, progress: Progress | None = 
         first = chosen is baseline
         if not better(leader, chosen, first) or not significant(found_fit):
             break
-        bare = explained(
-            kept, differentiate(descend(without(leader.fit, leader.fit.model.ids[-1]), LAST // 2)), leader.kept
-        )
+        further = [name for name in leader.fit.model.ids if name not in chosen.fit.model.ids]
+        bare = explained(kept, differentiate(descend(without(leader.fit, further[-1]), LAST // 2)), leader.kept)
         if bare.id == chosen.id and _cost(bare, chosen) < _cost(chosen, chosen):
             # the effect had only shown the way to a better fit without it
             tried[tried.index(chosen)], chosen = bare, bare
