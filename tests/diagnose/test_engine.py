@@ -93,3 +93,12 @@ def test_a_law_that_no_list_holds_is_called_unlisted():
     assert [e.id for e in found.effects] == ["unlisted"]
     assert list(found.effects[0].parameters) == ["c_abs_v_N_s_m"]
     assert float(found.effects[0].parameters["c_abs_v_N_s_m"].value) == pytest.approx(30.0, rel=0.02)
+
+
+def test_hardening_with_quadratic_damping_is_named_as_the_two_that_it_is():
+    found = diagnose(rig(lambda x, v: 4.6e8 * x**3 + 220.0 * v * np.abs(v)))
+    assert {e.id for e in found.effects} == {"nonlinear_stiffness", "quadratic_damping"}
+    sizes = {name: float(e.value) for effect in found.effects for name, e in effect.parameters.items()}
+    assert sizes["k3_N_m3"] == pytest.approx(4.6e8, rel=0.03)
+    assert sizes["d2_N_s2_m2"] == pytest.approx(220.0, rel=0.05)
+    assert found.heldout.after < 1.2 * found.heldout.noise_floor
