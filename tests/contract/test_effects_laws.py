@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import itertools
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 from scipy.optimize import brentq
+from scipy.signal import butter, lfilter, lfilter_zi
+from scipy.spatial.transform import Rotation
 from scipy.special import ellipk
 
 from ssmr_ident.physics.effects import CATALOGUE, ground_roughness
@@ -558,3 +561,24 @@ def test_a_swaying_mast_follows_its_eight_by_eight_linear_system(robot: Robot) -
 
 def test_no_effect_is_without_a_law() -> None:
     assert set(CATALOGUE) == LAWS
+
+
+@law("sensor_bandwidth")
+@pytest.mark.parametrize("unseen", [0.0, 1.0, 0.4])
+def test_a_slow_sensor_meets_the_release_as_a_butterworth_filter_does(robot: Robot, unseen: float) -> None:
+    """Held for 0.4 s in the pose of the release, at rest, then let go: scipy's filter over both stretches."""
+    rate, cutoff = 8000.0, 14.0
+    offset = {"roll": 2e-3, "pitch": 1.5e-3, "yaw": 1e-3}
+    open_robot = robot.with_changes(accelerometer=replace(robot.accelerometer, bandwidth_hz=math.inf))
+    free = simulate(open_robot, Scenario("free_response", 0.3, offset=offset), rate)
+    seen = Scenario("free_response", 0.3, offset={**offset, "unseen": unseen})
+    slow = simulate(open_robot, seen, rate, effects={"sensor_bandwidth": {"bandwidth_hz": cutoff}})
+    forward, back = butter(2, cutoff, fs=rate)
+    pose = Rotation.from_euler("ZYX", [0.0, free["pitch"][0], free["roll"][0]])
+    standing = pose.inv().apply([0.0, 0.0, GRAVITY])
+    for axis, name in enumerate(("ax", "ay", "az")):
+        before = free[name][0] - unseen * (free[name][0] - standing[axis])
+        course = np.concatenate([np.full(3200, before), free[name]])
+        exact = lfilter(forward, back, course, zi=lfilter_zi(forward, back) * before)[0][3200:]
+        assert np.abs(slow[name] - exact).max() < 2e-3 * np.ptp(free[name])
+        assert unseen == 0.0 or np.abs(slow[name][:80] - free[name][:80]).max() > 0.1 * np.ptp(free[name])

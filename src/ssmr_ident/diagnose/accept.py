@@ -25,7 +25,11 @@ rounded otherwise than the catalogue's leaves a hundredth, which some second eff
 
 UNHARMED, STRONG = 1.02, 0.5
 """Where no recording kept back shows an effect: the variance that it may add to those that it leaves unexplained, and
-the share that the first one must leave in the recording that shows it best."""
+the share that the first one must leave in the recording that shows it best, or at the median."""
+
+UNTOUCHED = 0.9
+"""Share of the variance, mean over the recordings in which the baseline leaves more than noise, beyond which an answer
+does not answer."""
 
 ALIKE = 2.0
 """Unexplained variance over that of the best explanation, up to which another counts as near as it."""
@@ -48,9 +52,21 @@ def better(leader: Explanation, before: Explanation, first: bool) -> bool:
         return unharmed and mends(leader, before)
     if -float(leader.kept.counted @ change) > chi2.isf(CHANCE, 1):
         return True
-    # a sensor clips in the loudest recording only: what was kept back need not show it, but must not suffer
-    strongest = float(np.min(leader.fit.parts / before.fit.parts))
-    return unharmed and strongest < STRONG
+    # a sensor clips in the loudest recordings only: what was kept back need not show it, but must not suffer; where
+    # most recordings gain, that one may be a little worse
+    every = _changes(leader, before)
+    most = float(np.median(every)) < np.log(STRONG) and float(np.mean(change)) < np.log(ALIKE)
+    return most or (unharmed and float(np.min(every)) < np.log(STRONG))
+
+
+def touches(chosen: Explanation, baseline: Explanation) -> bool:
+    """Whether an explanation takes anything from the recordings in which the baseline leaves more than noise.
+
+    What is named beside a misfit that it leaves as it is, is not what is missing.
+    """
+    loud = baseline.fit.parts > LOUD * np.array([t.size for t in baseline.fit.trials])
+    change = np.log(chosen.fit.parts / baseline.fit.parts)[loud]
+    return not loud.any() or float(np.mean(change)) < np.log(UNTOUCHED)
 
 
 def _certain(leader: Explanation, before: Explanation) -> bool:

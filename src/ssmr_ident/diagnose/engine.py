@@ -9,7 +9,7 @@ import numpy as np
 
 from ssmr_ident.compare.recorded import follow
 from ssmr_ident.core.parameter import ParameterSet
-from ssmr_ident.diagnose.accept import FORMULA, as_near, better, leading, left_over, mends, significant
+from ssmr_ident.diagnose.accept import FORMULA, as_near, better, leading, left_over, mends, significant, touches
 from ssmr_ident.diagnose.coupling import coupled
 from ssmr_ident.diagnose.explain import without
 from ssmr_ident.diagnose.explore import LAST, Progress, Search, best_baseline, prepared, search
@@ -106,6 +106,8 @@ def examine(setup: Setup, parameters: ParameterSet, progress: Progress | None = 
         tried[tried.index(leader)] = chosen
         singles.append(chosen)
     chosen, tried = _backward(kept, lengths, chosen, tried, singles)
+    if chosen is not baseline and not touches(chosen, baseline):
+        chosen = baseline
     found = evidences(tried)
     top = found[chosen.id]
     alike = [e for e in tried if e is not chosen and len(e.fit.model.ids) <= len(chosen.fit.model.ids)]

@@ -17,6 +17,7 @@ from ssmr_ident.identify.descent import descend
 from ssmr_ident.identify.horizons import STEPS, horizons, led
 from ssmr_ident.identify.joint import JointFit, differentiate, evaluate
 from ssmr_ident.identify.trials import Trial
+from ssmr_ident.physics.effects import CATALOGUE
 
 Progress = Callable[[str, int, int], None]
 
@@ -277,8 +278,12 @@ def _started(base: JointFit, suspect: Suspect) -> JointFit:
 
 
 def _variants(group: Sequence[Suspect]) -> list[Suspect]:
-    """The best probe of an effect, and the best for each other value of what is tried and not fitted."""
+    """The best probe of an effect, for each value of what is tried and not fitted; all of what acts beyond a threshold.
+
+    A straight line promises nothing there.
+    """
     found: dict[tuple[tuple[str, float], ...], Suspect] = {}
     for suspect in group:
-        found.setdefault(tuple(sorted(suspect.held.items())), suspect)
+        begun = suspect.at.items() if CATALOGUE[suspect.effect].sudden else ()
+        found.setdefault((*sorted(suspect.held.items()), *begun), suspect)
     return list(found.values())

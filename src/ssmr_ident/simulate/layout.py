@@ -8,7 +8,8 @@ MU_STATIC, MU_KINETIC, LAMBDA_MAX, SLIP_COUPLING, MOTOR_GAIN, GRAVITY_G, RELEASE
 SENSOR, POINTS, INVERSE_INERTIA, INERTIA, GRIPPING, SLIDING_SPEED, PARAMETERS = 16, 19, 31, 40, 49, 53, 54
 
 # x y z roll pitch yaw | u v w p q r | left right | carcass deflections (x, y) of each wheel | sway and its rate (x, y)
-# | share of a push's hidden states | how far each wheel was pressed in by it
-LOADED, START = 26, 31
+# | share of a push's hidden states | how far each wheel was pressed in by it | share of the first value that the
+# sensor has not met yet
+LOADED, UNSEEN, START = 26, 31, 32
 OUTPUTS = ("ax", "ay", "az", "wx", "wy", "wz", "x", "y", "z", "roll", "pitch", "yaw", "vx", "vy", "force", "head",
            "rate_left", "rate_right", "sliding", "load_1", "load_2", "load_3", "load_4")  # fmt: skip

@@ -65,6 +65,7 @@ from ssmr_ident.simulate.layout import (
     SENSOR,
     SLIDING_SPEED,
     SLIP_COUPLING,
+    UNSEEN,
 )  # fmt: skip
 from ssmr_ident.simulate.mast import accelerate_with_mast
 from ssmr_ident.simulate.pulling import (
@@ -352,8 +353,12 @@ def run(
         ay = r01 * force_u + cr * force_v + r21 * force_w + bz * px - bx * pz + qe * centripetal - spin * py
         az = r02 * force_u + r12 * force_v + r22 * force_w + bx * py - by * px + re * centripetal - spin * pz
         if n == 0:
-            for j in range(4):  # the low-pass starts as if the first value had always been there
-                history[0, j], history[1, j], history[2, j] = ax, ay, az
+            # the low-pass starts as if the first value had always been there, or that of a robot held in this pose
+            new = start[UNSEEN]
+            for j in range(4):
+                history[0, j] = ax - new * (ax + sp * gravity)
+                history[1, j] = ay - new * (ay - r21 * gravity)
+                history[2, j] = az - new * (az - r22 * gravity)
         ax = filter_step(history[0], ax, low_pass)
         ay = filter_step(history[1], ay, low_pass)
         az = filter_step(history[2], az, low_pass)

@@ -216,5 +216,5 @@ def _start(robot: Robot, scenario: Scenario, cubic: float) -> np.ndarray:
     sway = [part.get(name, 0.0) for part in (offset, velocity) for name in ("sway_x", "sway_y")]
     hubs = pose[2] + (robot.contact_points @ tilt(pose[3], pose[4]).T)[:, 2]
     pressed = height + set_down[:, 2] - hubs
-    loaded = [offset.get("loaded", 0.0)]
-    return np.concatenate([pose, rates, np.zeros(2), deflection.ravel(), sway, loaded, pressed])
+    loaded, unseen = [offset.get("loaded", 0.0)], [offset.get("unseen", 0.0)]
+    return np.concatenate([pose, rates, np.zeros(2), deflection.ravel(), sway, loaded, pressed, unseen])

@@ -28,12 +28,13 @@ AXES = ("ax", "ay", "az")
 SWAY = ("sway_x", "sway_y")
 SWAYING = (*SWAY, *(f"{name}_rate" for name in SWAY))
 BRACE = ("brace_x", "brace_y")
-LOADED = ("dry_friction", "hysteresis", "viscoelastic_relaxation")
-STATES = (*COORDINATES, *(f"{name}_rate" for name in COORDINATES), *SWAYING, *BRACE, "loaded")
-SCALES = np.concatenate([START_SCALES, [0.02, 0.02, 1.0, 1.0], [0.01, 0.01], [1.0]])
+OWN = {"loaded": ("dry_friction", "hysteresis", "viscoelastic_relaxation"), "unseen": ("sensor_bandwidth",)}
+STATES = (*COORDINATES, *(f"{name}_rate" for name in COORDINATES), *SWAYING, *BRACE, *OWN)
+SCALES = np.concatenate([START_SCALES, [0.02, 0.02, 1.0, 1.0], [0.01, 0.01], [1.0, 1.0]])
 """Standard deviations of the starting state, ten times what a push by hand gives. After the body's come a mast's, and
-what the tires are strained against each other: a wheel that a push relieves slides a few millimetres. The last is how
-much of what a push leaves in friction, loops and relaxing branches is there when they are let go."""
+what the tires are strained against each other: a wheel that a push relieves slides a few millimetres. The last two are
+how much of what a push leaves in friction, loops and relaxing branches is there when they are let go, and how much of
+the first acceleration a slow sensor has not met by then."""
 
 STEP = 5e-4
 """Of the simulator [s]: the leapfrog is then off by 3 in 100 000 at 8 Hz, and by 2 in 10 000 at 20 Hz."""
@@ -175,7 +176,7 @@ def _trial(whole: BodyDecay, kept: int, facts: _Facts) -> Trial:
         {"clipped": float((~counts).sum())},
         ("cable.",),
         quiet=True,
-        idle={**dict.fromkeys(SWAYING, ("flexible_mast",)), **dict.fromkeys(BRACE, ("wheel_lift",)), "loaded": LOADED},
+        idle={**dict.fromkeys(SWAYING, ("flexible_mast",)), **dict.fromkeys(BRACE, ("wheel_lift",)), **OWN},
         even=BRACE,
         shorten=lambda seconds: _trial(
             whole, min(kept, max(FEWEST, round(seconds / whole.step))), replace(facts, step=ROUGH_STEP)
@@ -203,7 +204,7 @@ def _loud_until(rest: Array, quiet: int, step: float) -> int:
 
 def _course(robot: Robot, effects: Effects, nuisance: Array, decay: BodyDecay, length: int, step: float) -> Array:
     state = dict(zip(STATES, map(float, nuisance * SCALES), strict=True))
-    offset = {name: state[name] for name in (*COORDINATES, *SWAY, *BRACE, "loaded")}
+    offset = {name: state[name] for name in (*COORDINATES, *SWAY, *BRACE, *OWN)}
     velocity = {name: state[f"{name}_rate"] for name in (*COORDINATES, *SWAY)}
     scenario = Scenario("free_response", length * decay.record.step, offset=offset, velocity=velocity)
     try:

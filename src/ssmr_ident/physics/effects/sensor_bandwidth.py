@@ -32,6 +32,7 @@ EFFECT = Effect(
     probes=(
         {"bandwidth_hz": 50.0},
         {"bandwidth_hz": 25.0},
+        {"bandwidth_hz": 14.0},
     ),
     sudden=True,  # nothing changes down to the bandwidth that the sheet gives
 )
