@@ -7,7 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.stats import chi2
 
+from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.explore import LOUD
+from ssmr_ident.diagnose.setup import BANDWIDTH, SHEET
 from ssmr_ident.diagnose.weigh import CERTAIN, Explanation, evidences
 from ssmr_ident.identify.joint import JointFit
 
@@ -19,9 +21,10 @@ How large a part, and how much a true second effect takes: docs/theory/diagnosis
 BESIDES = 0.95
 """The same without the recording that shows it best: one alone may be an accident, a stick that lets go elsewhere."""
 
-FORMULA = 0.02
+FORMULA = 0.1
 """Share of the baseline's error below which what one effect leaves is put down to its own formula: a friction that is
-rounded otherwise than the catalogue's leaves a hundredth, which some second effect always mends a little."""
+rounded otherwise than the catalogue's leaves a hundredth, which some second effect always mends a little. Of a pair the
+first one leaves more."""
 
 UNHARMED, STRONG = 1.02, 0.5
 """Where no recording kept back shows an effect: the variance that it may add to those that it leaves unexplained, and
@@ -33,6 +36,9 @@ does not answer."""
 
 ALIKE = 2.0
 """Unexplained variance over that of the best explanation, up to which another counts as near as it."""
+
+TOLERANCE = 0.1
+"""Share by which a bandwidth may be below its sheet, whatever the file says of it."""
 
 CHANCE = 0.0027
 """Probability, that of three standard deviations, with which an amplitude may be as far from off by chance, or
@@ -108,6 +114,16 @@ def as_near(rival: Explanation, chosen: Explanation) -> bool:
     if float(np.median(left)) < LOUD or len(rival.fit.model.ids) != len(chosen.fit.model.ids):
         return False
     return float(np.exp(np.mean(np.log(rival.kept.parts / chosen.kept.parts)))) < ALIKE
+
+
+def within_sheet(fit: JointFit, parameters: ParameterSet) -> bool:
+    """Whether a sensor is said to be slower by no more than its sheet leaves open, which is never good to a few percent."""
+    _, effects = fit.model.split(fit.point)
+    if "sensor_bandwidth" not in effects:
+        return False
+    sheet, std = parameters.number(BANDWIDTH, np.inf), parameters[BANDWIDTH].std if BANDWIDTH in parameters else None
+    open_ = max(TOLERANCE, SHEET * (std or 0.0) / sheet)
+    return bool(effects["sensor_bandwidth"]["bandwidth_hz"] > sheet * np.exp(-open_))
 
 
 def significant(fit: JointFit) -> bool:

@@ -9,7 +9,17 @@ import numpy as np
 
 from ssmr_ident.compare.recorded import follow
 from ssmr_ident.core.parameter import ParameterSet
-from ssmr_ident.diagnose.accept import FORMULA, as_near, better, leading, left_over, mends, significant, touches
+from ssmr_ident.diagnose.accept import (
+    FORMULA,
+    as_near,
+    better,
+    leading,
+    left_over,
+    mends,
+    significant,
+    touches,
+    within_sheet,
+)
 from ssmr_ident.diagnose.coupling import coupled
 from ssmr_ident.diagnose.explain import without
 from ssmr_ident.diagnose.explore import LAST, Progress, Search, best_baseline, prepared, search
@@ -92,7 +102,7 @@ def examine(setup: Setup, parameters: ParameterSet, progress: Progress | None = 
         tried = _with(tried, new)
         found_fit = differentiate(leader.fit)
         first = chosen is baseline
-        if not better(leader, chosen, first) or not significant(found_fit):
+        if not better(leader, chosen, first) or not significant(found_fit) or within_sheet(found_fit, parameters):
             break
         further = [name for name in leader.fit.model.ids if name not in chosen.fit.model.ids]
         bare = explained(kept, differentiate(descend(without(leader.fit, further[-1]), LAST // 2)), leader.kept)
