@@ -117,7 +117,7 @@ def as_near(rival: Explanation, chosen: Explanation) -> bool:
 
 
 def within_sheet(fit: JointFit, parameters: ParameterSet) -> bool:
-    """Whether a sensor is said to be slower by no more than its sheet leaves open, which is never good to a few percent."""
+    """Whether a sensor is said to be slower by no more than its sheet leaves open, never good to a few percent."""
     _, effects = fit.model.split(fit.point)
     if "sensor_bandwidth" not in effects:
         return False
