@@ -14,7 +14,7 @@ from ssmr_ident.identify.descent import descend
 from ssmr_ident.identify.joint import JointFit, differentiate, evaluate, worth
 from ssmr_ident.identify.noise import AutoregressiveNoise
 from ssmr_ident.identify.objective import Unknown
-from ssmr_ident.identify.trials import Trial
+from ssmr_ident.identify.trials import Trial, decay
 from ssmr_ident.identify.trials.trial import Course
 
 NAMES = ("a", "b", "c")
@@ -135,3 +135,23 @@ def test_a_recording_that_the_model_does_not_explain_does_not_outvote_the_others
     spoilt = descend(evaluate(trials, MODEL, np.zeros(3), fit.nuisances), 20)
     assert np.all(np.abs(spoilt.point - clean.point) < 3.0 * spread)
     assert spoilt.weights[1] < 1e-3 * spoilt.weights[0]
+
+
+def test_modes_that_run_away_tell_no_start_and_no_warning() -> None:
+    columns = np.full((5, 3, 12), 1e200)
+    assert not np.any(decay._linear_start(None, columns))  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("positive", [True, False])
+def test_a_value_with_a_reach_never_leaves_it_and_is_the_plain_one_near_its_prior(positive: bool) -> None:
+    held = Unknown("bandwidth", "Hz", 80.0, 10.0, positive, reach=3.0)
+    plain = replace(held, reach=np.inf)
+    for scaled in (-8.0, -2.0, -0.3, 0.0, 1.0, 2.5, 40.0):
+        within = plain.scaled(held.value(scaled))
+        assert abs(within) < 3.0
+        assert held.scaled(held.value(scaled)) == pytest.approx(scaled, rel=1e-3)
+        step = 1e-5 * max(1.0, abs(scaled))
+        slope = (held.value(scaled + step) - held.value(scaled - step)) / (2.0 * step)
+        assert held.slope(scaled) == pytest.approx(slope, rel=1e-4, abs=1e-7)
+        if abs(scaled) <= 1.0:
+            assert within == pytest.approx(scaled, rel=0.004)

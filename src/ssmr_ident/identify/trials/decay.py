@@ -52,6 +52,9 @@ ROUGH_STEP = 1e-3
 FEWEST = 24
 """Blocks that even the shortest part of a decay keeps."""
 
+RUNAWAY = 1e30
+"""m/s^2 per starting state, beyond which modes of a robot that falls over tell nothing of where a decay began."""
+
 LONGEST_QUIET = 0.35
 """Share of a record's end from which the noise is taken."""
 
@@ -225,6 +228,8 @@ def _columns(robot: Robot, decay: BodyDecay) -> Array:
 
 
 def _linear_start(trial: Trial, columns: Array) -> Array:
+    if not np.all(np.abs(columns) < RUNAWAY):
+        return np.zeros(len(SCALES))
     design = trial.whitened(columns)
     gram = design.T @ design + np.eye(design.shape[1])
     start = np.linalg.solve(gram, design.T @ trial.white_target)
