@@ -116,9 +116,19 @@ def as_near(rival: Explanation, chosen: Explanation) -> bool:
     return float(np.exp(np.mean(np.log(rival.kept.parts / chosen.kept.parts)))) < ALIKE
 
 
-def within_sheet(fit: JointFit, parameters: ParameterSet) -> bool:
-    """Whether a sensor is said to be slower by no more than its sheet leaves open, never good to a few percent."""
+def within_file(fit: JointFit, parameters: ParameterSet) -> bool:
+    """Whether an effect is no more than what the file leaves open: a bandwidth, or the place of the centre of mass.
+
+    Sheets are never good to a few percent. Where contacts and centre of mass are is one question, and the baseline has
+    an answer of its own with the file's deviation.
+    """
     _, effects = fit.model.split(fit.point)
+    if "com_offset" in effects:
+        stds = {u.name: u.prior_spread for u in fit.model.physics}
+        away = [effects["com_offset"][f"offset_{x}_m"] / stds.get(f"contact_shift_{x}_m", np.inf) for x in "xy"]
+        known = any(f"contact_shift_{x}_m" in stds for x in "xy")
+        if known and float(np.sum(np.square(away))) < chi2.isf(CHANCE, 2):
+            return True
     if "sensor_bandwidth" not in effects:
         return False
     sheet, std = parameters.number(BANDWIDTH, np.inf), parameters[BANDWIDTH].std if BANDWIDTH in parameters else None

@@ -18,7 +18,7 @@ from ssmr_ident.diagnose.accept import (
     mends,
     significant,
     touches,
-    within_sheet,
+    within_file,
 )
 from ssmr_ident.diagnose.coupling import coupled
 from ssmr_ident.diagnose.explain import without
@@ -102,7 +102,7 @@ def examine(setup: Setup, parameters: ParameterSet, progress: Progress | None = 
         tried = _with(tried, new)
         found_fit = differentiate(leader.fit)
         first = chosen is baseline
-        if not better(leader, chosen, first) or not significant(found_fit) or within_sheet(found_fit, parameters):
+        if not better(leader, chosen, first) or not significant(found_fit) or within_file(found_fit, parameters):
             break
         further = [name for name in leader.fit.model.ids if name not in chosen.fit.model.ids]
         bare = explained(kept, differentiate(descend(without(leader.fit, further[-1]), LAST // 2)), leader.kept)
