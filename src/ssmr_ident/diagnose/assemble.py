@@ -16,7 +16,7 @@ from ssmr_ident.diagnose.residual_map import residual_maps
 from ssmr_ident.diagnose.surface import surfaces
 from ssmr_ident.diagnose.weigh import Explanation, shares
 from ssmr_ident.diagnose.words import law, missing, nothing, readable, told, undetermined
-from ssmr_ident.diagnose.worth import grows_with_motion, overlays, predictions, worth
+from ssmr_ident.diagnose.worth import grows_with_motion, overlays, predictions, without_jolts, worth
 from ssmr_ident.identify.joint import JointFit, differentiate
 
 METRIC = "nrmse_percent"
@@ -34,6 +34,8 @@ to which what is left must follow the motion: the floor takes the noise for whit
 COLOURED = 3.0
 """Error over the noise floor that no noise reaches whose neighbours are correlated by 0.7 or less: then something is
 missing wherever it sits. What is left of a sliding pull follows no motion."""
+
+JOLTS = "what is left on unseen recordings is the jolt of the tightening cable: without it {:.1f} times the noise"
 
 
 def assembled(outcome: Outcome, parameters: ParameterSet, everything: JointFit | None, seed: int) -> Diagnosis:
@@ -56,11 +58,16 @@ def assembled(outcome: Outcome, parameters: ParameterSet, everything: JointFit |
     heldout = worth(before_kept, after_kept, [t.name for t in base.kept.trials])
     conflicts = conflicting(outcome)
     effects = _named(outcome, parameters) if named else ()
+    jolts: tuple[str, ...] = ()
     if named:
         verdict = MISSING if len(outcome.rivals) <= MOST_RIVALS else UNDETERMINED
     else:
-        left = max(w.before / w.noise_floor for w in (training, heldout))
-        follows = grows_with_motion([*before_fit, *before_kept]) < BY_CHANCE
+        settled = without_jolts(base.fit, before_fit), without_jolts(base.kept, before_kept)
+        fitted, kept = (worth(p, p, ()) for p in settled)
+        left = max(w.before / w.noise_floor for w in (fitted, kept))
+        if heldout.before > UNEXPLAINED * heldout.noise_floor and kept.before < UNEXPLAINED * kept.noise_floor:
+            jolts = (JOLTS.format(kept.before / kept.noise_floor),)
+        follows = grows_with_motion([*settled[0], *settled[1]]) < BY_CHANCE
         verdict = UNDETERMINED if left > COLOURED or (left > UNEXPLAINED and follows) else NOTHING
     tried = _tried(outcome)
     scanned = len(outcome.searches[0].suspects) if outcome.searches else 0
@@ -94,7 +101,7 @@ def assembled(outcome: Outcome, parameters: ParameterSet, everything: JointFit |
         before=exported(base.fit, parameters),
         after=after if named else exported(base.fit, parameters),
         summary=summary,
-        notes=(*outcome.setup.notes, *_notes(best, heldout)),
+        notes=(*outcome.setup.notes, *jolts, *_notes(best, heldout)),
         evidence=evidence,
     )
 

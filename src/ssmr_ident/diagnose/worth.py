@@ -41,11 +41,26 @@ def predictions(fit: JointFit) -> list[Prediction]:
     return found
 
 
+def without_jolts(fit: JointFit, found: Sequence[Prediction]) -> list[Prediction]:
+    """Predictions of a fit's recordings after the jolt of a cable that tightens, which no two pulls have alike.
+
+    A recording of which that leaves less than half is kept whole.
+    """
+    cut = []
+    for trial, prediction in zip(fit.trials, found, strict=True):
+        after = prediction.time > (-np.inf if trial.jolt is None else trial.jolt[1])
+        cut.append(_where(prediction, after) if after.mean() >= 0.5 else prediction)
+    return cut
+
+
 def _counted(trial: Trial, prediction: Prediction) -> Prediction:
     if trial.part is None:
         return prediction
     low, high = trial.part
-    inside = (prediction.time >= low) & (prediction.time <= high)
+    return _where(prediction, (prediction.time >= low) & (prediction.time <= high))
+
+
+def _where(prediction: Prediction, inside: Array) -> Prediction:
     return replace(
         prediction,
         time=prediction.time[inside],

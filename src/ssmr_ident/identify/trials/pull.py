@@ -102,7 +102,9 @@ def pull_trial(measurement: Measurement, parameters: ParameterSet) -> Trial:
 
     teeth = find_teeth(measured, travel, block)
     rising = slice(None) if teeth is None else slice(teeth.rise)
-    since = step * (block * np.arange(count) + 0.5 * (block - 1) - tightening(measured, block))
+    tightened = start + step * tightening(measured, block)
+    times = start + step * (block * np.arange(count) + 0.5 * (block - 1))
+    since = times - tightened
     share = np.where((since > JOLT[0]) & (since < JOLT[1]), SHARE, 1.0)[:, None]
 
     def averaged(signal: Array) -> Array:
@@ -135,7 +137,7 @@ def pull_trial(measurement: Measurement, parameters: ParameterSet) -> Trial:
         measurement.entry.experiment,
         measurement.entry.direction or "",
         ("force",),
-        start + step * (block * np.arange(count) + 0.5 * (block - 1)),
+        times,
         target,
         (AutoregressiveNoise(np.ones(1), noise),),
         share if teeth is None else share * teeth.weight[:, None],
@@ -150,6 +152,7 @@ def pull_trial(measurement: Measurement, parameters: ParameterSet) -> Trial:
         SMOOTH if teeth is None and parameters.number("tire.sliding_speed_m_s", 0.0) > 0.0 else COARSE,
         searched=True,
         quiet=teeth is not None,
+        jolt=(tightened + JOLT[0], tightened + JOLT[1]),
     )
 
 

@@ -104,6 +104,8 @@ class Trial:
         Times that count, where a lone recording is split into a part that is fitted and one that is kept back.
     quiet : bool
         The noise was taken from a stretch in which nothing moves.
+    jolt : (float, float) or None [s]
+        Times in which the apparatus shows more than what it tests: what is left there tells nothing missing.
     """
 
     name: str
@@ -129,6 +131,7 @@ class Trial:
     shorten: Callable[[float], Trial] | None = None
     part: tuple[float, float] | None = None
     quiet: bool = False
+    jolt: tuple[float, float] | None = None
 
     @property
     def step(self) -> float:

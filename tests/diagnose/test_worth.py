@@ -1,0 +1,44 @@
+"""What is left of a pull is judged without the jolt at which its cable tightens."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from ssmr_ident.campaign import Measurement
+from ssmr_ident.compare.comparison import measure
+from ssmr_ident.compare.outcome import Prediction
+from ssmr_ident.core.parameter import Estimate, ParameterSet
+from ssmr_ident.core.recording import Channel, Provenance, Recording
+from ssmr_ident.diagnose.worth import noise_floor, without_jolts
+from ssmr_ident.identify.trials.pull import pull_trial
+from ssmr_ident.session import Entry
+
+RATE, SLACK = 100.0, 0.8  # Hz, s
+
+
+@pytest.mark.parametrize(("spike_s", "seen"), [(SLACK, False), (4.0, True)])
+def test_a_jolt_counts_unless_the_cable_tightens_there(spike_s: float, seen: bool) -> None:
+    random = np.random.default_rng(11)
+    time = np.arange(800) / RATE
+    force = 10.0 * np.minimum(np.maximum(time - SLACK, 0.0), 2.0)
+    logged = force + 0.05 * random.standard_normal(len(time))
+    logged[round(spike_s * RATE) : round(spike_s * RATE) + 4] += 5.0
+    known = {
+        "mass_kg": Estimate(4.0, 0.1, "kg"),
+        "mu_static": Estimate(0.5, 0.1, "1"),
+        "mu_kinetic": Estimate(0.5, 0.1, "1"),
+        "cable.stiffness_N_m": Estimate(1e4, None, "N/m"),
+    }
+    recording = Recording(time, (Channel("force", logged, "N"),), Provenance("made", "", "test"))
+    trial = pull_trial(
+        Measurement(Entry("drag.csv", "wheel_drag", speed_mm_s=1.0), recording), ParameterSet("block", known)
+    )
+    assert trial.jolt is not None
+    assert trial.jolt[0] < SLACK < trial.jolt[1]
+    whole = Prediction(time, ("force",), ("N",), logged[:, None], force[:, None], low_pass_hz=None)
+    (cut,) = without_jolts(SimpleNamespace(trials=(trial,)), [whole])  # type: ignore[arg-type]
+    assert measure(whole)[0] > 1.6 * noise_floor(whole)
+    assert (measure(cut)[0] > 1.6 * noise_floor(cut)) is seen
