@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from ssmr_ident.core.parameter import Estimate, ParameterSet
-from ssmr_ident.diagnose.accept import within_file
+from ssmr_ident.diagnose.accept import relieves, within_file
+from ssmr_ident.diagnose.weigh import Explanation
 from ssmr_ident.identify.coordinates import Model
 from ssmr_ident.identify.joint import JointFit
 from ssmr_ident.identify.objective import Unknown
@@ -30,3 +33,15 @@ def test_a_centre_of_mass_is_off_beyond_what_the_file_leaves_open(offset: float,
     model, begin = Model((shift,)).with_effect("com_offset", at, {"offset_x_m": 0.01, "offset_y_m": 0.01})
     fit = JointFit((), model, np.concatenate([[0.0], begin]), (), (), ())
     assert within_file(fit, ParameterSet("robot", {})) is within
+
+
+@pytest.mark.parametrize(("bent", "left", "relieved"), [(6.0, 1.0, True), (3.0, 1.0, False), (6.0, 1.2, False)])
+def test_an_effect_takes_back_what_the_baseline_bent(bent: float, left: float, relieved: bool) -> None:
+    """What six deviations ask is more than chance and a table of effects can: 2 ln 1000."""
+
+    def explained(point: float, parts: float) -> Explanation:
+        model = Model((Unknown("contact_shift_x_m", "m", 0.0, 0.005, positive=False),))
+        fit = SimpleNamespace(model=model, point=np.array([point]), parts=np.array([parts]))
+        return Explanation(fit, fit)  # type: ignore[arg-type]
+
+    assert relieves(explained(0.0, left), explained(bent, 1.0)) is relieved

@@ -20,8 +20,11 @@ NOISE = 2e-5
 and of the force between its samples shows beside the noise."""
 
 
-def rig(law, seed: int = 7) -> Campaign:
-    """Three shaken runs of m x'' + d x' + k x + law(x, v) = F by classical Runge-Kutta, ten steps a sample."""
+def rig(law, seed: int = 7, limit: float | None = None) -> Campaign:
+    """Three shaken runs of m x'' + d x' + k x + law(x, v) = F by classical Runge-Kutta, ten steps a sample.
+
+    Their position is logged, or their acceleration by a sensor that reads no more than ``limit`` of the largest.
+    """
     rng = np.random.default_rng(seed)
     tones = np.linspace(2.0, 14.0, 40)[:, None]
     phases = rng.uniform(0.0, 2.0 * np.pi, (40, len(LEVELS)))
@@ -36,10 +39,10 @@ def rig(law, seed: int = 7) -> Campaign:
 
     x, v, path = np.zeros(len(LEVELS)), np.zeros(len(LEVELS)), []
     for n in range(10 * count):
-        if n % 10 == 0:
-            path.append(x)
         f0, f1, f2 = force[2 * n], force[2 * n + 1], force[2 * n + 2]
         a1 = rate(f0, x, v)
+        if n % 10 == 0:
+            path.append(x if limit is None else a1)
         v2 = v + 0.5 * step * a1
         a2 = rate(f1, x + 0.5 * step * v, v2)
         v3 = v + 0.5 * step * a2
@@ -48,11 +51,15 @@ def rig(law, seed: int = 7) -> Campaign:
         a4 = rate(f2, x + step * v3, v4)
         x = x + step / 6 * (v + 2 * v2 + 2 * v3 + v4)
         v = v + step / 6 * (a1 + 2 * a2 + 2 * a3 + a4)
-    seen = np.array(path) + NOISE * rng.standard_normal((count, len(LEVELS)))
+    seen, noise, channel, unit = np.array(path), NOISE, "position", "m"
+    if limit is not None:
+        noise, channel, unit = 3e-3 * float(np.std(seen)), "acceleration", "m/s^2"
+        seen = np.clip(seen, -limit * seen.max(), limit * seen.max())
+    seen = seen + noise * rng.standard_normal(seen.shape)
     time = np.arange(count) / RATE
     measurements = []
     for k in range(len(LEVELS)):
-        channels = (Channel("force", force[::20, k][:count], "N"), Channel("position", seen[:, k], "m"))
+        channels = (Channel("force", force[::20, k][:count], "N"), Channel(channel, seen[:, k], unit))
         entry = Entry(f"run-{k}.csv", "forced")
         measurements.append(Measurement(entry, Recording(time, channels, Provenance("drawn", "", "test"))))
     known = ParameterSet(
@@ -102,3 +109,12 @@ def test_hardening_with_quadratic_damping_is_named_as_the_two_that_it_is():
     assert sizes["k3_N_m3"] == pytest.approx(4.6e8, rel=0.03)
     assert sizes["d2_N_s2_m2"] == pytest.approx(220.0, rel=0.05)
     assert found.heldout.after < 1.2 * found.heldout.noise_floor
+
+
+def test_a_range_that_only_the_end_of_one_run_reaches_is_named():
+    session = rig(lambda x, v: 0.0 * x, limit=0.97)
+    reached = np.abs(session.measurements[-1].recording["acceleration"])
+    assert np.flatnonzero(reached > 0.96 * reached.max())[0] > 1.5 * RATE  # effects are tried on the first second alone
+    found = diagnose(session)
+    assert [e.id for e in found.effects] == ["sensor_saturation"]
+    assert float(found.effects[0].parameters["range_m_s2"].value) == pytest.approx(reached.max(), rel=0.02)

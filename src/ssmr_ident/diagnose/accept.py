@@ -47,7 +47,7 @@ n ln(RSS) on recordings kept back fall as far where the first effect is none."""
 
 def better(leader: Explanation, before: Explanation, first: bool) -> bool:
     """Whether an explanation is certainly better, and predicts recordings better that it has not seen."""
-    if not _certain(leader, before):
+    if not certain(leader, before):
         return False
     change = np.log(leader.kept.parts / before.kept.parts)
     # the baseline may have fitted one recording better than its noise, at the expense of all others
@@ -56,13 +56,25 @@ def better(leader: Explanation, before: Explanation, first: bool) -> bool:
     if not first:
         # the loudest recordings, which show a second effect best, are never kept back
         return unharmed and mends(leader, before)
-    if -float(leader.kept.counted @ change) > chi2.isf(CHANCE, 1):
+    if -float(leader.kept.counted @ change) > chi2.isf(CHANCE, 1) or (unharmed and relieves(leader, before)):
         return True
     # a sensor clips in the loudest recordings only: what was kept back need not show it, but must not suffer; where
     # most recordings gain, that one may be a little worse
     every = _changes(leader, before)
     most = float(np.median(every)) < np.log(STRONG) and float(np.mean(change)) < np.log(ALIKE)
     return most or (unharmed and float(np.min(every)) < np.log(STRONG))
+
+
+def relieves(leader: Explanation, before: Explanation) -> bool:
+    """Whether an effect takes back what the baseline had to bend of what is known, and fits no worse.
+
+    A baseline that reaches the recordings with its tires moved by eight deviations has said that something is missing,
+    though nothing is left of it to see.
+    """
+    count = len(before.fit.model.physics)
+    asked = [float(e.fit.point[:count] @ e.fit.point[:count]) for e in (before, leader)]
+    worse = float(np.mean(np.log(leader.fit.parts / before.fit.parts)))
+    return asked[0] - asked[1] > 2.0 * CERTAIN and worse < float(np.log(UNHARMED))
 
 
 def touches(chosen: Explanation, baseline: Explanation) -> bool:
@@ -75,14 +87,15 @@ def touches(chosen: Explanation, baseline: Explanation) -> bool:
     return not loud.any() or float(np.mean(change)) < np.log(UNTOUCHED)
 
 
-def _certain(leader: Explanation, before: Explanation) -> bool:
+def certain(leader: Explanation, before: Explanation) -> bool:
+    """Whether all recordings together, fitted and kept, say so."""
     found = evidences([before, leader])
     return found[leader.id] - found[before.id] > CERTAIN
 
 
 def mends(pair: Explanation, single: Explanation) -> bool:
     """Whether the effect that a pair has more takes what no formula of the other one would leave."""
-    if not _certain(pair, single):
+    if not certain(pair, single):
         return False
     change = np.sort(_changes(pair, single))
     return float(np.exp(change.mean())) < SECOND and float(np.exp(change[1:].mean())) < BESIDES

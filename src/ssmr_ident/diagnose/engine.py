@@ -13,6 +13,7 @@ from ssmr_ident.diagnose.accept import (
     FORMULA,
     as_near,
     better,
+    certain,
     leading,
     left_over,
     mends,
@@ -88,7 +89,7 @@ def examine(setup: Setup, parameters: ParameterSet, progress: Progress | None = 
         if not new:
             break
         leader = leading(chosen, new)
-        if chosen is not baseline and _cost(leader, chosen) > _cost(chosen, chosen):
+        if chosen is not baseline and _cost(leader, chosen) > _cost(chosen, chosen) and not certain(leader, chosen):
             tried = _with(tried, new)
             break
         leader = _at_its_best(leader, new, kept, lengths)

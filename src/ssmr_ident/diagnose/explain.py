@@ -6,10 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from ssmr_ident.compare.recorded import follow
 from ssmr_ident.diagnose.scan import Suspect
 from ssmr_ident.identify.coordinates import Model
 from ssmr_ident.identify.descent import descend
 from ssmr_ident.identify.joint import JointFit, Slopes, evaluate
+from ssmr_ident.physics.effect import Site
 from ssmr_ident.physics.effects import CATALOGUE
 
 Array = np.ndarray
@@ -34,7 +36,8 @@ def beside(fit: JointFit, suspect: Suspect) -> JointFit:
 
     Not where it fits best unrefitted: that is next to nothing, where the baseline's optimum holds the fit. What acts
     beyond a threshold alone is held at its probe until all else has settled beside it: the straight line from a model
-    that knows nothing of a slow sensor leads back over a hill to that model.
+    that knows nothing of a slow sensor leads back over a hill to that model, and a release that fitted wheels on the
+    floor is not one from which they lift.
     """
     for share in SHRINKING:
         model, point = with_suspect(fit, suspect, share)
@@ -44,7 +47,9 @@ def beside(fit: JointFit, suspect: Suspect) -> JointFit:
     if not CATALOGUE[suspect.effect].sudden or not np.isfinite(begun.rss):
         return begun
     frozen = replace(fit.model, held={**fit.model.held, suspect.effect: model.split(point)[1][suspect.effect]})
-    settled = descend(evaluate(fit.trials, frozen, fit.point, fit.nuisances), SETTLING)
+    moves = Site.OUTPUT not in CATALOGUE[suspect.effect].acts
+    begun_anew = (follow if moves else evaluate)(fit.trials, frozen, fit.point, fit.nuisances)
+    settled = descend(begun_anew, SETTLING)
     return evaluate(fit.trials, model, np.concatenate([settled.point, point[len(fit.point) :]]), settled.nuisances)
 
 

@@ -10,10 +10,10 @@ import numpy as np
 from ssmr_ident.compare.recorded import follow, radian
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.explain import beside
-from ssmr_ident.diagnose.scan import Suspect, candidates, scan
+from ssmr_ident.diagnose.scan import Suspect, both_ways, candidates, scan
 from ssmr_ident.diagnose.setup import Setup
 from ssmr_ident.diagnose.start import begin
-from ssmr_ident.identify.descent import descend
+from ssmr_ident.identify.descent import chatters, descend
 from ssmr_ident.identify.horizons import STEPS, horizons, led
 from ssmr_ident.identify.joint import JointFit, differentiate, evaluate
 from ssmr_ident.identify.trials import Trial
@@ -124,6 +124,8 @@ def search(
     # one recording that stands out may be the only one in which a wheel lifts; beside an effect that explains the
     # others it is more likely the effect's own formula
     loud = float(np.median(misfit)) > WIDE if further else float(np.max(misfit)) > LOUD
+    # pulls along one axis alone may show what tires do that go far
+    loud = loud or (chatters(base) and float(np.max(misfit)) > WIDE)
     groups = scan(base, candidates(base, baseline), small=not loud)
     rest = [np.inf]
     if loud and len(lengths) > 1:
@@ -139,6 +141,8 @@ def search(
     for index, fit in enumerate(rough):
         if progress:
             progress("refitting explanations", index, len(rough))
+        if chatters(base):
+            fit = descend(fit, LAST // 2, plain=True)
         begun = led(base.trials, fit.model, fit.point, rest, LAST // 2, _all_nuisances(base, fit, lengths))
         # what is as far behind as this halfway does not win, and where exactly it ends decides nothing
         tried.append(mended(descend(begun, LAST - LAST // 2)) if _close(ranked([begun, *tried]), begun) else begun)
@@ -195,17 +199,33 @@ def _each_form(ranked: Sequence[JointFit]) -> list[JointFit]:
     return list(best.values())
 
 
+def _few_unlisted(ordered: Sequence[JointFit]) -> list[JointFit]:
+    """Fits without all terms of `unlisted` but the best two, which would crowd out every effect that shows later."""
+    terms = [fit for fit in ordered if fit.model.ids[-1] == "unlisted"]
+    return [fit for fit in ordered if fit not in terms[2:]]
+
+
 def _raced(base: JointFit, groups: Sequence[Sequence[Suspect]], progress: Progress | None) -> list[JointFit]:
-    """All effects on whole recordings, a few steps each; the most likely first, each effect once."""
+    """All effects on whole recordings, a few steps each; the most likely first.
+
+    Pulls by plain squares: a wheel that lets go a moment later makes a step in a recording that is explained, and what
+    that counts for outweighs the slope in the one that shows an effect.
+    """
+    plain = chatters(base)
+    order = _by_squares if plain else ranked
     field = []
     for index, group in enumerate(groups):
         if progress:
             progress("trying effects", index, len(groups))
         for suspect in group:
-            field.append(_started(base, suspect))
+            field += [_started(base, way, plain) for way in both_ways(suspect)]
     if progress:
         progress("trying effects", 1, 1)
-    return ranked([descend(f, 2) for f in ranked(field)[: HEATS[2][0]]])
+    return order([descend(f, 2, plain=plain) for f in _few_unlisted(order(field))[: HEATS[2][0]]])
+
+
+def _by_squares(fits: Sequence[JointFit]) -> list[JointFit]:
+    return sorted((f for f in fits if np.isfinite(f.rss)), key=lambda f: f.rss + f.penalty)
 
 
 def _screened(
@@ -231,7 +251,7 @@ def _screened(
         ordered = ranked(field)
         # after a step or two the first dozen may all be of two effects
         once = [] if heat else _each_form(ordered)
-        field = [*once, *(f for f in ordered[:kept] if f not in once)]
+        field = [*once, *(f for f in _few_unlisted(ordered)[:kept] if f not in once)]
         field = [led(few.trials, f.model, f.point, second, steps, f.nuisances) for f in field]
         if progress:
             progress("trying effects", len(groups) + heat, len(groups) + 3)
@@ -273,8 +293,8 @@ def _all_nuisances(base: JointFit, fit: JointFit, lengths: Sequence[float]) -> l
     return [known[trial.name] for trial in base.trials]
 
 
-def _started(base: JointFit, suspect: Suspect) -> JointFit:
-    return descend(beside(base, suspect), 2)
+def _started(base: JointFit, suspect: Suspect, plain: bool = False) -> JointFit:
+    return descend(beside(base, suspect), 2, plain=plain)
 
 
 def _variants(group: Sequence[Suspect]) -> list[Suspect]:

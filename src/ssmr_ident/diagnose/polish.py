@@ -9,7 +9,7 @@ import numpy as np
 from ssmr_ident.compare.recorded import follow
 from ssmr_ident.diagnose.explore import LAST, LOUD, mended, ranked
 from ssmr_ident.diagnose.scan import combinations
-from ssmr_ident.identify.descent import descend
+from ssmr_ident.identify.descent import chatters, descend
 from ssmr_ident.identify.horizons import led
 from ssmr_ident.identify.joint import JointFit, evaluate
 from ssmr_ident.physics.effects import CATALOGUE
@@ -62,8 +62,10 @@ def heard(fit: JointFit) -> JointFit:
     """A fit that leaves much in some recordings, led by those alone and then on with all, where that is better.
 
     What a recording leaves is what it is measured by: those that are explained to the noise hold the fit where it is,
-    and those that are not have no say.
+    and those that are not have no say. Pulls are led by plain squares.
     """
+    if chatters(fit):
+        return ranked((fit, descend(descend(fit, LAST, plain=True), LAST)))[0]
     left = fit.parts / [t.size for t in fit.trials]
     unheard = [k for k, size in enumerate(left) if size > LOUD]
     if not unheard or len(unheard) == len(left):

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -26,6 +26,9 @@ ROUNDING = 1e-10
 
 LEAST = 1e-3
 """Smallest share of a probe at which an effect is tried."""
+
+BACK = -0.3
+"""Share of an effect that is tried the other way."""
 
 SEEN = 1e-6
 """Share of the noise's variance below which a change cannot be told from rounding."""
@@ -59,6 +62,17 @@ class Suspect:
     gain: float
     direction: Array
     grown: tuple[str, ...] = ()
+
+
+def both_ways(suspect: Suspect) -> list[Suspect]:
+    """A suspect, and where it may change sign also some of it the other way.
+
+    Far from the optimum the straight line has the sign of what the baseline has made of the effect.
+    """
+    signed = [name for name in suspect.sizes if name in suspect.at]
+    if not signed:
+        return [suspect]
+    return [suspect, replace(suspect, at={**suspect.at, **{name: BACK * suspect.at[name] for name in signed}})]
 
 
 def candidates(fit: JointFit, baseline: str) -> tuple[Effect, ...]:

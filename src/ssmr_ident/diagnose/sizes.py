@@ -8,6 +8,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from ssmr_ident.identify.joint import JointFit
+from ssmr_ident.identify.trials import Trial
 
 _SHOWS = {"position": 0, "angle": 0, "velocity": 1, "angular_rate": 1}
 
@@ -36,6 +37,7 @@ def sizes_of(fit: JointFit) -> dict[str, float]:
         deflection = largest / omega**2
         stiffness = stiffness or _mass(values) * omega**2
         speed, time = deflection * omega, 1.0 / omega
+        reach, slope = deflection, stiffness
     else:
         largest = math.nan
         wheels = 4.0 if any(t.experiment == "pull" for t in fit.trials) else 1.0
@@ -43,6 +45,7 @@ def sizes_of(fit: JointFit) -> dict[str, float]:
         deflection = load / (wheels * stiffness)
         speed = max(t.facts["travel_m"] / float(t.times[-1] - t.times[0]) for t in fit.trials)
         time = deflection / speed
+        reach, slope = max((float(np.ptp(t.target)) / (wheels * k), k) for t in fit.trials for k in [_along(t, values)])
     return {
         "deflection": deflection,
         "stiffness": stiffness,
@@ -52,7 +55,15 @@ def sizes_of(fit: JointFit) -> dict[str, float]:
         "duration": duration,
         "acceleration": largest,
         "load": load,
+        "reach": reach,
+        "slope": slope,
     }
+
+
+def _along(trial: Trial, values: Mapping[str, float]) -> float:
+    """Stiffness of what a force log deflects [N/m]."""
+    axis = "z" if trial.experiment == "vertical_compression" else "x" if trial.kind == "longitudinal" else "y"
+    return values.get(f"tire.stiffness_{axis}_N_m") or _stiffness(values) or math.inf
 
 
 def _stiffness(values: Mapping[str, float]) -> float:

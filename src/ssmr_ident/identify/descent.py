@@ -23,6 +23,10 @@ SLOW = 1e-4
 """The same per independent sample: where a model leaves structure, its optimum is flat beyond what that is worth."""
 
 
+LOUD = 2.0
+"""Variance over the noise's from which a pull counts as unexplained."""
+
+
 def search_again(fit: JointFit) -> JointFit:
     """The same point, with the nuisances that are found by a search looked for anew."""
     values, effects = fit.model.split(fit.point)
@@ -86,6 +90,7 @@ def descend(
     iterations: int,
     settled: float = SETTLED,
     shared: bool = True,
+    plain: bool = False,
 ) -> JointFit:
     """Damped Gauss-Newton.
 
@@ -98,6 +103,9 @@ def descend(
         Fall of the cost at which the fit is at rest.
     shared : bool
         False moves the nuisances alone.
+    plain : bool
+        Squares in units of the noise, in place of n ln(RSS): what a recording leaves then draws the fit all the more,
+        where it would count for little. For a model that can explain all recordings and is still far from them.
     """
     rung = 0
     for _ in range(iterations):
@@ -106,8 +114,8 @@ def descend(
         enough = max(settled, SLOW * float(counted.sum()))
         first = True
         for _ in range(1 + SECANTS):
-            after, rung = _best_step(fit, counted, rung, shared)
-            gain = fit.cost(counted) - after.cost(counted)
+            after, rung = _best_step(fit, counted, rung, shared, plain)
+            gain = _cost(fit, counted, plain) - _cost(after, counted, plain)
             if gain < enough:
                 break
             fit, first = corrected(fit, after), False
@@ -118,22 +126,32 @@ def descend(
     return fit
 
 
-def _best_step(fit: JointFit, counted: Array, rung: int, shared: bool) -> tuple[JointFit, int]:
+def chatters(fit: JointFit) -> bool:
+    """Whether contacts slide in recordings of which much is left."""
+    left = fit.parts / [t.size for t in fit.trials]
+    return any(t.searched and size > LOUD for t, size in zip(fit.trials, left, strict=True))
+
+
+def _cost(fit: JointFit, counted: Array, plain: bool) -> float:
+    return fit.rss + fit.penalty if plain and np.isfinite(fit.rss) else fit.cost(counted)
+
+
+def _best_step(fit: JointFit, counted: Array, rung: int, shared: bool, plain: bool) -> tuple[JointFit, int]:
     """The lowest cost over dampings about the last one; a simulation costs a thirtieth of the slopes.
 
     Dampings are tried from a rung below the last one up until the cost rises again after it has fallen below where it
     was; where the lowest of them is the best, smaller ones too.
     """
-    best, lowest = fit, fit.cost(counted)
+    best, lowest = fit, _cost(fit, counted, plain)
     first = chosen = max(rung - 1, 0)
-    weights = counted / fit.parts
+    weights = np.ones(len(counted)) if plain else counted / fit.parts
 
     def improves(candidate: int) -> bool:
         nonlocal best, chosen, lowest
         move, own = newton_step(fit, weights, DAMPINGS[candidate], shared)
         nuisances = [n + o for n, o in zip(fit.nuisances, own, strict=True)]
         trial = evaluate(fit.trials, fit.model, fit.point + move, nuisances, fit.slopes)
-        cost = trial.cost(counted)
+        cost = _cost(trial, counted, plain)
         if not cost < lowest:
             return False
         best, chosen, lowest = trial, candidate, cost

@@ -45,8 +45,9 @@ class Sized:
     share : float
     of : str
         ``deflection`` [m], ``stiffness`` [N/m], ``force`` [N], ``time`` [s] (one radian of the motion), ``speed``
-        [m/s], ``duration`` [s], ``acceleration`` [m/s^2], ``load`` [N] (largest reading of a load cell), or a
-        combination as in ``force/deflection^3``.
+        [m/s], ``duration`` [s], ``acceleration`` [m/s^2], ``load`` [N] (largest reading of a load cell), ``reach`` [m]
+        and ``slope`` [N/m] (deflection and stiffness in the direction that goes farthest), or a combination as in
+        ``force/deflection^3``.
     """
 
     share: float

@@ -36,8 +36,8 @@ EFFECT = Effect(
     acts={Site.ELEMENT: force},
     rig=True,
     probes=(
-        {"k3_N_m3": Sized(0.1, "stiffness/deflection^2")},
-        {"k3_N_m3": Sized(-0.1, "stiffness/deflection^2")},
+        {"k3_N_m3": Sized(0.1, "slope/reach^2")},
+        {"k3_N_m3": Sized(-0.1, "slope/reach^2")},
         {"knee_share": 0.2, "knee_m": Sized(0.4, "deflection")},
         {"knee_share": -0.2, "knee_m": Sized(0.4, "deflection")},
     ),
