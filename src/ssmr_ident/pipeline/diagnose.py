@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import yaml
+from threadpoolctl import threadpool_limits
 
 from ssmr_ident.campaign import Campaign, load
 from ssmr_ident.core.atomic import write_text
@@ -44,7 +45,12 @@ def diagnose(
         A recording that the baseline has no model of, or nothing to fit.
     """
     known = campaign.parameters if parameters is None else parameters
-    campaign = replace(campaign, parameters=known)
+    # recordings are simulated side by side; matrices are small, and threads of their own would stand in the way
+    with threadpool_limits(1, user_api="blas"):
+        return _diagnosed(replace(campaign, parameters=known), known, seed, progress)
+
+
+def _diagnosed(campaign: Campaign, known: ParameterSet, seed: int, progress: Progress | None) -> Diagnosis:
     experiments = {m.entry.experiment for m in campaign.measurements}
     if experiments & set(TURNING):
         from ssmr_ident.diagnose.turning import diagnose_turning
