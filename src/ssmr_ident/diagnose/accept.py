@@ -8,9 +8,9 @@ import numpy as np
 from scipy.stats import chi2
 
 from ssmr_ident.core.parameter import ParameterSet
-from ssmr_ident.diagnose.explore import LOUD
 from ssmr_ident.diagnose.setup import BANDWIDTH, SHEET
 from ssmr_ident.diagnose.weigh import CERTAIN, Explanation, evidences
+from ssmr_ident.identify.descent import LOUD
 from ssmr_ident.identify.joint import JointFit
 
 SECOND = 0.7

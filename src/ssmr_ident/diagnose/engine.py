@@ -23,8 +23,9 @@ from ssmr_ident.diagnose.accept import (
 )
 from ssmr_ident.diagnose.coupling import coupled
 from ssmr_ident.diagnose.explain import without
-from ssmr_ident.diagnose.explore import LAST, Progress, Search, best_baseline, prepared, search
+from ssmr_ident.diagnose.explore import LAST, Search, best_baseline, prepared, search
 from ssmr_ident.diagnose.polish import polish, turned
+from ssmr_ident.diagnose.race import Progress
 from ssmr_ident.diagnose.setup import Setup
 from ssmr_ident.diagnose.weigh import TIE, Explanation, evidences
 from ssmr_ident.identify.descent import descend

@@ -7,9 +7,10 @@ from dataclasses import replace
 import numpy as np
 
 from ssmr_ident.compare.recorded import follow
-from ssmr_ident.diagnose.explore import LAST, LOUD, mended, ranked
+from ssmr_ident.diagnose.explore import LAST, mended
+from ssmr_ident.diagnose.race import ranked
 from ssmr_ident.diagnose.scan import combinations
-from ssmr_ident.identify.descent import chatters, descend
+from ssmr_ident.identify.descent import LOUD, chatters, descend
 from ssmr_ident.identify.horizons import led
 from ssmr_ident.identify.joint import JointFit, evaluate
 from ssmr_ident.physics.effects import CATALOGUE

@@ -8,7 +8,8 @@ import numpy as np
 
 from ssmr_ident.campaign import Campaign
 from ssmr_ident.core.parameter import Estimate, ParameterSet
-from ssmr_ident.diagnose.explore import Progress, best_baseline
+from ssmr_ident.diagnose.explore import best_baseline
+from ssmr_ident.diagnose.race import Progress
 from ssmr_ident.diagnose.setup import Setup, set_up
 from ssmr_ident.physics.robot import SLIDING_SPEED
 

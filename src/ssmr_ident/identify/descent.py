@@ -24,7 +24,7 @@ SLOW = 1e-4
 
 
 LOUD = 2.0
-"""Variance over the noise's from which a pull counts as unexplained."""
+"""Variance over the noise's from which a recording counts as unexplained: what is left there is large."""
 
 
 def search_again(fit: JointFit) -> JointFit:

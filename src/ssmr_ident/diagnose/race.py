@@ -1,0 +1,129 @@
+"""Effects tried side by side where much is left: few steps each, the worse half out, and again."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from ssmr_ident.diagnose.explain import beside
+from ssmr_ident.diagnose.scan import Suspect, both_ways
+from ssmr_ident.identify.descent import chatters, descend
+from ssmr_ident.identify.horizons import STEPS, led
+from ssmr_ident.identify.joint import JointFit, evaluate
+from ssmr_ident.physics.effects import CATALOGUE
+
+Progress = Callable[[str, int, int], None]
+
+HEATS = ((0, 1), (12, 3), (6, 4))
+"""Rounds in which probes are tried: how many go in, and Gauss-Newton steps in each. All probes go into the first, on
+the first horizon; the others are run on the second."""
+
+
+def _each_form(ranked: Sequence[JointFit]) -> list[JointFit]:
+    """Of every effect, in each formula, the fit that leaves least: a first step says little of where one ends."""
+    best: dict[tuple[tuple[str, ...], ...], JointFit] = {}
+    for fit in ranked:
+        ids = fit.model.ids
+        form = () if ids[-1] == "unlisted" else tuple(c.parameter.name for c in fit.model.free if c.effect == ids[-1])
+        best.setdefault((ids, form), fit)
+    return list(best.values())
+
+
+def _few_unlisted(ordered: Sequence[JointFit]) -> list[JointFit]:
+    """Fits without all terms of `unlisted` but the best two, which would crowd out every effect that shows later."""
+    terms = [fit for fit in ordered if fit.model.ids[-1] == "unlisted"]
+    return [fit for fit in ordered if fit not in terms[2:]]
+
+
+def raced(base: JointFit, groups: Sequence[Sequence[Suspect]], progress: Progress | None) -> list[JointFit]:
+    """All effects on whole recordings, a few steps each; the most likely first.
+
+    Pulls by plain squares: a wheel that lets go a moment later makes a step in a recording that is explained, and what
+    that counts for outweighs the slope in the one that shows an effect.
+    """
+    plain = chatters(base)
+    order = _by_squares if plain else ranked
+    field = []
+    for index, group in enumerate(groups):
+        if progress:
+            progress("trying effects", index, len(groups))
+        for suspect in group:
+            field += [started(base, way, plain) for way in both_ways(suspect)]
+    if progress:
+        progress("trying effects", 1, 1)
+    return order([descend(f, 2, plain=plain) for f in _few_unlisted(order(field))[: HEATS[2][0]]])
+
+
+def _by_squares(fits: Sequence[JointFit]) -> list[JointFit]:
+    return sorted((f for f in fits if np.isfinite(f.rss)), key=lambda f: f.rss + f.penalty)
+
+
+def screened(
+    base: JointFit, groups: Sequence[Sequence[Suspect]], lengths: Sequence[float], progress: Progress | None
+) -> list[JointFit]:
+    """All effects on the first horizon, the better half on the second; the most likely first.
+
+    Where much is left unexplained, what a straight line promises is no guide: an effect may bend the motion far
+    away from the baseline's.
+    """
+    loud = _loudest(base)
+    few = evaluate([base.trials[k] for k in loud], base.model, base.point, [base.nuisances[k] for k in loud])
+    first = led(few.trials, few.model, few.point, lengths[:1], STEPS, few.nuisances)
+    begun = []
+    for index, group in enumerate(groups):
+        if progress:
+            progress("trying effects", index, len(groups) + 3)
+        for suspect in group:
+            begun.append(descend(beside(first, suspect), HEATS[0][1]))
+    field = begun
+    second = lengths[1:2] if len(lengths) > 2 else lengths[:1]
+    for heat, (kept, steps) in enumerate(HEATS[1:]):
+        ordered = ranked(field)
+        # after a step or two the first dozen may all be of two effects
+        once = [] if heat else _each_form(ordered)
+        field = [*once, *(f for f in _few_unlisted(ordered)[:kept] if f not in once)]
+        field = [led(few.trials, f.model, f.point, second, steps, f.nuisances) for f in field]
+        if progress:
+            progress("trying effects", len(groups) + heat, len(groups) + 3)
+    if progress:
+        progress("trying effects", 1, 1)
+    return ranked(field)
+
+
+def ranked(fits: Sequence[JointFit]) -> list[JointFit]:
+    """Fits, the best first: by what they leave, in the best one's independent samples, and by their numbers."""
+    finite = [f for f in fits if np.isfinite(f.rss)]
+    if not finite:
+        return []
+    counted = min(finite, key=lambda f: float(np.log(f.parts).sum())).counted
+    # a formula with one number more has to be that much better (Schwarz)
+    return sorted(finite, key=lambda f: f.cost(counted) + len(f.model.free) * float(np.log(counted.sum())))
+
+
+def _loudest(base: JointFit) -> list[int]:
+    """The loudest trial of each kind; of a rig's, which are all of one kind, the quietest as well."""
+    kinds: dict[tuple[str, str], list[int]] = {}
+    for index, trial in enumerate(base.trials):
+        kinds.setdefault((trial.experiment, trial.kind), []).append(index)
+    chosen = set()
+    for members in kinds.values():
+        ordered = sorted(members, key=lambda k: float(np.ptp(base.trials[k].target)))
+        chosen |= {ordered[-1]} if base.trials[members[0]].kind else {ordered[-1], ordered[0]}
+    return sorted(chosen)
+
+
+def started(base: JointFit, suspect: Suspect, plain: bool = False) -> JointFit:
+    return descend(beside(base, suspect), 2, plain=plain)
+
+
+def variants(group: Sequence[Suspect]) -> list[Suspect]:
+    """The best probe of an effect, for each value of what is tried and not fitted; all of what acts beyond a threshold.
+
+    A straight line promises nothing there.
+    """
+    found: dict[tuple[tuple[str, float], ...], Suspect] = {}
+    for suspect in group:
+        begun = suspect.at.items() if CATALOGUE[suspect.effect].sudden else ()
+        found.setdefault((*sorted(suspect.held.items()), *begun), suspect)
+    return list(found.values())
