@@ -72,11 +72,15 @@ def _proved(
 
     with stages(hidden=hidden) as step:
         proof = prove(cases, seed, output, jobs, progress=step, announce=announce)
-        scores = against(proof.rows, output / "sessions", jobs, step) if peers else ()
         step("page", 0, 1)
-        page = write_proof_page(proof, call, (peer_section(scores),) if peers else ())
-        write_kept(proof, call, scores)
+        page = write_proof_page(proof, call, ())
+        write_kept(proof, call, ())
         step("page", 1, 1)
+        # other programs take as long again: what the proof came to is not to be lost by breaking them off
+        scores = against(proof.rows, output / "sessions", jobs, step) if peers else ()
+        if peers:
+            page = write_proof_page(proof, call, (peer_section(scores),))
+            write_kept(proof, call, scores)
     text = f"{proof}\n" + "\n".join("  " + "  ".join(score.cells()) for score in scores)
     text += f"\ntable: {output / 'proof.csv'}, {output / 'proof.md'}\npage:  {page}\nagain: {call}"
     rows = [row.as_dict() for row in proof.rows]
