@@ -45,7 +45,8 @@ def sizes_of(fit: JointFit) -> dict[str, float]:
         deflection = load / (wheels * stiffness)
         speed = max(t.facts["travel_m"] / float(t.times[-1] - t.times[0]) for t in fit.trials)
         time = deflection / speed
-        reach, slope = max((float(np.ptp(t.target)) / (wheels * k), k) for t in fit.trials for k in [_along(t, values)])
+        slopes = [_along(trial, values) or stiffness for trial in fit.trials]
+        reach, slope = max((float(np.ptp(t.target)) / (wheels * k), k) for t, k in zip(fit.trials, slopes, strict=True))
     return {
         "deflection": deflection,
         "stiffness": stiffness,
@@ -61,9 +62,9 @@ def sizes_of(fit: JointFit) -> dict[str, float]:
 
 
 def _along(trial: Trial, values: Mapping[str, float]) -> float:
-    """Stiffness of what a force log deflects [N/m]."""
+    """Stiffness of what a force log deflects [N/m], 0 where the file does not say."""
     axis = "z" if trial.experiment == "vertical_compression" else "x" if trial.kind == "longitudinal" else "y"
-    return values.get(f"tire.stiffness_{axis}_N_m") or _stiffness(values) or math.inf
+    return values.get(f"tire.stiffness_{axis}_N_m") or _stiffness(values)
 
 
 def _stiffness(values: Mapping[str, float]) -> float:

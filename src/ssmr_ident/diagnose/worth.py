@@ -121,7 +121,8 @@ def grows_with_motion(found: Sequence[Prediction]) -> float:
             unit = 1.0 if len(set(prediction.units)) == 1 else scale[c]
             motion += list(parts[0] / unit)
             left += list(parts[1] / unit)
-    if len(motion) < FEWEST:
+    # a block that slides shows one force, which nothing can grow with
+    if len(motion) < FEWEST or np.ptp(motion) == 0.0:
         return 1.0
     return float(spearmanr(motion, left, alternative="greater").pvalue)
 

@@ -104,7 +104,10 @@ def pull_block(block: Block, head: np.ndarray, step: float, effects: Effects | N
 
 
 def _on_the_way(head: np.ndarray) -> np.ndarray:
-    """Between the head's first motion and its last; an encoder that stands still for a sample has not stopped."""
+    """Between the head's first motion and its last; an encoder that stands still for a sample has not stopped.
+
+    What lies within a thousandth of the way from either end is taken to be passed at the speed of the rest.
+    """
     travel = head - head[0]
     total = travel[-1]
     if total == 0.0:
@@ -112,7 +115,11 @@ def _on_the_way(head: np.ndarray) -> np.ndarray:
     first = int(np.argmax(travel > 1e-3 * total))
     last = len(head) - 1 - int(np.argmax(travel[::-1] < (1.0 - 1e-3) * total))
     index = np.arange(len(head))
-    return (index >= first) & (index <= last)
+    if last <= first:
+        return index == first
+    each = (travel[last] - travel[first]) / (last - first)
+    begin, end = first - travel[first] / each, last + (total - travel[last]) / each
+    return (index > begin + 1e-6) & (index < end - 1e-6)
 
 
 def _cable(stiffness: float, active: Effects) -> float:

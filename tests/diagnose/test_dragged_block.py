@@ -1,0 +1,71 @@
+"""A block on a stiff rope, by the closed form: nothing until the rope is tight, then mu m g."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ssmr_ident.campaign import Campaign, Measurement
+from ssmr_ident.core.parameter import Estimate, ParameterSet
+from ssmr_ident.core.recording import Channel, Provenance, Recording
+from ssmr_ident.physics.rig import Block
+from ssmr_ident.pipeline.diagnose import diagnose
+from ssmr_ident.session import Entry, Session
+from ssmr_ident.simulate.bench import pull_block
+
+RATE, MASS, MU = 100.0, 2.0, 0.4
+KNOWN = ParameterSet(
+    "block",
+    {
+        "mass_kg": Estimate(2.01, 0.01, "kg"),
+        "mu_static": Estimate(0.42, 0.04, "1"),
+        "mu_kinetic": Estimate(0.42, 0.04, "1"),
+        "cable.stiffness_N_m": Estimate(np.inf, None, "N/m", fixed=True),
+    },
+)
+
+
+def dragged(drift: float = 0.0, jolt: float = 0.0) -> Campaign:
+    """Five drags, the last two kept back; the cell's zero drifts [N/s], the tightening rope overshoots [N]."""
+    random = np.random.default_rng(8)
+    made = []
+    for number, speed in enumerate((1.0, 0.5, 2.0, 0.7, 1.5)):
+        time = np.arange(round(12.0 / speed * RATE)) / RATE
+        slack = round(random.uniform(0.1, 0.4) * RATE)
+        force = np.where(np.arange(len(time)) < slack, 0.0, MU * MASS * 9.81) + drift * time
+        force[slack] += jolt * speed
+        force += 0.05 * random.standard_normal(len(time)) + random.normal(0.0, 0.1)
+        channels = Channel("position", 1e-3 * speed * time, "m"), Channel("force", force, "N")
+        role = "heldout" if number > 2 else "target"
+        entry = Entry(f"drag-{number}.csv", "wheel_drag", role=role, speed_mm_s=speed)
+        made.append(Measurement(entry, Recording(time, channels, Provenance(entry.file, "", "test"))))
+    return Campaign(Session("block", Path(), "block", "drag", tuple(m.entry for m in made)), KNOWN, tuple(made))
+
+
+@pytest.mark.parametrize("jolt", [0.0, 4.0])
+def test_nothing_is_missing_where_nothing_is(jolt: float) -> None:
+    found = diagnose(dragged(jolt=jolt))
+    assert (found.verdict, found.effects) == ("nothing_missing", ())
+    assert found.before["mu_static"].value == pytest.approx(MU, rel=0.02)
+
+
+def test_a_zero_that_drifts_is_named_with_its_rate() -> None:
+    """At one force a zero and a gain that drift are the same line; what both make together is known."""
+    found = diagnose(dragged(drift=0.05))
+    assert [e.id for e in found.effects] == ["load_cell_drift"]
+    drift = {name: float(e.value) for name, e in found.effects[0].parameters.items()}
+    assert drift["zero_drift_N_s"] + MU * MASS * 9.81 * drift["gain_drift_1_s"] == pytest.approx(0.05, rel=0.03)
+    assert found.training.after < 1.1 * found.training.noise_floor < 0.3 * found.training.before
+
+
+def test_a_head_that_goes_on_drags_to_the_last_sample() -> None:
+    block = Block(MASS, MU, MU, np.inf)
+    head = 1e-6 * np.arange(6000)
+    dragging = pull_block(block, head, 1.0 / RATE) > 0.0
+    assert not dragging[0]
+    assert dragging[1:-1].all()
+    stopped = pull_block(block, np.append(head, np.full(50, head[-1])), 1.0 / RATE) > 0.0
+    assert stopped[1:5999].all()
+    assert not stopped[5999:].any()
