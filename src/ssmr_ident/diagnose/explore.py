@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -13,6 +14,7 @@ from ssmr_ident.diagnose.race import Progress, raced, ranked, screened, started,
 from ssmr_ident.diagnose.scan import Suspect, candidates, scan
 from ssmr_ident.diagnose.setup import Setup
 from ssmr_ident.diagnose.start import begin
+from ssmr_ident.identify.clouds import settled
 from ssmr_ident.identify.descent import LOUD, chatters, descend
 from ssmr_ident.identify.horizons import horizons, led
 from ssmr_ident.identify.joint import JointFit, differentiate, evaluate
@@ -31,6 +33,9 @@ WIDE = 4.0
 
 SCREENED, REFITTED = 8, 3
 """Effects that are refitted on the first horizons, and to the end."""
+
+ASIDE = 1.5
+"""Standard deviations of what is known of the centre of mass, where pulls are begun again."""
 
 LAST = 8
 """Gauss-Newton steps on whole recordings."""
@@ -86,7 +91,27 @@ def best_baseline(
     if float(np.max(fit.parts / [t.size for t in fit.trials])) > LOUD and len(lengths) > 1:
         other = differentiate(led(fit.trials, fit.model, fit.point, lengths, LAST // 2))
         fit = min((fit, other), key=lambda f: f.cost(fit.counted))
+    if chatters(fit):
+        fit = min((fit, *from_all_sides(fit)), key=lambda f: f.cost(fit.counted))
+        other = descend(settled(fit), LAST)
+        fit = differentiate(min((fit, other), key=lambda f: f.cost(fit.counted)))
     return fit, lengths
+
+
+def from_all_sides(fit: JointFit) -> list[JointFit]:
+    """Pulls fitted from a centre of mass off to either side, front or back.
+
+    It decides which wheel lets go first, and a descent does not change that order: a wrong one is a hollow.
+    """
+    names = [unknown.name for unknown in fit.model.physics]
+    own = [names.index(name) for name in ("contact_shift_x_m", "contact_shift_y_m") if name in names]
+    begun = []
+    for signs in itertools.product((-ASIDE, ASIDE), repeat=len(own)):
+        point = fit.point.copy()
+        point[own] = signs
+        begun.append(descend(evaluate(fit.trials, fit.model, point, fit.nuisances), 3, plain=True))
+    nearest = sorted(begun, key=lambda f: f.rss + f.penalty if np.isfinite(f.rss) else np.inf)
+    return [descend(f, LAST) for f in nearest[:1] if np.isfinite(f.rss)]
 
 
 def search(

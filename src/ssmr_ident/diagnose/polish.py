@@ -10,6 +10,7 @@ from ssmr_ident.compare.recorded import follow
 from ssmr_ident.diagnose.explore import LAST, mended
 from ssmr_ident.diagnose.race import ranked
 from ssmr_ident.diagnose.scan import combinations
+from ssmr_ident.identify.clouds import settled
 from ssmr_ident.identify.descent import LOUD, chatters, descend
 from ssmr_ident.identify.horizons import led
 from ssmr_ident.identify.joint import JointFit, evaluate
@@ -63,10 +64,10 @@ def heard(fit: JointFit) -> JointFit:
     """A fit that leaves much in some recordings, led by those alone and then on with all, where that is better.
 
     What a recording leaves is what it is measured by: those that are explained to the noise hold the fit where it is,
-    and those that are not have no say. Pulls are led by plain squares.
+    and those that are not have no say. Pulls are led by plain squares, and by clouds.
     """
     if chatters(fit):
-        return ranked((fit, descend(descend(fit, LAST, plain=True), LAST)))[0]
+        return ranked((fit, descend(settled(descend(fit, LAST, plain=True)), LAST)))[0]
     left = fit.parts / [t.size for t in fit.trials]
     unheard = [k for k, size in enumerate(left) if size > LOUD]
     if not unheard or len(unheard) == len(left):

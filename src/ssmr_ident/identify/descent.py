@@ -114,7 +114,7 @@ def descend(
         enough = max(settled, SLOW * float(counted.sum()))
         first = True
         for _ in range(1 + SECANTS):
-            after, rung = _best_step(fit, counted, rung, shared, plain)
+            after, rung = best_step(fit, counted, rung, shared, plain)
             gain = _cost(fit, counted, plain) - _cost(after, counted, plain)
             if gain < enough:
                 break
@@ -136,7 +136,7 @@ def _cost(fit: JointFit, counted: Array, plain: bool) -> float:
     return fit.rss + fit.penalty if plain and np.isfinite(fit.rss) else fit.cost(counted)
 
 
-def _best_step(fit: JointFit, counted: Array, rung: int, shared: bool, plain: bool) -> tuple[JointFit, int]:
+def best_step(fit: JointFit, counted: Array, rung: int, shared: bool, plain: bool) -> tuple[JointFit, int]:
     """The lowest cost over dampings about the last one; a simulation costs a thirtieth of the slopes.
 
     Dampings are tried from a rung below the last one up until the cost rises again after it has fallen below where it
