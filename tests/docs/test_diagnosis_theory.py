@@ -13,8 +13,8 @@ from scipy.stats import chi2
 
 from ssmr_ident.compare.comparison import measure
 from ssmr_ident.compare.outcome import Prediction
-from ssmr_ident.diagnose import accept, assemble, polish, weigh
-from ssmr_ident.diagnose.worth import noise_floor
+from ssmr_ident.diagnose import accept, assemble, polish, weigh, worth
+from ssmr_ident.diagnose.worth import noise_floor, reddest
 from ssmr_ident.physics.effects import CATALOGUE
 from ssmr_ident.signals.metrics import LOW_PASS_HZ
 
@@ -24,7 +24,9 @@ PAGE = Path(__file__).resolve().parents[2] / "docs" / "theory" / "diagnosis.md"
 def test_thresholds_are_those_of_the_code() -> None:
     rows = dict(re.findall(r"^\| `([A-Z]+)` \| ([^|]+) \|", PAGE.read_text(encoding="utf-8"), re.MULTILINE))
     stated = {name: log(float(v.split()[1])) if v.startswith("ln") else float(v) for name, v in rows.items()}
-    code = {name: getattr(m, name) for m in (accept, assemble, polish, weigh) for name in rows if hasattr(m, name)}
+    code = {
+        name: getattr(m, name) for m in (accept, assemble, polish, weigh, worth) for name in rows if hasattr(m, name)
+    }
     assert {"CERTAIN", "UNEXPLAINED"} <= set(rows)
     assert stated == pytest.approx(code)
 
@@ -55,3 +57,21 @@ def test_coloured_noise_over_its_floor(coefficient: float, stated: float) -> Non
         time, ("ay",), ("m/s^2",), (motion + 0.02 * noise)[:, None], motion[:, None], low_pass_hz=LOW_PASS_HZ
     )
     assert measure(seen)[0] / noise_floor(seen) == pytest.approx(formula, rel=0.05)
+
+
+@pytest.mark.parametrize(("rate", "stated"), [(100.0, 2.0), (200.0, 2.7), (1000.0, 5.7), (2000.0, 8.0)])
+def test_noise_that_is_mostly_slow_reads_no_more_than_is_stated(rate: float, stated: float) -> None:
+    rng = np.random.default_rng(5)
+    count = int(200.0 * rate)
+    keep = float(np.exp(-2.0 * np.pi * 2.0 / rate))  # a corner of 2 Hz
+    slow = lfilter([np.sqrt(1 - keep**2)], [1.0, -keep], rng.standard_normal(count))
+    noise = np.sqrt(worth.WHITE) * rng.standard_normal(count) + np.sqrt(1 - worth.WHITE) * slow
+    time = np.arange(count) / rate
+    motion = np.cos(40.0 * time)
+    low_pass = LOW_PASS_HZ if 0.45 * rate > LOW_PASS_HZ else None
+    seen = Prediction(
+        time, ("ay",), ("m/s^2",), (motion + 0.02 * noise)[:, None], motion[:, None], low_pass_hz=low_pass
+    )
+    assert reddest([seen]) == pytest.approx(stated, abs=0.06)
+    # at a low rate second differences see some of the slow noise as well, and the floor is higher
+    assert 0.85 * stated < measure(seen)[0] / noise_floor(seen) < 1.05 * stated

@@ -16,7 +16,7 @@ from ssmr_ident.diagnose.residual_map import residual_maps
 from ssmr_ident.diagnose.surface import surfaces
 from ssmr_ident.diagnose.weigh import Explanation, shares
 from ssmr_ident.diagnose.words import law, missing, nothing, readable, told, undetermined
-from ssmr_ident.diagnose.worth import grows_with_motion, overlays, predictions, without_jolts, worth
+from ssmr_ident.diagnose.worth import grows_with_motion, overlays, predictions, reddest, without_jolts, worth
 from ssmr_ident.identify.joint import JointFit, differentiate
 
 METRIC = "nrmse_percent"
@@ -30,10 +30,6 @@ MOST_RIVALS = 2
 UNEXPLAINED, BY_CHANCE = 1.6, 1e-3
 """Error over the noise floor from which something is missing even if nothing names it, and the probability by chance up
 to which what is left must follow the motion: the floor takes the noise for white, and coloured noise lies above it."""
-
-COLOURED = 3.0
-"""Error over the noise floor that no noise reaches whose neighbours are correlated by 0.7 or less: then something is
-missing wherever it sits. What is left of a sliding pull follows no motion."""
 
 JOLTS = "what is left on unseen recordings is the jolt of the tightening cable: without it {:.1f} times the noise"
 
@@ -68,7 +64,8 @@ def assembled(outcome: Outcome, parameters: ParameterSet, everything: JointFit |
         if heldout.before > UNEXPLAINED * heldout.noise_floor and kept.before < UNEXPLAINED * kept.noise_floor:
             jolts = (JOLTS.format(kept.before / kept.noise_floor),)
         follows = grows_with_motion([*settled[0], *settled[1]]) < BY_CHANCE
-        verdict = UNDETERMINED if left > COLOURED or (left > UNEXPLAINED and follows) else NOTHING
+        beyond = left > reddest([*settled[0], *settled[1]])
+        verdict = UNDETERMINED if beyond or (left > UNEXPLAINED and follows) else NOTHING
     tried = _tried(outcome)
     scanned = len(outcome.searches[0].suspects) if outcome.searches else 0
     if verdict == MISSING:

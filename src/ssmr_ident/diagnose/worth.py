@@ -25,6 +25,10 @@ Array = np.ndarray
 DRAWN = 3
 """Recordings of which an overlay is drawn, held-out ones first."""
 
+WHITE = 0.25
+"""Least share of a sensor's noise, by variance, that is white. What is more than such noise could leave is missing
+wherever it sits: what is left of a sliding pull follows no motion."""
+
 WINDOW_S, FEWEST = 0.5, 12
 """Length of the windows in which what is left is held against the motion, and how many are needed."""
 
@@ -76,11 +80,9 @@ def noise_floor(prediction: Prediction) -> float:
     dense as above it. The hum passes the low-pass by its gain at the mains frequency.
     """
     rate, rest = prediction.sample_rate, prediction.measured - prediction.simulated
-    measured, share, gain = prediction.measured, 1.0, 1.0
+    measured, share, gain = prediction.measured, passed(prediction), 1.0
     if prediction.low_pass_hz is not None and prediction.low_pass_hz < 0.45 * rate:
         measured = low_pass(measured, rate, prediction.low_pass_hz)
-        frequency = np.linspace(0.0, 0.5 * rate, 4000)
-        share = float(np.mean(1.0 / (1.0 + (frequency / prediction.low_pass_hz) ** (2 * ORDER)) ** 2))
         gain = 1.0 / (1.0 + (MAINS_HZ / prediction.low_pass_hz) ** (2 * ORDER))
     scale = np.ones(measured.shape[1]) if len(set(prediction.units)) == 1 else measured.std(axis=0)
     noise = 0.0
@@ -97,6 +99,24 @@ def noise_floor(prediction: Prediction) -> float:
         noise += (share * spread(column) ** 2 + hum) / size**2
     signal = float(np.sum(((measured - measured.mean(axis=0)) / scale).var(axis=0)))
     return 100.0 * float(np.sqrt(noise / signal))
+
+
+def passed(prediction: Prediction) -> float:
+    """Share of white noise's variance that the metric's low-pass lets through."""
+    rate = prediction.sample_rate
+    if prediction.low_pass_hz is None or prediction.low_pass_hz >= 0.45 * rate:
+        return 1.0
+    frequency = np.linspace(0.0, 0.5 * rate, 4000)
+    return float(np.mean(1.0 / (1.0 + (frequency / prediction.low_pass_hz) ** (2 * ORDER)) ** 2))
+
+
+def reddest(found: Sequence[Prediction]) -> float:
+    """Error over the noise floor that noise reads at the most, of which a share of at least ``WHITE`` is white.
+
+    The rest of it all lies below the low-pass, where the floor, taken at the fastest, sees nothing of it.
+    """
+    shares = np.array([passed(prediction) for prediction in found])
+    return float(np.max(np.sqrt((1.0 - WHITE + WHITE * shares) / (WHITE * shares))))
 
 
 def grows_with_motion(found: Sequence[Prediction]) -> float:
