@@ -69,7 +69,7 @@ def examine(setup: Setup, parameters: ParameterSet, progress: Progress | None = 
     if progress:
         progress("fitting the baseline", 0, 1)
     setup = informed(setup, parameters)
-    fit, lengths = best_baseline(setup.fitted, setup, parameters)
+    fit, lengths = setup.begun or best_baseline(setup.fitted, setup, parameters)
     kept = tuple(prepared(follow(setup.kept, fit.model, fit.point)))
     if progress:
         progress("fitting the baseline", 1, 1)
@@ -148,7 +148,7 @@ def informed(setup: Setup, parameters: ParameterSet) -> Setup:
         replace(u, prior=u.value(float(p)), prior_std=max(u.std(float(p), float(s)), 1e-12))
         for u, p, s in zip(setup.model.physics, fit.point, stds, strict=True)
     )
-    return replace(setup, model=replace(setup.model, physics=physics))
+    return replace(setup, model=replace(setup.model, physics=physics), begun=None)
 
 
 def _each_set_once(explanations: Sequence[Explanation]) -> list[Explanation]:

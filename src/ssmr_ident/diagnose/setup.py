@@ -10,6 +10,7 @@ from ssmr_ident.campaign import Campaign, Measurement
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.identify.coordinates import Model
+from ssmr_ident.identify.joint import JointFit
 from ssmr_ident.identify.objective import Unknown
 from ssmr_ident.identify.robot_map import robot_unknowns
 from ssmr_ident.identify.trials import Trial, trial_of
@@ -46,6 +47,8 @@ class Setup:
     notes : tuple of str
     calibration : tuple of Trial
         Made without the puzzling condition: what they tell of the baseline is known before the targets are looked at.
+    begun : (JointFit, tuple of float) or None
+        The baseline at its best and its horizons, where the law of sliding was chosen by fitting it.
     """
 
     campaign: Campaign
@@ -56,6 +59,7 @@ class Setup:
     kept_by_us: bool
     notes: tuple[str, ...] = ()
     calibration: tuple[Trial, ...] = ()
+    begun: tuple[JointFit, tuple[float, ...]] | None = None
 
     @property
     def decoupled(self) -> bool:

@@ -43,9 +43,10 @@ def with_law_of_sliding(
         progress("fitting the baseline", 0, 1)
     decided = known.updated({KEY: Estimate(SLIDING_SPEED, None, "m/s", fixed=True)})
     cone = set_up(replace(campaign, parameters=decided), decided)
-    fits = [best_baseline(s.fitted, s, p)[0] for s, p in ((relay, known), (cone, decided))]
+    begun = [best_baseline(s.fitted, s, p) for s, p in ((relay, known), (cone, decided))]
+    fits = [fit for fit, _ in begun]
     finite = [fit for fit in fits if np.isfinite(fit.rss)]
     if finite and min(finite, key=lambda fit: fit.cost(finite[-1].counted)) is fits[1]:
         note = "contacts slide along both axes together (Coulomb's cone), which fits better than a relay on each"
-        return replace(cone, notes=(*cone.notes, note)), decided
-    return relay, known
+        return replace(cone, notes=(*cone.notes, note), begun=begun[1]), decided
+    return replace(relay, begun=begun[0]), known

@@ -1,0 +1,62 @@
+"""Pulls of a robot off its centre are explained whichever law they slid by, and the fit that decided is handed on."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ssmr_ident.campaign import Campaign, Measurement
+from ssmr_ident.core.parameter import Estimate
+from ssmr_ident.core.recording import Channel, Provenance, Recording
+from ssmr_ident.diagnose.sliding import KEY, with_law_of_sliding
+from ssmr_ident.physics.robot import robot_from_parameters
+from ssmr_ident.session import Entry, Session
+from ssmr_ident.session.parameters_file import read_parameters
+from ssmr_ident.simulate import Scenario, simulate
+
+RATE, NOISE = 50.0, 0.3
+PULLS = ((1.0, (1, 2, 3, 4)), (1.0, (1, 2)), (0.6, (1, 2, 3, 4)), (1.5, (3, 4)))
+
+
+def pulled(cone: bool) -> Campaign:
+    random = np.random.default_rng(6)
+    known = read_parameters("p3at-extended")
+    known = known.updated({"tire.mu_kinetic": known["tire.mu_static"]})
+    points = np.asarray(known["contact_points_m"].value, dtype=float) + np.array([-0.009, 0.004, 0.0])
+    true = known.updated({"contact_points_m": Estimate(points, None, "m")})
+    if cone:
+        true = true.updated({KEY: Estimate(0.3, None, "m/s")})
+    robot = robot_from_parameters(true)
+    made = []
+    for number, (speed, wheels) in enumerate(PULLS):
+        head = speed * 1e-3 / RATE * np.arange(round(7.0 / speed * RATE) + 1)
+        scenario = Scenario(
+            "pull", len(head) / RATE, head=np.append(head, 2.0 * head[-1] - head[-2]), head_step=1.0 / RATE,
+            direction="lateral", height=0.05, wheels_gripping=wheels, wheel_rates=np.zeros((1, 2)),
+        )  # fmt: skip
+        force = simulate(robot, scenario, RATE)["force"] + NOISE * random.standard_normal(len(head))
+        log = Recording(
+            np.arange(len(head)) / RATE,
+            (Channel("force", force, "N"), Channel("position", head, "m")),
+            Provenance("made", "", "test"),
+        )
+        entry = Entry(
+            f"pull-{number}.csv", "pull", direction="lateral", speed_mm_s=speed, height_m=0.05,
+            wheels_gripping=wheels, cable="steel",
+        )  # fmt: skip
+        made.append(Measurement(entry, log))
+    return Campaign(Session("pulled", Path(), "robot", "rigid6", tuple(m.entry for m in made)), known, tuple(made))
+
+
+@pytest.mark.parametrize("cone", [False, True])
+def test_pulls_of_either_law_are_explained_by_the_fit_that_decides(cone: bool) -> None:
+    campaign = pulled(cone)
+    setup, _ = with_law_of_sliding(campaign, campaign.parameters)
+    assert setup.begun is not None
+    fit, _ = setup.begun
+    assert fit.model == setup.model
+    assert np.max(fit.parts / [t.size for t in fit.trials]) < 1.5
+    values, _ = fit.model.split(fit.point)
+    assert values["contact_shift_x_m"] == pytest.approx(-0.009, abs=0.002)
