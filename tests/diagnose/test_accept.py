@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from ssmr_ident.core.parameter import Estimate, ParameterSet
-from ssmr_ident.diagnose.accept import relieves, within_file
+from ssmr_ident.diagnose.accept import mends, relieves, within_file
 from ssmr_ident.diagnose.weigh import Explanation
 from ssmr_ident.identify.coordinates import Model
 from ssmr_ident.identify.joint import JointFit
@@ -45,3 +45,27 @@ def test_an_effect_takes_back_what_the_baseline_bent(bent: float, left: float, r
         return Explanation(fit, fit)  # type: ignore[arg-type]
 
     assert relieves(explained(0.0, left), explained(bent, 1.0)) is relieved
+
+
+def test_what_lies_below_the_noise_does_not_speak_against_a_second_effect() -> None:
+    """A recording that leaves a hundredth of what was taken for noise, and then three of them, is explained by both."""
+
+    def explained(parts: list[float], kept: float) -> Explanation:
+        def fit(values: list[float]) -> SimpleNamespace:
+            size = 500
+            return SimpleNamespace(
+                model=Model(()), point=np.zeros(0), parts=size * np.array(values), counted=np.full(len(values), 300.0),
+                trials=[SimpleNamespace(size=size)] * len(values),
+            )  # fmt: skip
+
+        return Explanation(fit(parts), fit([kept]))  # type: ignore[arg-type]
+
+    single, others = explained([8.0, 0.33, 0.01, 3.9], 10.0), ([0.15, 0.27, 0.03, 3.1], [8.0, 0.27, 0.03, 3.1])
+    assert mends(named("pair", explained(others[0], 6.0)), named("single", single))
+    assert not mends(named("pair", explained(others[1], 9.0)), named("single", single))
+
+
+def named(name: str, explanation: Explanation) -> Explanation:
+    """With an id of its own, as evidence is told by id."""
+    explanation.fit.model = SimpleNamespace(ids=(name,), physics=(), free=(), held={})  # type: ignore[misc, assignment]
+    return explanation

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.signal import butter, sosfilt
 
 from ssmr_ident.campaign import Campaign, Measurement
 from ssmr_ident.core.parameter import Estimate, ParameterSet
@@ -20,10 +21,11 @@ NOISE = 2e-5
 and of the force between its samples shows beside the noise."""
 
 
-def rig(law, seed: int = 7, limit: float | None = None) -> Campaign:
+def rig(law, seed: int = 7, limit: float | None = None, sensor_hz: float | None = None) -> Campaign:
     """Three shaken runs of m x'' + d x' + k x + law(x, v) = F by classical Runge-Kutta, ten steps a sample.
 
-    Their position is logged, or their acceleration by a sensor that reads no more than ``limit`` of the largest.
+    Their position is logged, or their acceleration by a sensor that reads no more than ``limit`` of the largest, and is
+    a second-order Butterworth of ``sensor_hz``.
     """
     rng = np.random.default_rng(seed)
     tones = np.linspace(2.0, 14.0, 40)[:, None]
@@ -41,8 +43,7 @@ def rig(law, seed: int = 7, limit: float | None = None) -> Campaign:
     for n in range(10 * count):
         f0, f1, f2 = force[2 * n], force[2 * n + 1], force[2 * n + 2]
         a1 = rate(f0, x, v)
-        if n % 10 == 0:
-            path.append(x if limit is None else a1)
+        path.append(x if limit is None else a1)
         v2 = v + 0.5 * step * a1
         a2 = rate(f1, x + 0.5 * step * v, v2)
         v3 = v + 0.5 * step * a2
@@ -51,7 +52,10 @@ def rig(law, seed: int = 7, limit: float | None = None) -> Campaign:
         a4 = rate(f2, x + step * v3, v4)
         x = x + step / 6 * (v + 2 * v2 + 2 * v3 + v4)
         v = v + step / 6 * (a1 + 2 * a2 + 2 * a3 + a4)
-    seen, noise, channel, unit = np.array(path), NOISE, "position", "m"
+    fine, noise, channel, unit = np.array(path), NOISE, "position", "m"
+    if sensor_hz is not None:
+        fine = sosfilt(butter(2, sensor_hz, fs=10.0 * RATE, output="sos"), fine, axis=0)
+    seen = fine[::10]
     if limit is not None:
         noise, channel, unit = 3e-3 * float(np.std(seen)), "acceleration", "m/s^2"
         seen = np.clip(seen, -limit * seen.max(), limit * seen.max())
@@ -70,6 +74,8 @@ def rig(law, seed: int = 7, limit: float | None = None) -> Campaign:
             "stiffness_N_m": Estimate(14600.0, 1500.0, "N/m"),
         },
     )
+    if sensor_hz is not None:
+        known = known.updated({"accelerometer.bandwidth_hz": Estimate(200.0, 5.0, "Hz")})
     session = Session("drawn", Path(), "rig", "sdof", tuple(m.entry for m in measurements))
     return Campaign(session, known, tuple(measurements))
 
@@ -118,3 +124,11 @@ def test_a_range_that_only_the_end_of_one_run_reaches_is_named():
     found = diagnose(session)
     assert [e.id for e in found.effects] == ["sensor_saturation"]
     assert float(found.effects[0].parameters["range_m_s2"].value) == pytest.approx(reached.max(), rel=0.02)
+
+
+def test_friction_is_found_under_a_sensor_that_was_taken_for_noise():
+    found = diagnose(rig(lambda x, v: 4.0 * np.tanh(v / 1e-3), limit=1.0, sensor_hz=30.0))
+    assert {e.id for e in found.effects} == {"dry_friction", "sensor_bandwidth"}
+    sizes = {name: float(e.value) for effect in found.effects for name, e in effect.parameters.items()}
+    assert sizes["F_c_N"] == pytest.approx(4.0, rel=0.05)
+    assert sizes["bandwidth_hz"] == pytest.approx(30.0, rel=0.03)

@@ -97,14 +97,27 @@ def mends(pair: Explanation, single: Explanation) -> bool:
     """Whether the effect that a pair has more takes what no formula of the other one would leave."""
     if not certain(pair, single):
         return False
-    change = np.sort(_changes(pair, single))
-    return float(np.exp(change.mean())) < SECOND and float(np.exp(change[1:].mean())) < BESIDES
+    found = [np.sort(changes(pair, single)) for changes in (_changes, _above_noise)]
+    return any(float(np.exp(c.mean())) < SECOND and float(np.exp(c[1:].mean())) < BESIDES for c in found)
 
 
 def _changes(one: Explanation, other: Explanation) -> np.ndarray:
     """Logarithm of the unexplained variance over another explanation's, recording by recording."""
     pairs = ((one.fit, other.fit), (one.kept, other.kept))
     return np.concatenate([np.log(a.parts / b.parts) for a, b in pairs])
+
+
+def _above_noise(one: Explanation, other: Explanation) -> np.ndarray:
+    """The same of what is more than noise, as that was taken from what the baseline left.
+
+    Where a slow sensor is missing, that is too much: what it leaves is fast. An explanation then leaves a hundredth of
+    the noise, and the share that another leaves of that may, or may not, say something.
+    """
+    changes = []
+    for a, b in ((one.fit, other.fit), (one.kept, other.kept)):
+        noise = np.array([t.size for t in a.trials])
+        changes.append(np.log(np.maximum(a.parts, noise) / np.maximum(b.parts, noise)))
+    return np.concatenate(changes)
 
 
 def leading(chosen: Explanation, new: Sequence[Explanation]) -> Explanation:
@@ -114,7 +127,7 @@ def leading(chosen: Explanation, new: Sequence[Explanation]) -> Explanation:
 
 def left_over(chosen: Explanation, baseline: Explanation) -> float:
     """Size of what an explanation leaves over what the baseline left, mean over all recordings."""
-    return float(np.exp(0.5 * _changes(chosen, baseline).mean()))
+    return float(np.exp(0.5 * _above_noise(chosen, baseline).mean()))
 
 
 def as_near(rival: Explanation, chosen: Explanation) -> bool:
