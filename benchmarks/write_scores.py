@@ -90,8 +90,8 @@ def page(folder: Path) -> str:
         "practice.jsonl",
         "Held-out errors are those of `compare` on the further recordings that each session has in a folder of its "
         "own, which the diagnosis never sees (`score_practice.py`). That of 14, a pull with stick-slip, is worse after "
-        "than before: with the true robot and the true law 18.1 % are left there, against 17.8 of a refitted baseline that "
-        "stays between the teeth, which come at other times in every run.\n",
+        "than before: with the true robot and the true law 18.1 % are left there, against 17.8 of a refitted "
+        "baseline that stays between the teeth, which come at other times in every run.\n",
         lambda rows: table(rows) + "\n\n" + block(summary(rows)),
     )
     section("Real recordings", "real.jsonl", "Each with what it must show.\n", _real)
