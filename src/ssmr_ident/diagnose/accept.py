@@ -68,8 +68,8 @@ def better(leader: Explanation, before: Explanation, first: bool) -> bool:
 def relieves(leader: Explanation, before: Explanation) -> bool:
     """Whether an effect takes back what the baseline had to bend of what is known, and fits no worse.
 
-    A baseline that reaches the recordings with its tires moved by eight deviations has said that something is missing,
-    though nothing is left of it to see.
+    A baseline that reaches the recordings with its contacts moved by eight deviations has said that something is
+    missing, though nothing is left of it to see.
     """
     count = len(before.fit.model.physics)
     asked = [float(e.fit.point[:count] @ e.fit.point[:count]) for e in (before, leader)]
