@@ -36,7 +36,8 @@ def follow(
 
     Small motions give the start of a decay, or nuisances that are near. Where effects bend the motion and more than
     noise is left, further roads are tried: from the start that fits without the effects or from small motions, from
-    recordings of the same kind, in proportion, and through growing horizons. Each recording takes its own best.
+    recordings of the same kind, in proportion, through growing horizons, and from a robot that is let go at rest. Each
+    recording takes its own best.
 
     Parameters
     ----------
@@ -50,7 +51,7 @@ def follow(
     """
     values, effects = model.split(point)
     own = [t.begin(values, effects) for t in trials]
-    found = _at_rest(trials, model, point, own if near is None else near)
+    found = _nuisances_only(trials, model, point, own if near is None else near)
     if not effects:
         return found
 
@@ -58,14 +59,14 @@ def follow(
         few, starts = [trials[k] for k in left], [own[k] for k in left]
         if near is None:
             plain = replace(model, held={}, free=())
-            starts = list(_at_rest(few, plain, point[: len(model.physics)], starts).nuisances)
-        return _at_rest(few, model, point, starts)
+            starts = list(_nuisances_only(few, plain, point[: len(model.physics)], starts).nuisances)
+        return _nuisances_only(few, model, point, starts)
 
     def grown(left: Sequence[int]) -> JointFit:
         few = [trials[k] for k in left]
         lengths = horizons(few, radian(few))
         if len(lengths) < 2:
-            return _at_rest(few, model, point, [own[k] for k in left])
+            return _nuisances_only(few, model, point, [own[k] for k in left])
         short = [t.until(lengths[0]) for t in few]
         small = [t.begin(values, effects) for t in short]
         fits = [
@@ -76,16 +77,32 @@ def follow(
         begun = [fits[f].nuisances[k] for k, f in enumerate(np.argmin(parts, axis=0))]
         return led(few, model, point, lengths[1:], LAST, begun, shared=False)
 
+    def let_go(left: Sequence[int]) -> JointFit:
+        # where damping grows with deflection the first push hardly swings, and no small motion looks like it; what is
+        # let go at rest has its deflection in the first samples, before any damping acts
+        few = [trials[k] for k in left]
+        begun = led(
+            [_let_go_at_rest(t) for t in few], model, point, [np.inf], LAST, [0.0 * own[k] for k in left], False
+        )
+        return led(few, model, point, horizons(few, radian(few)), LAST, begun.nuisances, shared=False)
+
     def alike(sign: float) -> Callable[[Sequence[int]], JointFit]:
         def road(left: Sequence[int]) -> JointFit:
             like = [_in_proportion(trials[k], own[k], found if kin is None else kin, sign) for k in left]
-            return _at_rest([trials[k] for k in left], model, point, like)
+            return _nuisances_only([trials[k] for k in left], model, point, like)
 
         return road
 
-    for road in (bare, alike(1.0), alike(-1.0), grown):
+    for road in (bare, alike(1.0), alike(-1.0), grown, let_go):
         found = _better(found, road, kin)
     return found
+
+
+def _let_go_at_rest(trial: Trial) -> Trial:
+    """The first samples of a recording whose velocities start at zero."""
+    first = trial.until(0.0)
+    speeds = [name for name in first.nuisances if name.endswith(("_rate", "_velocity"))]
+    return replace(first, idle={**first.idle, **dict.fromkeys(speeds, ())})
 
 
 def _better(found: JointFit, road: Callable[[Sequence[int]], JointFit], kin: JointFit | None) -> JointFit:
@@ -125,7 +142,7 @@ def _kin(trial: Trial, kin: JointFit) -> list[tuple[float, int]]:
     ]
 
 
-def _at_rest(trials: Sequence[Trial], model: Model, point: Array, start: Sequence[Array]) -> JointFit:
+def _nuisances_only(trials: Sequence[Trial], model: Model, point: Array, start: Sequence[Array]) -> JointFit:
     return led(trials, model, point, [np.inf], LAST, start, shared=False)
 
 
