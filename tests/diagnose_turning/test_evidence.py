@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ssmr_ident.diagnose.diagnosis import MISSING, UNDETERMINED
-from ssmr_ident.diagnose.turning import assemble, rivals
+from ssmr_ident.diagnose.turning import kept_back, rivals
 from ssmr_ident.diagnose.turning.anchor import between
 from ssmr_ident.diagnose.turning.candidates import pitches_heard
 from ssmr_ident.diagnose.turning.counter import Counter
@@ -192,13 +192,35 @@ def test_what_lies_behind_is_fitted_to_the_end_too(baseline, expected):
     ],
 )
 def test_kept_back_recordings_that_show_nothing_speak_against_nothing(monkeypatch, before, after, left, expected):
+    assert _predicted(monkeypatch, before, after, left, 2.0, True) is expected
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "calibrated", "expected"),
+    [
+        (1.0, 1.0, False, True),  # no calibration, and the effect leaves nothing in the targets
+        (5.0, 5.0, True, True),  # a speed that nothing calibrates, where the baseline errs
+        (5.0, 5.0, False, False),
+        (5.0, 6.0, True, False),
+    ],
+)
+def test_what_leaves_nothing_in_the_targets_needs_no_more_than_not_to_harm(
+    monkeypatch, before, after, calibrated, expected
+):
+    assert _predicted(monkeypatch, before, after, 100.0, 0.1, calibrated) is expected
+
+
+def _predicted(monkeypatch, before: float, after: float, left: float, tau: float, calibrated: bool) -> bool:
     monkeypatch.setattr(
-        assemble, "against_simulation", lambda bench, kept, values, active, seeds: {"a": active or before}
+        kept_back, "against_simulation", lambda bench, kept, values, active, seeds: {"a": active or before}
     )
     anchor = SimpleNamespace(values={})
-    baseline = SimpleNamespace(target=SimpleNamespace(left=left))
-    outcome = SimpleNamespace(bench=None, heldout=("a",), targets=(), anchor=anchor, calibrated=True, baseline=baseline)
-    assert assemble._predicts(outcome, {}, after, 1.5) is expected
+    baseline = SimpleNamespace(target=SimpleNamespace(left=left), evidence=0.0)
+    best = SimpleNamespace(anchor=anchor, effects=after, target=SimpleNamespace(tau_db=tau), evidence=2.0 * CLOSE)
+    outcome = SimpleNamespace(
+        bench=None, heldout=("a",), targets=(), anchor=anchor, calibrated=calibrated, baseline=baseline
+    )
+    return kept_back.predicts(outcome, best, 1.5)
 
 
 def test_what_a_search_did_not_need_counts_as_done() -> None:

@@ -12,11 +12,12 @@ from ssmr_ident.diagnose.evidence import Evidence
 from ssmr_ident.diagnose.turning.anchor import Anchor
 from ssmr_ident.diagnose.turning.candidates import UNLISTED
 from ssmr_ident.diagnose.turning.conditions import Condition
-from ssmr_ident.diagnose.turning.engine import FINAL_SEEDS, LEFT, Outcome
+from ssmr_ident.diagnose.turning.engine import Outcome
+from ssmr_ident.diagnose.turning.kept_back import predicts
 from ssmr_ident.diagnose.turning.located import located
 from ssmr_ident.diagnose.turning.maps import follows, speed_maps
 from ssmr_ident.diagnose.turning.next_run import next_run
-from ssmr_ident.diagnose.turning.rivals import NEARER, ONE_SIDED, WITHIN, with_rivals
+from ssmr_ident.diagnose.turning.rivals import WITHIN, with_rivals
 from ssmr_ident.diagnose.turning.search import SPREAD_FACTOR, Explained
 from ssmr_ident.diagnose.turning.verdict import Decision, decide, findings_of
 from ssmr_ident.diagnose.turning.words import EQUATIONS
@@ -41,7 +42,7 @@ def diagnosis_of(outcome: Outcome, session: str) -> Diagnosis:
     floor = repeatability_db((*outcome.targets, *outcome.heldout))
     training = _worth(outcome, outcome.targets, added, effects, floor)
     heldout = _worth(outcome, outcome.heldout, added, effects, floor) if outcome.heldout else training
-    if decision.verdict == MISSING and not _predicts(outcome, added, effects, floor):
+    if decision.verdict == MISSING and not predicts(outcome, best, floor):
         # what fits the targets and predicts nothing is no answer
         if not (outcome.calibrated and decision.named == (UNLISTED,)):  # that something is new needs no explanation
             verdict = NOTHING if heldout.before < WITHIN * heldout.noise_floor else UNDETERMINED
@@ -67,25 +68,6 @@ def diagnosis_of(outcome: Outcome, session: str) -> Diagnosis:
         notes=(*_notes(outcome, decision), *_lines(maps)),
         evidence=Evidence(speeds=maps, seconds=dict(outcome.seconds)),
     )
-
-
-def _predicts(outcome: Outcome, added: Mapping[str, float], effects: Mapping, floor: float) -> bool:
-    """Whether there was anything to explain beyond repeatability, and the effect brings the spectra nearer.
-
-    Against the mean of several runs: one run's chance is as large as what a small effect changes. Where targets differ
-    from the calibration, recordings kept back that show nothing of it (at speeds where the effect does nothing) do not
-    speak against an effect that leaves them as they are.
-    """
-    conditions = outcome.heldout or outcome.targets
-    distances = [
-        float(np.mean(list(found.values()))) if (found := against_simulation(
-            outcome.bench, conditions, values, active, FINAL_SEEDS)) else np.inf
-        for values, active in ((outcome.anchor.values, {}), (added, effects))
-    ]  # fmt: skip
-    reached = WITHIN * floor * ONE_SIDED
-    if outcome.calibrated and outcome.baseline.target.left > LEFT and max(distances) <= reached:
-        return True
-    return distances[0] > reached and distances[1] < NEARER * distances[0]
 
 
 def _chosen(outcome: Outcome, decision: Decision) -> Explained | None:

@@ -23,6 +23,7 @@ from ssmr_ident.diagnose.turning.likelihood import Score
 from ssmr_ident.diagnose.turning.regimes import widened
 from ssmr_ident.diagnose.turning.search import Explained, explained, freed, polished, refined, screened
 from ssmr_ident.diagnose.turning.starts import ceilings, pitches
+from ssmr_ident.diagnose.turning.wider import wider
 
 REFINED = 5  # explanations whose own parameters are searched first, with calibration
 FREED, FREED_LOOSE, FREED_STRAIGHT = 5, 3, 3
@@ -181,11 +182,12 @@ def examine(
         count.reach(pooled + (SETTLED - len(ahead) + fitted) * (1 + ENSEMBLE_ROUNDS))
         one = polished(best[i], targets, count.advance)
         best[i] = settled_at_distances(one, targets, seed, several, count.advance)
+    count.finish()
+    best += wider(_one_each([*best, *(pair[0] for pair in pairs)]), targets, seed, several, show)
     finals = [_final(one, targets, seed) for one in [baseline, *_one_each(best)]]
     # a baseline that fits better, found beside an effect, is no merit of the effect's
     alone = max(one.evidence for one in (finals[0], *_without(finals[1:], targets)))
     finals[0] = replace(finals[0], evidence=alone)
-    count.finish()
     rest = [one for one in _one_each([pair[0] for pair in pairs]) if one.id not in {other.id for other in finals}]
     ranked = sorted(finals[1:], key=lambda one: one.evidence, reverse=True)
     seconds["baseline beside explanations"] = time.perf_counter() - clock - sum(seconds.values())

@@ -16,6 +16,7 @@ import numpy as np
 
 from ssmr_ident.diagnose.turning.anchor import Anchor
 from ssmr_ident.diagnose.turning.bench import COARSE
+from ssmr_ident.diagnose.turning.candidates import Candidate
 from ssmr_ident.diagnose.turning.conditions import Condition
 from ssmr_ident.diagnose.turning.likelihood import Score, weight_of
 from ssmr_ident.diagnose.turning.search import PITCH, SPREAD_FACTOR, Explained, explained, other_pitches
@@ -34,8 +35,9 @@ KEPT = 4  # best members that are compared, with their mean, over several runs p
 
 
 def settled(
-    start: Explained, targets: tuple[Condition, ...], seed: int, final: tuple[int, ...], advance: Callable[[], None]
-) -> Explained:
+    start: Explained, targets: tuple[Condition, ...], seed: int, final: tuple[int, ...], advance: Callable[[], None],
+    everywhere: bool = False,
+) -> Explained:  # fmt: skip
     """The explanation where an ensemble about it ends, if that is better.
 
     Parameters
@@ -48,6 +50,8 @@ def settled(
         Floors over which start, mean, and best members are compared; other ones than the ensemble runs over.
     advance : callable
         Called once per round.
+    everywhere : bool
+        The effect's own parameters begin spread over all of the candidate's starts, by twice as many members.
     """
     random = np.random.default_rng(seed)
     candidate, size = start.candidate, len(start.anchor.priors)
@@ -55,7 +59,10 @@ def settled(
     own = np.zeros(0) if candidate is None else candidate.position(start.values)
     about = np.concatenate([SHRUNK * start.anchor.z, own])
     spread = np.concatenate([np.full(size, SPREAD), [] if candidate is None else [f.spread for f in candidate.free]])
-    members = about + spread * random.standard_normal((int(np.clip(RUNS // conditions, FEWEST, MOST)), len(about)))
+    count = int(np.clip(RUNS // conditions, FEWEST, MOST)) * (2 if everywhere else 1)
+    members = about + spread * random.standard_normal((count, len(about)))
+    if everywhere and candidate is not None and candidate.free:
+        members[:, size:] = _everywhere(candidate, count, random)
     seen: list[tuple[float, np.ndarray]] = []
     for done in range(ROUNDS):
         step = COARSE if done < ROUGH else start.anchor.step
@@ -73,6 +80,14 @@ def settled(
     left = None if candidate is None else members[:, size:].std(axis=0)
     known = left if start.spread is None or left is None else np.maximum(start.spread, left)
     return replace(best, anchor=replace(best.anchor, seeds=start.anchor.seeds), spread=known)
+
+
+def _everywhere(candidate: Candidate, count: int, random: np.random.Generator) -> np.ndarray:
+    """(count, p) float: places about a candidate's starts, as far from them as half of what those differ by."""
+    starts = np.array([candidate.position(values) for values in candidate.starts])
+    apart = np.maximum(0.5 * starts.std(axis=0), [free.spread for free in candidate.free])
+    places = starts[random.integers(len(starts), size=count)]
+    return places + apart * random.standard_normal(places.shape)
 
 
 def settled_at_distances(

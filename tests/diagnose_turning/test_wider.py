@@ -1,0 +1,66 @@
+"""Where the best explanation stays far off, those in front are searched from all of their starts."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from ssmr_ident.diagnose.turning import wider as stage
+from ssmr_ident.diagnose.turning.candidates import candidates
+from ssmr_ident.diagnose.turning.ensemble import ALIKE, ROUNDS, _everywhere
+from ssmr_ident.diagnose.turning.likelihood import Score
+from ssmr_ident.diagnose.turning.search import Explained
+from ssmr_ident.diagnose.turning.wider import FAR_DB, LED, TIMES, TRIED, wider
+
+EVERY = {c.id: c for c in candidates((0.03, 0.1), (10.0,), 3e-5)}
+
+
+def _one(name: str, evidence: float, tau: float) -> Explained:
+    return Explained(EVERY[name], {}, SimpleNamespace(), Score(0.0, tau, tau), 0.0, evidence)  # type: ignore[arg-type]
+
+
+def test_nothing_more_is_simulated_where_the_best_comes_near(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(stage, "settled", lambda *_, **__: pytest.fail("searched"))
+    assert wider([_one("stribeck", 50.0, 0.9 * FAR_DB)], (), 0, (1,), lambda *_: None) == []
+    assert wider([], (), 0, (1,), lambda *_: None) == []
+
+
+def test_those_in_front_and_what_is_unlisted_are_searched_and_the_first_led_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[tuple[str, bool]] = []
+    shown: list[tuple[int, int]] = []
+
+    def settled(one, targets, seed, final, advance, everywhere=False):
+        asked.append((one.id, everywhere))
+        for _ in range(ROUNDS):
+            advance()
+        # the third was begun on the wrong side; led on, it gains once
+        gain = {"com_offset": 90.0}.get(one.id, 1.0) if everywhere else 2.0 * ALIKE * (one.evidence < 100.0)
+        return replace(one, evidence=one.evidence + gain)
+
+    monkeypatch.setattr(stage, "settled", settled)
+    names = ["wheel_lift", "flexible_mast", "stribeck", "com_offset", "motor_belt", "unlisted"]
+    best = [_one(name, 50.0 - 10.0 * place, 2.0 * FAR_DB) for place, name in enumerate(names)]
+    found = wider(best, (), 0, (1,), lambda _, done, total: shown.append((done, total)))
+    first = [name for name, everywhere in asked if everywhere]
+    assert first == ["flexible_mast", "stribeck", "com_offset", "unlisted"]  # a wheel that lifts has nothing to search
+    assert len(first) == TRIED + 1
+    assert found[0].id == "com_offset"
+    assert found[0].evidence == 20.0 + 90.0
+    led = [name for name, everywhere in asked if not everywhere]
+    assert (led[0], set(led)) == ("com_offset", {"com_offset", "flexible_mast"})
+    assert len(led) <= LED * TIMES
+    assert shown[-1][0] == shown[-1][1]
+    assert [done for done, _ in shown] == sorted(done for done, _ in shown)
+
+
+@pytest.mark.parametrize("name", ["com_offset", "sensor_misalignment", "stribeck", "load_sensitive_friction"])
+def test_members_begin_about_every_start_and_between(name: str) -> None:
+    candidate = EVERY[name]
+    starts = np.array([candidate.position(values) for values in candidate.starts])
+    places = _everywhere(candidate, 4000, np.random.default_rng(3))
+    assert places.mean(axis=0) == pytest.approx(starts.mean(axis=0), abs=0.1 * np.ptp(starts, axis=0).max())
+    apart = np.maximum(0.5 * starts.std(axis=0), [free.spread for free in candidate.free])
+    assert places.std(axis=0) == pytest.approx(np.hypot(starts.std(axis=0), apart), rel=0.05)
