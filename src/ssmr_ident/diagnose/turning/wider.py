@@ -16,8 +16,10 @@ from ssmr_ident.diagnose.turning.search import Explained
 
 FAR_DB = 1.5
 """Own error of the best explanation from which on it was not found yet, or none of them is it."""
-TRIED = 3  # explanations, and what is unlisted
-LED, TIMES = 2, 3  # how many of them an ensemble takes on, and how often at most
+TRIED = 3  # explanations at most, and what is unlisted
+REACH = 150.0
+"""Of evidence: an ensemble from all starts and what followed it was seen to add 140 at most."""
+LED, TIMES = 2, 2  # how many of them an ensemble takes on, and how often at most
 
 
 def wider(
@@ -43,14 +45,18 @@ def wider(
     """
     if not best or best[0].target.tau_db < FAR_DB:
         return []
+    level = best[0].evidence - REACH
     listed = [one for one in best if one.id != UNLISTED and one.candidate is not None and one.candidate.free]
-    chosen = [*listed[:TRIED], *(one for one in best if one.id == UNLISTED)]
+    chosen = [one for one in listed[:TRIED] if one.evidence > level]
+    chosen += [one for one in best if one.id == UNLISTED]
     count = Counter(show, "best explanations from all starts", (len(chosen) + LED * TIMES) * ROUNDS)
     found = [settled(one, targets, seed, final, count.advance, everywhere=True) for one in chosen]
     found.sort(key=lambda one: one.evidence, reverse=True)
     for place, one in enumerate(found[:LED]):
         for time in range(TIMES):
             count.reach((len(chosen) + place * TIMES + time) * ROUNDS)
+            if one.target.tau_db < FAR_DB or one.evidence < found[0].evidence - REACH:
+                break  # found, or out of reach
             found[place] = settled(one, targets, seed + 1 + time, final, count.advance)
             if found[place].evidence < one.evidence + ALIKE:
                 break
