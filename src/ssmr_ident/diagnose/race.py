@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
-from ssmr_ident.diagnose.explain import beside
+from ssmr_ident.diagnose.explain import beside, with_suspect
 from ssmr_ident.diagnose.scan import Suspect, both_ways
 from ssmr_ident.identify.descent import chatters, descend
 from ssmr_ident.identify.horizons import STEPS, led
@@ -14,6 +16,8 @@ from ssmr_ident.identify.joint import JointFit, evaluate
 from ssmr_ident.physics.effects import CATALOGUE
 
 Progress = Callable[[str, int, int], None]
+
+BASELINE = "baseline."
 
 HEATS = ((0, 1), (12, 3), (6, 4))
 """Rounds in which probes are tried: how many go in, and Gauss-Newton steps in each. All probes go into the first, on
@@ -50,9 +54,35 @@ def raced(base: JointFit, groups: Sequence[Sequence[Suspect]], progress: Progres
             progress("trying effects", index, len(groups))
         for suspect in group:
             field += [started(base, way, plain) for way in both_ways(suspect)]
+        if plain:
+            field += [descend(fit, HEATS[1][1], plain=True) for fit in combined(base, group[0])]
     if progress:
         progress("trying effects", 1, 1)
     return order([descend(f, 2, plain=plain) for f in _few_unlisted(order(field))[: HEATS[2][0]]])
+
+
+def combined(base: JointFit, suspect: Suspect) -> list[JointFit]:
+    """An effect at the best of all combinations of its spans, by squares and by recordings, each in its own noise.
+
+    A saw-tooth that comes at the wrong time is worse than none, in squares: from a baseline through its middle no
+    descent leads there. The recordings in which teeth are told by their sizes show which combination is near.
+    """
+    spans = CATALOGUE[suspect.effect].spans
+    names = [unknown.name.rpartition(".")[2] for unknown in base.model.physics]
+    found = []
+    for values in itertools.product(*spans.values()):
+        at = dict(zip(spans, values, strict=True))
+        own = {name: value for name, value in at.items() if not name.startswith(BASELINE)}
+        model, point = with_suspect(base, replace(suspect, at=own))
+        for name in at.keys() - own.keys():
+            for k in (k for k, other in enumerate(names) if other == name.removeprefix(BASELINE)):
+                point[k] += np.log(at[name]) / model.physics[k].spread
+        found.append(evaluate(base.trials, model, point, base.nuisances))
+    finite = [fit for fit in found if np.isfinite(fit.rss)]
+    if not spans or not finite:
+        return []
+    best = {id(order[0]): order[0] for order in (_by_squares(finite), ranked(finite))}
+    return list(best.values())
 
 
 def _by_squares(fits: Sequence[JointFit]) -> list[JointFit]:

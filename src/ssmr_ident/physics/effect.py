@@ -101,6 +101,9 @@ class Effect(Shown):
         Parameters that a small effect is proportional to, where these are not the ones that switch it off.
     sudden : bool
         Acts beyond a threshold alone, and is not proportional to anything.
+    spans : mapping of str to tuple of float
+        Values of its parameters, and after ``baseline.`` factors on a parameter that a fit without the effect moves:
+        every combination is simulated where sliding contacts leave so much that no single probe leads anywhere.
     """
 
     id: str
@@ -117,6 +120,7 @@ class Effect(Shown):
     forms: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
     grows: tuple[str, ...] = ()
     sudden: bool = False
+    spans: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
 
     @property
     def amplitudes(self) -> tuple[Parameter, ...]:

@@ -36,4 +36,10 @@ EFFECT = Effect(
         {"kinetic_share": 0.8, "stribeck_velocity_m_s": 0.01},
         {"kinetic_share": 0.8, "stribeck_velocity_m_s": 0.002, "exponent": 6.0},
     ),
+    spans={
+        "kinetic_share": (0.6, 0.7, 0.8, 0.9),
+        "stribeck_velocity_m_s": (0.001, 0.003, 0.01),
+        # a constant friction goes through the middle of saw-teeth: their tops are up to 2/(1 + r) above it
+        "baseline.mu_static": (1.0, 1.06, 1.12, 1.2),
+    },
 )
