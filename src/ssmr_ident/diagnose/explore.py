@@ -152,7 +152,7 @@ def search(
         chosen = [g for g in groups if g[0].gain > PROMISING + len(g[0].at)][: REFITTED if further else SCREENED]
         rough = ranked([started(base, suspect) for group in chosen for suspect in variants(group)])
     tried: list[JointFit] = []
-    rough = _finalists([fit for fit in rough if _close(rough, fit)])
+    rough = _finalists([fit for fit in rough if _close(rough, fit)], starts=2 if chatters(base) else 1)
     for index, fit in enumerate(rough):
         if progress:
             progress("refitting explanations", index, len(rough))
@@ -183,17 +183,24 @@ def _close(ranked: Sequence[JointFit], fit: JointFit) -> bool:
     return fit.cost(counted) < ranked[0].cost(counted) + CLOSE * float(counted.sum())
 
 
-def _finalists(ranked: Sequence[JointFit]) -> list[JointFit]:
-    """The first few effects, and of the very first also what is tried and not fitted of it."""
+def _finalists(ranked: Sequence[JointFit], starts: int) -> list[JointFit]:
+    """The first few effects, and of the very first also what is tried and not fitted of it.
+
+    ``starts`` is how many fits of the very first go on: where contacts let go, how far one comes in a few steps says
+    little of where it ends.
+    """
     if not ranked:
         return []
     effects = list(dict.fromkeys(fit.model.ids for fit in ranked))[:REFITTED]
-    best: dict[tuple[object, ...], JointFit] = {}
+    best: dict[tuple[object, ...], list[JointFit]] = {}
     for fit in ranked:
         if fit.model.ids in effects:
-            own = fit.model.held[fit.model.ids[-1]] if fit.model.ids == effects[0] else {}
-            best.setdefault((fit.model.ids, *own.values()), fit)
-    return list(best.values())
+            first = fit.model.ids == effects[0]
+            own = fit.model.held[fit.model.ids[-1]] if first else {}
+            same = best.setdefault((fit.model.ids, *own.values()), [])
+            if len(same) < (starts if first else 1):
+                same.append(fit)
+    return [fit for same in best.values() for fit in same]
 
 
 def _each_once(fits: Sequence[JointFit]) -> list[JointFit]:
