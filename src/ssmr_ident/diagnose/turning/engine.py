@@ -156,6 +156,7 @@ def examine(
 
     every = candidates(pitches(anchor, targets), ceilings(targets), anchor.values.get("floor.height_m", 3e-5))
     pairs = _tried(anchor, every, targets, show)
+    straight: list[Explained] = []
     if calibration:
         level = max(baseline.evidence, pairs[0][0].evidence) - REFINE_FAR
         pool = [one for pair in pairs[:FREED] for one in _both(pair) if one.evidence > level]
@@ -163,8 +164,9 @@ def examine(
         pool = [one for pair in pairs[:FREED_LOOSE] for one in _both(pair)]
         if distorted:
             # fitted on the targets, the baseline may have bent itself round what is missing: once more from the file
-            straight = replace(anchor, z=np.zeros(len(anchor.priors)))
-            pool += [pair[0] for pair in _tried(straight, every, targets, show)[:FREED_STRAIGHT]]
+            file = replace(anchor, z=np.zeros(len(anchor.priors)))
+            straight = [pair[0] for pair in _tried(file, every, targets, show)[:FREED_STRAIGHT]]
+            pool += straight
     seconds["explanations"] = time.perf_counter() - clock - seconds["baseline"]
 
     pooled = FIRST_STEPS * len(pool) + sum(most * more for most, more in HALVINGS)
@@ -183,7 +185,8 @@ def examine(
         one = polished(best[i], targets, count.advance)
         best[i] = settled_at_distances(one, targets, seed, several, count.advance)
     count.finish()
-    best += wider(_one_each([*best, *(pair[0] for pair in pairs)]), targets, seed, several, show)
+    rough = _one_each([*best, *(pair[0] for pair in pairs)])
+    best += wider(rough, targets, seed, several, show, [one.id for one in straight])
     finals = [_final(one, targets, seed) for one in [baseline, *_one_each(best)]]
     # a baseline that fits better, found beside an effect, is no merit of the effect's
     alone = max(one.evidence for one in (finals[0], *_without(finals[1:], targets)))

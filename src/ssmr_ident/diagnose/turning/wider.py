@@ -8,6 +8,8 @@ size in one of two.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from ssmr_ident.diagnose.turning.candidates import UNLISTED
 from ssmr_ident.diagnose.turning.conditions import Condition
 from ssmr_ident.diagnose.turning.counter import Counter, Progress
@@ -28,6 +30,7 @@ def wider(
     seed: int,
     final: tuple[int, ...],
     show: Progress,
+    straight: Sequence[str] = (),
 ) -> list[Explained]:
     """Those in front, searched from everywhere; none where the best comes near.
 
@@ -42,12 +45,17 @@ def wider(
         Floors over which places are compared.
     show : callable
         Called with the name of the stage, what of it is done, and of how much.
+    straight : sequence of str
+        Ids that came first beside a baseline that was not fitted to the targets: tried before those that are in front
+        beside one that was, and may have bent itself round what is missing.
     """
     if not best or best[0].target.tau_db < FAR_DB:
         return []
     level = best[0].evidence - REACH
     listed = [one for one in best if one.id != UNLISTED and one.candidate is not None and one.candidate.free]
-    chosen = [one for one in listed[:TRIED] if one.evidence > level]
+    ahead = [one for name in straight[: TRIED - 1] for one in listed if one.id == name]
+    ahead += [one for one in listed if one not in ahead and one.evidence > level]
+    chosen = ahead[:TRIED]
     chosen += [one for one in best if one.id == UNLISTED]
     count = Counter(show, "best explanations from all starts", (len(chosen) + LED * TIMES) * ROUNDS)
     found = [settled(one, targets, seed, final, count.advance, everywhere=True) for one in chosen]
