@@ -19,7 +19,7 @@ EVERY = {c.id: c for c in candidates((0.03, 0.1), (10.0,), 3e-5)}
 
 
 def _one(name: str, evidence: float, tau: float) -> Explained:
-    return Explained(EVERY[name], {}, SimpleNamespace(), Score(0.0, tau, tau), 0.0, evidence)  # type: ignore[arg-type]
+    return Explained(EVERY[name], {}, SimpleNamespace(calibration=()), Score(0.0, tau, tau), 0.0, evidence)  # type: ignore[arg-type]
 
 
 def test_nothing_more_is_simulated_where_the_best_comes_near(monkeypatch: pytest.MonkeyPatch) -> None:

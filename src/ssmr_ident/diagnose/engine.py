@@ -101,9 +101,14 @@ def examine(setup: Setup, parameters: ParameterSet, progress: Progress | None = 
             new = _each_set_once([*new, *partners])
             other = leading(chosen, new)
             leader = leader if other is leader else _at_its_best(other, new, kept, lengths)
-        tried = _with(tried, new)
         found_fit = differentiate(leader.fit)
         first = chosen is baseline
+        others = [e for e in new if e is not leader]
+        if first and others and better(leader, chosen, first) and not significant(found_fit):
+            # a law whose size the recordings do not give stands in for another
+            leader = _at_its_best(leading(chosen, others), new, kept, lengths)
+            found_fit = differentiate(leader.fit)
+        tried = _with(tried, new)
         if not better(leader, chosen, first) or not significant(found_fit) or within_file(found_fit, parameters):
             break
         further = [name for name in leader.fit.model.ids if name not in chosen.fit.model.ids]

@@ -18,7 +18,8 @@ from ssmr_ident.diagnose.turning.search import Explained
 
 FAR_DB = 1.5
 """Own error of the best explanation from which on it was not found yet, or none of them is it."""
-TRIED = 3  # explanations at most, and what is unlisted
+TRIED, FEWER, MANY = 3, 2, 6
+"""Explanations at most besides what is unlisted, and from how many recorded conditions fewer: every one is simulated."""
 REACH = 150.0
 """Of evidence: an ensemble from all starts and what followed it was seen to add 140 at most."""
 LED, TIMES = 2, 2  # how many of them an ensemble takes on, and how often at most
@@ -55,7 +56,8 @@ def wider(
     listed = [one for one in best if one.id != UNLISTED and one.candidate is not None and one.candidate.free]
     ahead = [one for name in straight[: TRIED - 1] for one in listed if one.id == name]
     ahead += [one for one in listed if one not in ahead and one.evidence > level]
-    chosen = ahead[:TRIED]
+    conditions = len(best[0].anchor.calibration) + len(targets)
+    chosen = ahead[: FEWER if conditions > MANY else TRIED]
     chosen += [one for one in best if one.id == UNLISTED]
     count = Counter(show, "best explanations from all starts", (len(chosen) + LED * TIMES) * ROUNDS)
     found = [settled(one, targets, seed, final, count.advance, everywhere=True) for one in chosen]
