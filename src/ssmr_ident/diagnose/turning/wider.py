@@ -19,7 +19,7 @@ from ssmr_ident.diagnose.turning.search import Explained
 FAR_DB = 1.5
 """Own error of the best explanation from which on it was not found yet, or none of them is it."""
 TRIED, FEWER, MANY = 3, 2, 6
-"""Explanations at most besides what is unlisted, and from how many recorded conditions fewer: every one is simulated."""
+"""Explanations at most besides what is unlisted, and fewer of them from how many recorded conditions on."""
 REACH = 150.0
 """Of evidence: an ensemble from all starts and what followed it was seen to add 140 at most."""
 LED, TIMES = 2, 2  # how many of them an ensemble takes on, and how often at most
