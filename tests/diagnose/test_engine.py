@@ -11,6 +11,7 @@ from scipy.signal import butter, sosfilt
 from ssmr_ident.campaign import Campaign, Measurement
 from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.core.recording import Channel, Provenance, Recording
+from ssmr_ident.diagnose import engine
 from ssmr_ident.pipeline.diagnose import diagnose
 from ssmr_ident.session import Entry, Session
 
@@ -132,3 +133,21 @@ def test_friction_is_found_under_a_sensor_that_was_taken_for_noise():
     sizes = {name: float(e.value) for effect in found.effects for name, e in effect.parameters.items()}
     assert sizes["F_c_N"] == pytest.approx(4.0, rel=0.05)
     assert sizes["bandwidth_hz"] == pytest.approx(30.0, rel=0.03)
+
+
+def test_a_law_of_no_determined_size_gives_way_to_the_next(monkeypatch):
+    asked, laws = [], []
+
+    def determined(fit):
+        laws.append(fit.model.ids)
+        return len(laws) > 1
+
+    def leading(chosen, new, choose=engine.leading):
+        asked.append({e.id for e in new})
+        return choose(chosen, new)
+
+    monkeypatch.setattr(engine, "significant", determined)
+    monkeypatch.setattr(engine, "leading", leading)
+    diagnose(rig(lambda x, v: 4.6e8 * x**3 + 220.0 * v * np.abs(v)))
+    assert len(asked[0]) > 1
+    assert asked[1] == asked[0] - {"+".join(laws[0])}

@@ -2,52 +2,25 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
+from made_pulls import made_pulls
 
-from ssmr_ident.campaign import Campaign, Measurement
-from ssmr_ident.core.parameter import Estimate, ParameterSet
-from ssmr_ident.core.recording import Channel, Provenance, Recording
+from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.explore import best_baseline, search
 from ssmr_ident.diagnose.scan import Suspect, both_ways
-from ssmr_ident.diagnose.setup import Setup, set_up
+from ssmr_ident.diagnose.setup import Setup
 from ssmr_ident.diagnose.sizes import sizes_of
-from ssmr_ident.physics.robot import robot_from_parameters
-from ssmr_ident.session import Entry, Session
-from ssmr_ident.session.parameters_file import read_parameters
-from ssmr_ident.simulate import Scenario, simulate
 
-RATE, NOISE, K3 = 50.0, 0.5, 1.2e6
-"""Hz; N; N/m^3: a third of the tire's stiffness at 30 mm, nothing at the 4 mm of a lateral pull."""
+K3 = 1.2e6
+"""N/m^3: a third of the tire's stiffness at 30 mm, nothing at the 4 mm of a lateral pull."""
 
 PULLS = (("lateral", 1.0, 6e-3), ("lateral", 0.5, 6e-3), ("longitudinal", 2.0, 30e-3), ("longitudinal", 3.0, 30e-3))
 
 
 @pytest.fixture(scope="module")
 def pulled() -> tuple[Setup, ParameterSet]:
-    random = np.random.default_rng(3)
-    known = read_parameters("p3at-extended")
-    together = {"tire.mu_kinetic": known["tire.mu_static"], "tire.sliding_speed_m_s": Estimate(0.01, None, "m/s")}
-    known = known.updated(together)
-    measurements = []
-    for k, (direction, speed, travel) in enumerate(PULLS):
-        head = speed * 1e-3 / RATE * np.arange(round(travel / speed * 1e3 * RATE) + 1)
-        going_on = np.append(head, 2.0 * head[-1] - head[-2])
-        scenario = Scenario(
-            "pull", len(head) / RATE, head=going_on, head_step=1.0 / RATE, direction=direction, height=0.05,
-            wheels_gripping=(1, 2, 3, 4), wheel_rates=np.zeros((1, 2)),
-        )  # fmt: skip
-        force = simulate(robot_from_parameters(known), scenario, RATE, effects={"nonlinear_stiffness": {"k3_N_m3": K3}})
-        seen = force["force"] + NOISE * random.standard_normal(len(head))
-        channels = Channel("force", seen, "N"), Channel("position", head, "m")
-        entry = Entry(f"pull-{k}.csv", "pull", direction=direction, speed_mm_s=speed, height_m=0.05, cable="steel")
-        log = Recording(np.arange(len(head)) / RATE, channels, Provenance("made", "", "test"))
-        measurements.append(Measurement(entry, log))
-    session = Session("pulled", Path(), "robot", "rigid6", tuple(m.entry for m in measurements))
-    campaign = Campaign(session, known, tuple(measurements))
-    return set_up(campaign, known), known
+    return made_pulls(PULLS, {"nonlinear_stiffness": {"k3_N_m3": K3}}, 3)
 
 
 def test_hardening_is_found_in_the_direction_that_goes_far(pulled: tuple[Setup, ParameterSet]) -> None:

@@ -81,9 +81,8 @@ def follow(
         # where damping grows with deflection the first push hardly swings, and no small motion looks like it; what is
         # let go at rest has its deflection in the first samples, before any damping acts
         few = [trials[k] for k in left]
-        begun = led(
-            [_let_go_at_rest(t) for t in few], model, point, [np.inf], LAST, [0.0 * own[k] for k in left], False
-        )
+        undeflected = [np.zeros_like(own[k]) for k in left]
+        begun = _nuisances_only([_let_go_at_rest(t) for t in few], model, point, undeflected)
         return led(few, model, point, horizons(few, radian(few)), LAST, begun.nuisances, shared=False)
 
     def alike(sign: float) -> Callable[[Sequence[int]], JointFit]:

@@ -1,0 +1,45 @@
+"""Pulls of a robot that the bundled simulator makes, with something hidden in them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from ssmr_ident.campaign import Campaign, Measurement
+from ssmr_ident.core.parameter import Estimate, ParameterSet
+from ssmr_ident.core.recording import Channel, Provenance, Recording
+from ssmr_ident.diagnose.setup import Setup, set_up
+from ssmr_ident.physics.robot import robot_from_parameters
+from ssmr_ident.session import Entry, Session
+from ssmr_ident.session.parameters_file import read_parameters
+from ssmr_ident.simulate import Scenario, simulate
+
+RATE, NOISE = 50.0, 0.5
+"""Hz; N."""
+
+
+def made_pulls(
+    pulls: Sequence[tuple[str, float, float]], effects: Mapping[str, Mapping[str, float]], seed: int
+) -> tuple[Setup, ParameterSet]:
+    """Pulls of given direction, speed [mm/s] and travel [m]; the robot slides along both axes together."""
+    random = np.random.default_rng(seed)
+    known = read_parameters("p3at-extended")
+    together = {"tire.mu_kinetic": known["tire.mu_static"], "tire.sliding_speed_m_s": Estimate(0.01, None, "m/s")}
+    known = known.updated(together)
+    measurements = []
+    for k, (direction, speed, travel) in enumerate(pulls):
+        head = speed * 1e-3 / RATE * np.arange(round(travel / speed * 1e3 * RATE) + 1)
+        scenario = Scenario(
+            "pull", len(head) / RATE, head=np.append(head, 2.0 * head[-1] - head[-2]), head_step=1.0 / RATE,
+            direction=direction, height=0.05, wheels_gripping=(1, 2, 3, 4), wheel_rates=np.zeros((1, 2)),
+        )  # fmt: skip
+        force = simulate(robot_from_parameters(known), scenario, RATE, effects=effects)["force"]
+        seen = force + NOISE * random.standard_normal(len(head))
+        channels = Channel("force", seen, "N"), Channel("position", head, "m")
+        entry = Entry(f"pull-{k}.csv", "pull", direction=direction, speed_mm_s=speed, height_m=0.05, cable="steel")
+        log = Recording(np.arange(len(head)) / RATE, channels, Provenance("made", "", "test"))
+        measurements.append(Measurement(entry, log))
+    session = Session("pulled", Path(), "robot", "rigid6", tuple(m.entry for m in measurements))
+    return set_up(Campaign(session, known, tuple(measurements)), known), known
