@@ -34,7 +34,7 @@ IDS = (
 )  # fmt: skip
 UNITS = {
     "1", "N", "N/m", "N/m^2", "N/m^3", "N s/m", "N s/m^2", "N s/m^3", "N s^2/m^2", "N s^3/m^3", "N/s", "1/s", "m",
-    "N s^0.5/m^0.5", "m/s", "m/s^2", "s", "kg", "Hz", "rad",
+    "N s^0.5/m^0.5", "m/s", "m/s^2", "s", "kg", "Hz", "rad", "N/(m s)",
 }  # fmt: skip
 EXPERIMENTS = {"free_response", "pull", "wheel_drag", "vertical_compression", "swivel", "straight", "forced"}
 NO_SLOT = {
@@ -94,11 +94,13 @@ def test_the_declaration_is_complete(effect: Effect) -> None:
 def test_every_parameter_reaches_the_code(effect: Effect) -> None:
     names = [parameter.name for parameter in effect.parameters]
     if effect.id == "unlisted":
-        sizes = {"deflection": 5e-3, "speed": 0.2, "force": 20.0}
+        sizes = {"deflection": 5e-3, "speed": 0.2, "force": 20.0, "stiffness": 4e3, "time": 0.02, "duration": 1.0}
+        probes = [*effect.probes, effect.rig_probes[5], effect.rig_probes[-10]]
+        assert list(dict.fromkeys(name for probe in probes for name in probe)) == names
         motions = [_rig_motion({})]
-        for name, probe in zip(names, effect.probes, strict=True):
-            assert list(probe) == [name]
-            motions.append(_rig_motion({effect.id: {name: probe[name].value(sizes)}}))
+        for probe in probes:
+            values = {name: at if isinstance(at, float) else at.value(sizes) for name, at in probe.items()}
+            motions.append(_rig_motion({effect.id: values}))
         for one, other in itertools.combinations(motions, 2):
             assert np.abs(one - other)[:, 2].max() > QUANTUM, "two terms do the same"
         return
@@ -123,7 +125,7 @@ def test_slots_and_their_indices_agree() -> None:
     assert vector[slots.BELT_STIFFNESS] == 1234.0
     assert vector[slots.GAP] == 0.003
     assert vector[slots.RIM_MASS] == CATALOGUE["motor_belt"].values()["rim_mass_kg"]
-    assert slots.UNLISTED == slots.RIM_MASS + 1 == len(slots.SLOTS) - len(unlisted.TERMS)
+    assert slots.UNLISTED == slots.RIM_MASS + 1 == len(slots.SLOTS) - len(unlisted.EFFECT.parameters)
     assert slots.SLOTS.index("wheel_eccentricity.eccentricity_m") == slots.ECCENTRICITY == len(inner_slots(vector)) - 1
 
 

@@ -15,6 +15,7 @@ from scipy.signal import butter, lfilter, lfilter_zi
 from scipy.spatial.transform import Rotation
 from scipy.special import ellipk
 
+from ssmr_ident.core.errors import InputError
 from ssmr_ident.physics.effects import CATALOGUE, ground_roughness
 from ssmr_ident.physics.element import STATES, element_advance, element_force, element_loaded
 from ssmr_ident.physics.linear import linear_robot
@@ -183,28 +184,58 @@ def test_the_smooth_force_moves_a_shaken_mass_as_an_adaptive_solver_has_it(seed:
     random = np.random.default_rng(seed)
     names = (
         "c_abs_v_N_s_m", "c_abs_s_N_m", "c_s2_N_m2", "c_v2_N_s2_m2", "c_sv_N_s_m2", "c_s2v_N_s_m3", "c_v3_N_s3_m3",
-        "c_s_abs_v_N_s_m2", "c_root_v_N_s05_m05",
+        "c_s_abs_v_N_s_m2", "c_root_v_N_s05_m05", "c_ts_N_m_s", "c_tv_N_m", "c_sin_s_N_m", "c_cos_s_N_m",
     )  # fmt: skip
     s, v = 5e-3, 0.2
-    sizes = [v, s, s**2, v**2, s * v, s**2 * v, v**3, s * v, v**0.5]
-    a, b, c, d, e, f, g, h, i = random.uniform(-5.0, 5.0, 9) / sizes
+    sizes = [v, s, s**2, v**2, s * v, s**2 * v, v**3, s * v, v**0.5, s, v, s, s]
+    a, b, c, d, e, f, g, h, i, j, k, m, n = random.uniform(-5.0, 5.0, 13) / sizes
     push = lambda t: 60.0 * np.sin(2 * np.pi * 5.0 * t) * np.sin(2 * np.pi * 0.9 * t)  # noqa: E731
 
     def rate(t: float, state: np.ndarray) -> tuple[float, float]:
         x, u = state
         extra = a * abs(u) + b * abs(x) + c * x**2 + d * u**2 + e * x * u + f * x**2 * u + g * u**3 + h * x * abs(u)
         extra += i * u / (u**2 + 1e-6) ** 0.25
+        extra += t * (j * x + k * u) + x * (m * np.sin(2 * np.pi * 1.7 * t) + n * np.cos(2 * np.pi * 1.7 * t))
         return u, (push(t) - 120.0 * u - STIFFNESS * x - extra) / MASS
 
     time = np.arange(2000) / 2000.0
     exact = solve_ivp(rate, (0.0, 1.0), (2e-3, 0.0), t_eval=time, rtol=1e-9, atol=1e-12, max_step=1e-3).y
-    values = dict(zip(names, (a, b, c, d, e, f, g, h, i), strict=True))
+    values = dict(zip(names, (a, b, c, d, e, f, g, h, i, j, k, m, n), strict=True)) | {"pulse_Hz": 1.7}
     rig = Rig(MASS, 120.0, STIFFNESS)
     found, plain = (simulate_rig(rig, push(time), 2000.0, 2e-3, effects=x) for x in ({"unlisted": values}, {}))
     for column in (0, 1):
         size = np.abs(exact[column]).max()
         assert np.abs(found[:, column] - exact[column]).max() < 2e-4 * size
         assert np.abs(plain[:, column] - exact[column]).max() > 0.03 * size
+
+
+@law("unlisted")
+@pytest.mark.parametrize("c", [0.0, 4e5], ids=["alone", "beside a force"])
+def test_a_mass_that_rides_along_is_the_second_of_two(c: float) -> None:
+    """Two bodies written out in their own places, under a force of many lines; nothing in common with the rider's y."""
+    share, hertz, ratio = 0.12, 8.0, 0.04
+    heavy, light, turning = (1.0 - share) * MASS, share * MASS, 2.0 * math.pi * hertz
+    push = lambda t: 30.0 * np.sin(2 * np.pi * 5.0 * t) + 20.0 * np.sin(2 * np.pi * 9.3 * t)  # noqa: E731
+
+    def rate(t: float, state: np.ndarray) -> tuple[float, float, float, float]:
+        x, u, z, q = state
+        pull = light * (turning**2 * (z - x) + 2.0 * ratio * turning * (q - u))
+        return u, (push(t) - 40.0 * u - STIFFNESS * x - c * x**2 + pull) / heavy, q, -pull / light
+
+    time = np.arange(1000) / 500.0
+    exact = solve_ivp(rate, (0.0, time[-1]), (2e-3, 0.0, 2e-3, 0.0), t_eval=time, rtol=1e-9, atol=1e-12).y
+    hard = np.array([rate(t, state)[1] for t, state in zip(time, exact.T, strict=True)])
+    rig = Rig(MASS, 40.0, STIFFNESS)
+    values = {"rider_share": share, "rider_Hz": hertz, "rider_ratio": ratio, "c_s2_N_m2": c}
+    found, plain = (simulate_rig(rig, push(time), 500.0, 2e-3, effects=e) for e in ({"unlisted": values}, {}))
+    for column, true in ((0, exact[0]), (1, exact[1]), (2, hard)):
+        assert np.std(found[:, column] - true) < 5e-4 * np.std(true)
+        assert np.std(plain[:, column] - true) > 0.1 * np.std(true)
+
+
+def test_no_mass_rides_along_on_a_robot(robot: Robot) -> None:
+    with pytest.raises(InputError, match=r"unlisted.rider_share.*rig's mass.*flexible_mast"):
+        simulate(robot, free_response("roll"), effects={"unlisted": {"rider_share": 0.1}})
 
 
 @law("unlisted")

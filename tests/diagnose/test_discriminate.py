@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from small_rigs import NOISE, Run, campaign, fitted, prepared, quiet
 
+from ssmr_ident.diagnose import discriminate
 from ssmr_ident.diagnose.discriminate import _apart, next_experiment, repeats
 from ssmr_ident.diagnose.experiments import experiments
 from ssmr_ident.diagnose.setup import Setup
@@ -31,6 +32,16 @@ def test_the_proposal_names_what_to_do_and_how_far_they_differ(alike: tuple[Setu
     assert "nonlinear_stiffness differs there from the baseline by" in text
     assert "95 % power" in text
     assert next_experiment(setup, best, []) == ""
+
+
+def test_where_a_rival_cannot_be_simulated_nothing_is_proposed(
+    alike: tuple[Setup, JointFit, JointFit], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    setup, best, rival = alike
+    failing = replace(rival)
+    monkeypatch.setattr(discriminate, "_differ", lambda one, best, other: np.nan if other is failing else 5.0)
+    assert next_experiment(setup, best, [rival]) != ""
+    assert next_experiment(setup, best, [rival, failing]) == ""
 
 
 def test_distances_grow_with_the_amplitude_and_say_what_a_repeat_gives(

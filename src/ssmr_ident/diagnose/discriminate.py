@@ -46,7 +46,8 @@ def next_experiment(setup: Setup, best: JointFit, rivals: Sequence[JointFit]) ->
     if not rivals:
         return ""
     choices = experiments(setup, best)
-    rough = [min(_differ(one, best, rival) for rival in rivals) for one in choices]
+    # min() would pass over a simulation that fails
+    rough = [float(np.min([_differ(one, best, rival) for rival in rivals])) for one in choices]
     if not np.any(np.isfinite(rough)):
         return ""
     kind = choices[int(np.nanargmax(rough))].index

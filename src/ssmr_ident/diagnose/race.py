@@ -29,7 +29,9 @@ def _each_form(ranked: Sequence[JointFit]) -> list[JointFit]:
     best: dict[tuple[tuple[str, ...], ...], JointFit] = {}
     for fit in ranked:
         ids = fit.model.ids
-        form = () if ids[-1] == "unlisted" else tuple(c.parameter.name for c in fit.model.free if c.effect == ids[-1])
+        form = tuple(c.parameter.name for c in fit.model.free if c.effect == ids[-1])
+        if ids[-1] == "unlisted" and len(form) == 1:
+            form = ()
         best.setdefault((ids, form), fit)
     return list(best.values())
 

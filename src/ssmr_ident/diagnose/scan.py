@@ -18,6 +18,7 @@ from ssmr_ident.diagnose.sizes import sizes_of
 from ssmr_ident.identify.joint import JointFit, over
 from ssmr_ident.physics.effect import Effect, Sized
 from ssmr_ident.physics.effects import CATALOGUE
+from ssmr_ident.physics.rig import RIG_KEYS
 
 Array = np.ndarray
 
@@ -26,6 +27,9 @@ ROUNDING = 1e-10
 
 LEAST = 1e-3
 """Smallest share of a probe at which an effect is tried."""
+
+PLACES = 3
+"""Most probes that go on of those that differ in a frequency alone: a straight line tells these apart."""
 
 BACK = -0.3
 """Share of an effect that is tried the other way."""
@@ -105,10 +109,12 @@ def scan(fit: JointFit, effects: Sequence[Effect], small: bool = False) -> list[
     """
     clear = Cleared(fit)
     sizes = sizes_of(fit)
+    on_rig = not {keys[-1] for keys in RIG_KEYS.values()}.isdisjoint(unknown.name for unknown in fit.model.unknowns)
     found = []
     for effect in effects:
         suspects = []
-        for probe, held in itertools.product(effect.probes, combinations(effect.holds)):
+        probes = (*effect.probes, *(effect.rig_probes if on_rig else ()))
+        for probe, held in itertools.product(probes, combinations(effect.holds)):
             at = {name: p.value(sizes) if isinstance(p, Sized) else float(p) for name, p in probe.items()}
             at = {p.name: float(np.clip(at[p.name], p.lower, p.upper)) for p in effect.parameters if p.name in at}
             if all(np.isfinite(list(at.values()))):
@@ -116,8 +122,21 @@ def scan(fit: JointFit, effects: Sequence[Effect], small: bool = False) -> list[
                 if suspect is not None:
                     suspects.append(suspect)
         if suspects:
-            found.append(sorted(suspects, key=lambda s: -s.gain))
+            found.append(_few_places(effect, sorted(suspects, key=lambda s: -s.gain)))
     return sorted(found, key=lambda group: -group[0].gain)
+
+
+def _few_places(effect: Effect, suspects: Sequence[Suspect]) -> list[Suspect]:
+    """Without all but the best of those that a rig's probes try at many frequencies."""
+    many = {tuple(probe) for probe in effect.rig_probes}
+    count: dict[tuple[str, ...], int] = {}
+    kept = []
+    for suspect in suspects:
+        form = tuple(name for name in (p.name for p in effect.parameters) if name in suspect.at)
+        count[form] = count.get(form, 0) + 1
+        if form not in many or count[form] <= PLACES:
+            kept.append(suspect)
+    return kept
 
 
 def combinations(holds: Mapping[str, Sequence[float]]) -> list[dict[str, float]]:

@@ -93,6 +93,8 @@ class Effect(Shown):
     probes : tuple of mapping of parameter to float or Sized
         Where a search for this effect looks first: parameters that are named are then fitted, the others stay at
         their nominal values; plain numbers are SI.
+    rig_probes : tuple of mapping of parameter to float or Sized
+        Further ones on a rig, whose recordings are long and simulated in no time.
     holds : mapping of parameter to tuple of float
         Parameters that are not fitted but tried at each of these values.
     forms : mapping of parameter to tuple of float
@@ -116,6 +118,7 @@ class Effect(Shown):
     acts: Mapping[Site, Callable[..., Any] | None] = field(default_factory=dict)
     rig: bool = False
     probes: tuple[Mapping[str, float | Sized], ...] = ()
+    rig_probes: tuple[Mapping[str, float | Sized], ...] = ()
     holds: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
     forms: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
     grows: tuple[str, ...] = ()

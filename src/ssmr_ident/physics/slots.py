@@ -46,7 +46,7 @@ SLOTS = (
     "motor_belt.K_b_N_m",
     "motor_belt.D_b_N_s_m",
     "motor_belt.rim_mass_kg",
-    *(f"unlisted.{name}" for name in unlisted.TERMS),
+    *(f"unlisted.{parameter.name}" for parameter in unlisted.EFFECT.parameters),
 )
 CUBIC, KNEE_SHARE, KNEE, QUADRATIC, FRICTION_FORCE, FRICTION_STIFFNESS, SLIDER = range(7)
 ALPHA, YIELD, LOOP_EXPONENT, LOOP_SHAPE = range(7, 11)
@@ -55,7 +55,7 @@ KINETIC_SHARE, STRIBECK_SPEED, STRIBECK_EXPONENT, LOAD_EXPONENT, ROLLING = range
 JOINT_DEPTH, JOINT_PITCH, JOINT_WIDTH, ECCENTRICITY, ROUGHNESS = range(21, 26)
 LIFT, CORIOLIS, MAST_HZ, MAST_MASS, MAST_HEIGHT, MAST_DAMPING = range(26, 32)
 BELT_STIFFNESS, BELT_DAMPING, RIM_MASS, UNLISTED = range(32, 36)
-"""First of the terms that no list holds; they are the last slots."""
+"""First of what no list holds; these are the last slots."""
 
 Effects = Mapping[str, Mapping[str, float]]
 
@@ -83,6 +83,22 @@ def checked(effects: Effects) -> dict[str, dict[str, float]]:
                 raise InputError(f"effects: {effect_id}.{name}", f"is {value:g}, expected {limits}")
         result[effect_id] = effect.values(given)
     return result
+
+
+def checked_for_robot(effects: Effects) -> dict[str, dict[str, float]]:
+    """``checked``, for a robot or a wheel of it.
+
+    Raises
+    ------
+    InputError
+        As ``checked``, and where a part of the mass rides along as on a rig.
+    """
+    active = checked(effects)
+    if active.get("unlisted", {}).get("rider_share"):
+        raise InputError(
+            "effects: unlisted.rider_share", "is a part of a rig's mass", "On a robot this is flexible_mast"
+        )
+    return active
 
 
 def effect_values(parameters: ParameterSet) -> dict[str, dict[str, float]]:

@@ -18,7 +18,7 @@ from ssmr_ident.physics.slots import (
     STRIBECK_SPEED,
     UNLISTED,
     Effects,
-    checked,
+    checked_for_robot,
     effect_vector,
 )
 from ssmr_ident.physics.tire import contact_force
@@ -49,7 +49,7 @@ def drag_wheel(
     (n,) float [N]
         What the load cell reads, pull positive.
     """
-    active = checked(effects or {})
+    active = checked_for_robot(effects or {})
     load = robot.mass * GRAVITY / 4.0
     grip = (robot.mu_static * load, robot.mu_kinetic * load) if free_normal else (math.inf, math.inf)
     force = np.empty(len(head))
@@ -70,7 +70,7 @@ def compress_wheel(
     (n,) float [N]
         Compression positive.
     """
-    active = checked(effects or {})
+    active = checked_for_robot(effects or {})
     force = np.empty(len(head))
     ratio = robot.stiffness[2] / robot.stiffness[1]
     depth = head - head[0] - gap
@@ -88,7 +88,7 @@ def pull_block(block: Block, head: np.ndarray, step: float, effects: Effects | N
     -------
     (n,) float [N]
     """
-    active = checked(effects or {})
+    active = checked_for_robot(effects or {})
     weight = block.mass * GRAVITY
     stiffness = _cable(block.cable_stiffness, active)
     if math.isinf(stiffness):
@@ -145,7 +145,7 @@ def _drag(stiffness, damping, mass, breakaway, grip, load, cable, e, head, step,
         for m in range(substeps):
             slip = rate - velocity
             beside = element_force(deflection, slip, hidden, stiffness, 1.0, 1.0, True, e)
-            beside += _unlisted(deflection, slip, free)
+            beside += _unlisted(deflection, slip, n * step + m * h, free)
             hub = rate
             if series:  # the hub is light: cable and tire carry the same force, taken implicitly
                 target = head[n] + rate * (m + 1) * h

@@ -17,6 +17,7 @@ from ssmr_ident.physics.slots import UNLISTED, Effects, checked, effect_vector
 from ssmr_ident.simulate.sensed import sensed
 
 _unlisted = unlisted.force
+RIDER_SHARE, RIDER_HZ, RIDER_RATIO = unlisted.RIDER_SHARE, unlisted.RIDER_HZ, unlisted.RIDER_RATIO
 
 
 def simulate_rig(
@@ -81,7 +82,7 @@ def simulate_rig(
     e = effect_vector(active)
     beside = not np.array_equal(e, effect_vector({}))
     laws = (rig.mass, rig.damping, rig.stiffness, e, beside, low_pass_coefficients(bandwidth_hz, step))
-    _run(*_propagators(rig, step), *laws, driving, position, velocity, step, oversampling, out)
+    _run(*_propagators(rig, e[UNLISTED:], step), *laws, driving, position, velocity, step, oversampling, out)
     if not np.isfinite(out[-1]).all():
         row = int(np.flatnonzero(~np.isfinite(out).all(axis=1))[0])
         raise SimulationError(
@@ -107,14 +108,27 @@ def band_limited(signal: np.ndarray, factor: int) -> np.ndarray:
     return resample(mirrored, len(mirrored) * factor)[: (n - 1) * factor + 1]
 
 
-def _propagators(rig: Rig, step: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Exact step of (x, v) under a force that runs straight from f0 to f1: state matrix and the two weights."""
-    a = np.zeros((4, 4))
+def _propagators(rig: Rig, free: np.ndarray, step: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Exact step of (x, v) under a force that runs straight from f0 to f1: state matrix and the two weights.
+
+    Of (x, v, y, w) where a part of the mass rides along, which is y further than x, with the relative speed w.
+    """
+    share, turning = free[RIDER_SHARE], 2.0 * math.pi * free[RIDER_HZ]
+    n = 4 if share else 2
+    a = np.zeros((n + 2, n + 2))
+    body = rig.mass * (1.0 - share)
     a[0, 1] = 1.0
-    a[1] = [-rig.stiffness / rig.mass, -rig.damping / rig.mass, 1.0 / rig.mass, 0.0]
-    a[2, 3] = 1.0 / step
+    a[1, :2] = [-rig.stiffness / body, -rig.damping / body]
+    a[1, n] = 1.0 / body
+    if share:
+        pull = np.array([turning**2, 2.0 * free[RIDER_RATIO] * turning])  # on the rider, for each of its kilograms
+        a[2, 3] = 1.0
+        a[1, 2:4] = pull * share / (1.0 - share)
+        a[3] = -a[1]
+        a[3, 2:4] -= pull
+    a[n, n + 1] = 1.0 / step
     e = expm(a * step)
-    return e[:2, :2].copy(), e[:2, 2] - e[:2, 3], e[:2, 3].copy()
+    return e[:n, :n].copy(), e[:n, n] - e[:n, n + 1], e[:n, n + 1].copy()
 
 
 @kernel
@@ -122,32 +136,48 @@ def _run(
     transition, weight_now, weight_next, mass, damping, stiffness, e, beside, low_pass,
     force, position, velocity, step, every, out,
 ):  # fmt: skip
-    x, v = position, velocity
+    x, v, y, w = position, velocity, 0.0, 0.0
     hidden = np.zeros(STATES)
     free = e[UNLISTED:]
-    extra = element_force(x, v, hidden, stiffness, 1.0, 1.0, True, e) + _unlisted(x, v, free) if beside else 0.0
-    first = (force[0] - damping * v - stiffness * x - extra) / mass
+    riding = transition.shape[0] == 4
+    share = free[RIDER_SHARE] if riding else 0.0
+    body, turning = mass * (1.0 - share), 2.0 * math.pi * free[RIDER_HZ]
+    pull_y, pull_w = mass * share * turning * turning, 2.0 * mass * share * free[RIDER_RATIO] * turning
+    extra = element_force(x, v, hidden, stiffness, 1.0, 1.0, True, e) + _unlisted(x, v, 0.0, free) if beside else 0.0
+    first = (force[0] - damping * v - stiffness * x - extra) / body
     history = np.full(4, first)
     steps = (out.shape[0] - 1) * every
     for n in range(steps + 1):
-        acceleration = filter_step(history, (force[n] - damping * v - stiffness * x - extra) / mass, low_pass)
+        inertial = force[n] - damping * v - stiffness * x - extra
+        if riding:
+            inertial += pull_y * y + pull_w * w
+        acceleration = filter_step(history, inertial / body, low_pass)
         if n % every == 0:
             row = out[n // every]
             row[0], row[1], row[2] = x, v, acceleration
         if n < steps:
             if beside:
-                v -= 0.5 * step / mass * extra
+                kick = 0.5 * step / body * extra
+                v, w = v - kick, w + kick
             now, later, start = force[n], force[n + 1], x
-            x, v = (
-                transition[0, 0] * x + transition[0, 1] * v + weight_now[0] * now + weight_next[0] * later,
-                transition[1, 0] * x + transition[1, 1] * v + weight_now[1] * now + weight_next[1] * later,
-            )
+            was = x, v, y, w
+            x = transition[0, 0] * was[0] + transition[0, 1] * was[1] + weight_now[0] * now + weight_next[0] * later
+            v = transition[1, 0] * was[0] + transition[1, 1] * was[1] + weight_now[1] * now + weight_next[1] * later
+            if riding:
+                x += transition[0, 2] * y + transition[0, 3] * w
+                v += transition[1, 2] * y + transition[1, 3] * w
+                y, w = 0.0, 0.0
+                for k in range(4):
+                    y += transition[2, k] * was[k]
+                    w += transition[3, k] * was[k]
+                y += weight_now[2] * now + weight_next[2] * later
+                w += weight_now[3] * now + weight_next[3] * later
             if beside:
                 element_advance(hidden, (x - start) / step, step, True, e)
                 # the second kick takes the velocity after it, so that damping keeps the second order
                 kicked = v
                 for _ in range(3):
                     extra = element_force(x, kicked, hidden, stiffness, 1.0, 1.0, True, e)
-                    extra += _unlisted(x, kicked, free)
-                    kicked = v - 0.5 * step / mass * extra
-                v = kicked
+                    extra += _unlisted(x, kicked, (n + 1) * step, free)
+                    kicked = v - 0.5 * step / body * extra
+                v, w = kicked, w + v - kicked

@@ -85,7 +85,7 @@ _JOINT_DEPTH, _ECCENTRICITY, _ROUGHNESS = slots.JOINT_DEPTH, slots.ECCENTRICITY,
 _CUBIC, _KNEE, _QUADRATIC = slots.CUBIC, slots.KNEE_SHARE, slots.QUADRATIC
 _FRICTION, _ALPHA = slots.FRICTION_FORCE, slots.ALPHA
 _RELAXATION, _GAP, _LIFT, _CORIOLIS = slots.RELAXATION_STIFFNESS, slots.GAP, slots.LIFT, slots.CORIOLIS
-_FREE = slots.UNLISTED
+_FREE, _TERMS = slots.UNLISTED, len(unlisted.TERMS)
 _stribeck, _load_law, _rolling = (
     stribeck.coefficient,
     load_sensitive_friction.coefficient,
@@ -156,8 +156,11 @@ def run(
     hidden = np.zeros((12, STATES))  # of x, y, z of the first wheel, then of the next
     law = inner_slots(e)
     f = _FREE
-    free = (e[f], e[f + 1], e[f + 2], e[f + 3], e[f + 4], e[f + 5], e[f + 6], e[f + 7], e[f + 8])
-    smooth = np.any(e[f:] != 0.0)
+    free = (
+        e[f], e[f + 1], e[f + 2], e[f + 3], e[f + 4], e[f + 5], e[f + 6], e[f + 7], e[f + 8], e[f + 9], e[f + 10],
+        e[f + 11], e[f + 12], e[f + 13],
+    )  # fmt: skip
+    smooth = np.any(e[f : f + _TERMS] != 0.0)
     if beside and start[LOADED] != 0.0:
         for i in range(12):
             pressed = start[LOADED + 1 + i // 3] if i % 3 == 2 else deflection[i // 3, i % 3]
@@ -260,8 +263,8 @@ def run(
                 kept = hidden[3 * i + 1, 0], hidden[3 * i + 1, 1], hidden[3 * i + 1, 2]
                 beside_y = element_force(deflection[i, 1], rate_y, kept, ky, 1.0, 1.0, True, law)
             if smooth:
-                beside_x += _unlisted(deflection[i, 0], slip[i, 0] - contact[i, 0], free)
-                beside_y += _unlisted(deflection[i, 1], hub_y - contact[i, 1], free)
+                beside_x += _unlisted(deflection[i, 0], slip[i, 0] - contact[i, 0], t, free)
+                beside_y += _unlisted(deflection[i, 1], hub_y - contact[i, 1], t, free)
             if together:
                 slides, contact_x, contact_y, force_x, force_y = sliding_force(
                     (deflection[i, 0], deflection[i, 1]), (contact[i, 0], contact[i, 1]), (slip[i, 0], hub_y),

@@ -14,7 +14,7 @@ from ssmr_ident.physics.effect import Site
 from ssmr_ident.physics.effects import CATALOGUE, ground_roughness
 from ssmr_ident.physics.robot import GRAVITY, Robot
 from ssmr_ident.physics.sensor import low_pass_coefficients
-from ssmr_ident.physics.slots import CUBIC, Effects, checked, effect_vector
+from ssmr_ident.physics.slots import CUBIC, Effects, checked_for_robot, effect_vector
 from ssmr_ident.physics.statics import rest_pose, tilt
 from ssmr_ident.simulate import layout as k
 from ssmr_ident.simulate.mast import inverse_mass_matrix
@@ -109,7 +109,7 @@ def simulate(
     InputError
         An unknown effect or parameter.
     """
-    active = checked(effects or {})
+    active = checked_for_robot(effects or {})
     e = effect_vector(active)
     for effect_id, values in active.items():
         change = CATALOGUE[effect_id].acts.get(Site.ROBOT)

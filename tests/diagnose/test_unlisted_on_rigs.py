@@ -1,0 +1,36 @@
+"""What no list holds on a rig: found at the frequency that it has, and named with its law."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from small_rigs import Run, campaign, fitted, prepared
+
+from ssmr_ident.diagnose.scan import PLACES, scan
+from ssmr_ident.physics.effects import CATALOGUE
+from ssmr_ident.pipeline.diagnose import diagnose
+
+RUNS = [Run(force=20.0), Run(force=40.0), Run(force=10.0)]
+RIDER = {"rider_share": 0.08, "rider_Hz": 6.0, "rider_ratio": 0.04}
+PULSE = {"c_sin_s_N_m": 900.0, "c_cos_s_N_m": -500.0, "pulse_Hz": 1.3}
+
+
+@pytest.mark.parametrize(("law", "frequency"), [(RIDER, "rider_Hz"), (PULSE, "pulse_Hz")], ids=["mass", "pulse"])
+def test_a_straight_line_points_to_the_frequency(law: dict[str, float], frequency: str) -> None:
+    fit = fitted(prepared(campaign({"unlisted": law}, RUNS, seed=3, duration=6.0)))
+    (group,) = scan(fit, [CATALOGUE["unlisted"]])
+    places = [suspect for suspect in group if frequency in suspect.at]
+    assert len(places) == PLACES
+    assert min(abs(math.log(s.at[frequency] / law[frequency])) for s in places) < 0.12
+
+
+@pytest.mark.parametrize("law", [RIDER, PULSE, {"c_ts_N_m_s": 300.0}], ids=["mass", "pulse", "drift"])
+def test_it_is_named_with_its_sizes(law: dict[str, float]) -> None:
+    found = diagnose(campaign({"unlisted": law}, RUNS, seed=3, duration=6.0))
+    (effect,) = found.effects
+    assert effect.id == "unlisted"
+    assert not effect.indistinguishable_from
+    assert {name: estimate.value for name, estimate in effect.parameters.items()} == pytest.approx(law, rel=0.05)
+    heldout = found.heldout
+    assert heldout.after < 1.1 * heldout.noise_floor < 0.5 * heldout.before
