@@ -93,11 +93,11 @@ EFFECT = Effect(
     equation=r"F = K s + D v + \sum_i c_i f_i(s, v, t)",
     source="Masri and Caughey, J. Appl. Mech. 46 (1979), restoring-force surfaces",
     signature="the force left over is ordered by displacement and velocity, and no listed law follows it",
-    parameters=tuple(
-        Parameter(name, unit, 0.0, -1e12, 1e12, f"of {term}", off=0.0)
-        for (name, term), unit in zip(TERMS.items(), _UNITS, strict=True)
-    )
-    + (
+    parameters=(
+        *(
+            Parameter(name, unit, 0.0, -1e12, 1e12, f"of {term}", off=0.0)
+            for (name, term), unit in zip(TERMS.items(), _UNITS, strict=True)
+        ),
         Parameter("pulse_Hz", "Hz", 1.0, 1e-3, 1e3, "of the stiffness that goes up and down"),
         Parameter("rider_share", "1", 0.0, 0.0, 0.9, "of a rig's mass, on a spring of its own", off=0.0),
         Parameter("rider_Hz", "Hz", 10.0, 1e-2, 1e4, "its frequency where the rest is held"),
