@@ -43,6 +43,7 @@ def test_all_kinds_and_families_are_drawn() -> None:
     assert set(families) == set(FAMILIES)
     assert all((case.kind == "none") == (not case.effects) for case in cases)
     assert all(len(case.effects) == 2 for case in cases if case.kind == "two")
+    assert all((effect.strength < 0.0) == (case.kind == "faint") for case in cases for effect in case.effects)
 
 
 @pytest.mark.parametrize("family", FAMILIES)

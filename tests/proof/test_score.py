@@ -88,12 +88,18 @@ def test_counts_and_power() -> None:
         said = answer(("dry_friction",)) if excess > 0.5 + 0.2 * (-1) ** index else answer()
         told = truth("dry_friction")
         rows.append(Row(told, said, marked(told, said), HeldOut((before,), (1.0,), (1.0,)), 1.0))
+    faint = {**truth("dry_friction"), "kind": "faint"}
+    rows += [Row(faint, answer(), marked(faint, answer()), HeldOut((1.0,), (1.0,), (1.0,)), 1.0)] * 3
     rows += [Row(truth(), answer(), marked(truth(), answer()), HeldOut((1.0,), (1.0,), (1.0,)), 1.0)] * 9
     summary = summarised(rows)
     assert (summary.false_alarms.hits, summary.false_alarms.total) == (0, 9)
     assert summary.reduced.value == 1.0
-    assert summary.named.hits == summary.outcomes[RIGHT]
+    assert (summary.named.hits, summary.named.total) == (summary.outcomes[RIGHT], 40)
+    assert summary.right.total == 49
+    assert (summary.faint.hits, summary.faint.total, summary.faint_reduced.hits) == (0, 3, 0)
+    assert "below the limit, named:     0 of 3" in str(summary)
     assert summary.after_over_floor[0] == pytest.approx(1.0)
     found = power(rows)
+    assert len(found.excess) == 43
     assert 0.3 < found.half < 0.7
     assert found.rows()[-1][1] == found.rows()[-1][3] > 0

@@ -1,4 +1,4 @@
-"""What a case hides, drawn from a seed: nothing, one effect, two, a mimic of another, one outside the catalogue."""
+"""What a case hides, drawn from a seed: nothing, one effect, two, a mimic, one outside the catalogue, a faint one."""
 
 from __future__ import annotations
 
@@ -14,7 +14,10 @@ from ssmr_ident.proof import drawn_strange as strange
 from ssmr_ident.proof.drawn_springs import SCALES, Draw
 from ssmr_ident.proof.hidden import Change, Hidden, combined
 
-KINDS: Mapping[str, float] = {"none": 0.25, "one": 0.43, "two": 0.1, "mimic": 0.12, "outside": 0.1}
+KINDS: Mapping[str, float] = {"none": 0.25, "one": 0.39, "two": 0.1, "mimic": 0.1, "outside": 0.1, "faint": 0.06}
+FAINTEST = -0.5
+"""Strength; the limit is 0."""
+
 FAMILIES: Mapping[str, float] = {"decay": 0.45, "rig": 0.35, "pull": 0.2}
 
 _DECAY, _RIG, _PULL = SCALES["decay"], SCALES["rig"], SCALES["pull"]
@@ -121,6 +124,7 @@ def draw_case(seed: int, number: int) -> Case:
     if kind == "two":
         pair = TWO[family][random.integers(len(TWO[family]))]
         return replace(case, effects=tuple(draw(random, float(random.uniform(0.4, 1.0))) for draw in pair))
-    draws = {"one": ONE, "mimic": MIMIC, "outside": OUTSIDE}[kind][family]
+    draws = {"one": ONE, "faint": ONE, "mimic": MIMIC, "outside": OUTSIDE}[kind][family]
     draw = draws[random.integers(len(draws))]
-    return replace(case, effects=(draw(random, float(random.uniform())),))
+    strength = random.uniform(FAINTEST, 0.0) if kind == "faint" else random.uniform()
+    return replace(case, effects=(draw(random, float(strength)),))

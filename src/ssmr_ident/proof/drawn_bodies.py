@@ -23,7 +23,7 @@ def frame(random: np.random.Generator, strength: float) -> Hidden:
 def askew(random: np.random.Generator, strength: float) -> Hidden:
     """The cube of accelerometers is turned."""
     direction = random.normal(size=3)
-    angles = graded(strength, 0.02, 0.16) * direction / np.abs(direction).max()
+    angles = graded(strength, 0.035, 0.16) * direction / np.abs(direction).max()
     parameters = {f"angle_{axis}_rad": float(angle) for axis, angle in zip("xyz", angles, strict=True)}
     change = Change(turned=Turned(*map(float, angles)))
     return Hidden("sensor_misalignment", "turned cube", parameters, "the sensor's axes are turned", change, strength)
@@ -31,7 +31,7 @@ def askew(random: np.random.Generator, strength: float) -> Hidden:
 
 def slow_sensor(random: np.random.Generator, strength: float) -> Hidden:
     """The robot's accelerometer is slower than its sheet."""
-    hertz = graded(strength, 38.0, 11.0)
+    hertz = graded(strength, 16.0, 8.0)
     how = "second-order Butterworth low-pass in the sensor"
     return Hidden("sensor_bandwidth", "Butterworth", {"bandwidth_hz": hertz}, how, Change(bandwidth_hz=hertz), strength)
 
@@ -45,7 +45,7 @@ def slow_rig_sensor(random: np.random.Generator, strength: float) -> Hidden:
 
 def off_centre(random: np.random.Generator, strength: float) -> Hidden:
     """The centre of mass is elsewhere."""
-    angle, reach = random.uniform(0.0, 2.0 * np.pi), graded(strength, 0.015, 0.05)
+    angle, reach = random.uniform(0.0, 2.0 * np.pi), graded(strength, 0.04, 0.09)
     x, y = float(reach * np.cos(angle)), float(reach * np.sin(angle))
     how = "the centre of mass lies (offset_x, offset_y) from where the file has it"
     return Hidden("com_offset", "offset", {"offset_x_m": x, "offset_y_m": y}, how, Change(offset_m=(x, y)), strength)
@@ -53,7 +53,7 @@ def off_centre(random: np.random.Generator, strength: float) -> Hidden:
 
 def lifted(random: np.random.Generator, strength: float) -> Hidden:
     """Pushed so hard that wheels leave the floor; every plant's wheels can, the others are not pushed so hard."""
-    loud = graded(strength, 2.4, 3.4)
+    loud = graded(strength, 2.95, 3.5)
     how = "the robot is let go from so far that wheels leave the floor, lose their grip and land"
     return Hidden("wheel_lift", "unilateral contact", {}, how, Change(loud=loud), strength)
 
@@ -67,14 +67,14 @@ def soft_cable(random: np.random.Generator, strength: float) -> Hidden:
 
 def drifting_cell(random: np.random.Generator, strength: float) -> Hidden:
     """A load cell whose zero wanders."""
-    rate = float(random.choice([-1.0, 1.0])) * graded(strength, 0.06, 2.5)
+    rate = float(random.choice([-1.0, 1.0])) * graded(strength, 0.2, 2.5)
     how = "the load cell's zero wanders linearly in time"
     return Hidden("load_cell_drift", "zero", {"zero_drift_N_s": rate}, how, Change(zero_drift=rate), strength)
 
 
 def falling_friction(random: np.random.Generator, strength: float) -> Hidden:
     """Stribeck."""
-    share, speed = 1.0 - graded(strength, 0.05, 0.3), float(random.uniform(2e-3, 4e-3))
+    share, speed = 1.0 - graded(strength, 0.1, 0.3), float(random.uniform(2e-3, 4e-3))
     how = "mu(u) = mu_k + (mu_s - mu_k) exp(-(u/v_s)^2), the file says mu_k = mu_s"
     parameters = {"kinetic_share": share, "stribeck_velocity_m_s": speed}
     return Hidden("stribeck", "Gaussian", parameters, how, Change(kinetic_share=share, slip_speed=speed), strength)
@@ -82,7 +82,7 @@ def falling_friction(random: np.random.Generator, strength: float) -> Hidden:
 
 def light_grip(random: np.random.Generator, strength: float) -> Hidden:
     """Friction that falls with the load."""
-    n = graded(strength, 0.1, 0.4)
+    n = graded(strength, 0.2, 0.5)
     how = "mu(N) = mu (N/N_0)^-n, N_0 = m g/4"
     change = Change(load_exponent=n)
     return Hidden("load_sensitive_friction", "power law", {"exponent": n}, how, change, strength)
@@ -90,7 +90,7 @@ def light_grip(random: np.random.Generator, strength: float) -> Hidden:
 
 def clipped(random: np.random.Generator, strength: float) -> Hidden:
     """A sensor that clips; the level is set where the recordings are made, as a share of their largest value."""
-    share = graded(strength, 0.93, 0.45)
+    share = graded(strength, 0.7, 0.45)
     how = "the sensor clips at ± its range"
     return Hidden("sensor_saturation", "clipped", {}, how, Change(range=share), strength)
 

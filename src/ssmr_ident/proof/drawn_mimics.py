@@ -35,7 +35,7 @@ def friction_like_loop(random: np.random.Generator, strength: float) -> Hidden:
 
 def quick_relaxation(random: np.random.Generator, strength: float) -> Hidden:
     """A Maxwell branch so quick that it is nearly a damper."""
-    k, tau = graded(strength, 1500.0, 9000.0), float(random.uniform(4e-3, 1e-2))
+    k, tau = graded(strength, 2500.0, 9000.0), float(random.uniform(4e-3, 1e-2))
     how = "a spring K_m in series with a dashpot (time tau) beside the spring"
     laws = {"maxwell": k, "maxwell_time": tau}
     parameters = {"K_m_N_m": k, "tau_s": tau}
@@ -62,11 +62,11 @@ def frame_on_the_line(random: np.random.Generator, strength: float) -> Hidden:
 
 def softening_like_cable(random: np.random.Generator, strength: float) -> Hidden:
     """Tires that give way under load, as a cable that stretches would have it."""
-    return slopes("softening slopes", float(random.uniform(4e-4, 1e-3)), -graded(strength, 0.1, 0.4), strength)
+    return slopes("softening slopes", float(random.uniform(4e-4, 1e-3)), -graded(strength, 0.25, 0.5), strength)
 
 
 def gain_drift(random: np.random.Generator, strength: float) -> Hidden:
     """A load cell whose gain wanders: as slack in the slope as a softer tire."""
-    rate = float(random.choice([-1.0, 1.0])) * graded(strength, 5e-4, 6e-3)
+    rate = float(random.choice([-1.0, 1.0])) * graded(strength, 1.5e-3, 8e-3)
     how = "the load cell's gain wanders linearly in time"
     return Hidden("load_cell_drift", "gain", {"gain_drift_1_s": rate}, how, Change(gain_drift=rate), strength)

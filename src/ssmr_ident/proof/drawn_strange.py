@@ -19,7 +19,7 @@ def uneven_damper(random: np.random.Generator, strength: float) -> Hidden:
 
 def reach_damper(random: np.random.Generator, strength: float, reach_m: float) -> Hidden:
     """A damper that resists more the further out it is."""
-    b = graded(strength, 0.5, 6.0) / reach_m**2
+    b = graded(strength, 0.8, 6.0) / reach_m**2
     how = "F = d v (1 + b s^2)"
     return Hidden("unlisted", "damper grows with way", {"reach_1_m2": b}, how, Change({"reach_damper": b}), strength)
 
@@ -36,7 +36,7 @@ def tire_reach_damper(random: np.random.Generator, strength: float) -> Hidden:
 
 def root_damper(random: np.random.Generator, strength: float) -> Hidden:
     """Between dry friction and a linear damper: the root of the speed."""
-    c = graded(strength, 1.0, 10.0)
+    c = graded(strength, 1.5, 10.0)
     how = "F = c sign(v) sqrt|v|"
     laws = {"root_damper": c}
     return Hidden("unlisted", "root of the speed", {"root_N_s05_m05": c}, how, Change(laws), strength)
@@ -44,7 +44,7 @@ def root_damper(random: np.random.Generator, strength: float) -> Hidden:
 
 def uneven_spring(random: np.random.Generator, strength: float) -> Hidden:
     """Stiffer one way than the other. A stiffness that changes with deflection too, so either name is right."""
-    a = float(random.choice([-1.0, 1.0])) * graded(strength, 0.04, 0.4)
+    a = float(random.choice([-1.0, 1.0])) * graded(strength, 0.06, 0.4)
     how = "F = k s for s < 0, (1 + a) k s for s > 0"
     change = Change({"uneven_spring": a})
     return Hidden("unlisted", "uneven spring", {"asymmetry": a}, how, change, strength, ("nonlinear_stiffness",))
@@ -52,7 +52,7 @@ def uneven_spring(random: np.random.Generator, strength: float) -> Hidden:
 
 def pulsing_spring(random: np.random.Generator, strength: float) -> Hidden:
     """A stiffness that goes up and down with time."""
-    share, hertz = graded(strength, 0.02, 0.2), float(random.uniform(0.3, 1.5))
+    share, hertz = graded(strength, 0.03, 0.2), float(random.uniform(0.3, 1.5))
     how = "F = k s (1 + a sin(2 pi f t))"
     laws = {"pulse_share": share, "pulse_rad_s": 2.0 * math.pi * hertz}
     parameters = {"share": share, "pulse_Hz": hertz}
@@ -62,7 +62,7 @@ def pulsing_spring(random: np.random.Generator, strength: float) -> Hidden:
 def absorber(random: np.random.Generator, strength: float) -> Hidden:
     """A second mass on a spring on a rig's mass."""
     share, hertz, ratio = (
-        graded(strength, 0.01, 0.15),
+        graded(strength, 0.015, 0.15),
         float(random.uniform(4.0, 14.0)),
         float(random.uniform(0.02, 0.06)),
     )

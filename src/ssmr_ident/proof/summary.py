@@ -41,15 +41,17 @@ class Summary(Shown):
     outcomes : Counter
         Cases by outcome.
     right : Share
-        Named right or in a tie, or rightly found clean, of all cases.
+        Named right or in a tie, or rightly found clean, of all cases but the faint ones.
     named : Share
-        Named right or in a tie, of the cases with hidden physics.
+        Named right or in a tie, of the cases with hidden physics above the limit.
     false_alarms : Share
         Of the cases without.
     reduced : Share
-        Held-out error lower after than before, of the cases with hidden physics.
+        Held-out error lower after than before, of the same cases.
     after_over_floor : (float, float, float)
-        Median over the cases with hidden physics, and its 95 % interval.
+        Median over the same cases, and its 95 % interval.
+    faint, faint_reduced : Share
+        Named, and reduced, of the cases with hidden physics below the limit.
     """
 
     outcomes: Counter[str]
@@ -58,6 +60,8 @@ class Summary(Shown):
     false_alarms: Share
     reduced: Share
     after_over_floor: tuple[float, float, float]
+    faint: Share
+    faint_reduced: Share
 
     def __str__(self) -> str:
         middle, low, high = self.after_over_floor
@@ -70,24 +74,36 @@ class Summary(Shown):
             f"  held-out error reduced:     {self.reduced}",
             f"  after over noise floor:     median {middle:.2f}{between(low, high)}",
         ]
+        if self.faint.total:
+            lines.append(f"  below the limit, named:     {self.faint}; error reduced in {self.faint_reduced.hits}")
         return "\n".join(lines)
 
 
 def summarised(rows: Sequence[Row]) -> Summary:
     """Count."""
-    missing = [row for row in rows if row.missing]
+    missing = [row for row in rows if row.missing and not row.faint]
+    faint = [row for row in rows if row.faint]
     clean = [row for row in rows if not row.missing]
-    named = sum(row.mark.outcome in NAMED for row in missing)
+    named = _named_right(missing)
     ratios = [row.heldout.means[1] / row.heldout.means[2] for row in missing if row.heldout.after]
-    reduced = sum(bool(row.heldout.after) and row.heldout.means[1] < row.heldout.means[0] for row in missing)
     return Summary(
         Counter(row.mark.outcome for row in rows),
-        Share(named + sum(row.mark.outcome == CLEAN for row in clean), len(rows)),
+        Share(named + sum(row.mark.outcome == CLEAN for row in clean), len(missing) + len(clean)),
         Share(named, len(missing)),
         Share(sum(row.mark.outcome == FALSE_ALARM for row in clean), len(clean)),
-        Share(reduced, len(missing)),
+        Share(_reduced(missing), len(missing)),
         (float(np.median(ratios)) if ratios else NAN, *median_interval(ratios)),
+        Share(_named_right(faint), len(faint)),
+        Share(_reduced(faint), len(faint)),
     )
+
+
+def _named_right(rows: Sequence[Row]) -> int:
+    return sum(row.mark.outcome in NAMED for row in rows)
+
+
+def _reduced(rows: Sequence[Row]) -> int:
+    return sum(bool(row.heldout.after) and row.heldout.means[1] < row.heldout.means[0] for row in rows)
 
 
 def confusion(rows: Sequence[Row]) -> tuple[tuple[str, ...], tuple[str, ...], np.ndarray]:

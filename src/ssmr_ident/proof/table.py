@@ -42,6 +42,11 @@ class Row:
         return bool(self.truth["effects"])
 
     @property
+    def faint(self) -> bool:
+        """Whether what is hidden lies below the limit, and counts for the power curve alone."""
+        return bool(self.truth["kind"] == "faint")
+
+    @property
     def strength(self) -> float:
         """Of the weakest effect hidden; 0 for none."""
         return min((float(effect["strength"]) for effect in self.truth["effects"]), default=0.0)
