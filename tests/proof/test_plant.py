@@ -19,15 +19,15 @@ from ssmr_ident.proof.robots import draw_robot
 ROBOT = draw_robot(np.random.default_rng(3)).robot
 
 
-def _work(amplitude: float, cycles: int = 3, **laws: float) -> float:
+def _work(amplitude: float, cycles: int = 3, samples: int = 4000, **laws: float) -> float:
     """Energy that a law takes per slow cycle between ± amplitude [J], of the last cycle."""
     vector, hidden = law_vector(**laws), np.zeros(HIDDEN)
-    way = amplitude * np.sin(2.0 * np.pi * np.linspace(0.0, cycles, 4000 * cycles + 1))
+    way = amplitude * np.sin(2.0 * np.pi * np.linspace(0.0, cycles, samples * cycles + 1))
     force = []
     for s in way:
         advance(s, hidden, 1e-3, True, vector)
         force.append(beside(s, 0.0, 0.0, hidden, 2e4, 50.0, 1.0, 1.0, True, vector))
-    last = slice(4000 * (cycles - 1), None)
+    last = slice(samples * (cycles - 1), None)
     return float(np.trapezoid(np.array(force)[last], way[last]))
 
 
@@ -65,6 +65,10 @@ def test_what_friction_and_loops_take_per_cycle() -> None:
     assert slider == pytest.approx(4.0 * force * (amplitude - force / k), rel=2e-3)
     dahl = _work(amplitude, friction=force, friction_stiffness=k, dahl=1.0)
     assert dahl == pytest.approx(4.0 * force * (amplitude - force / k), rel=1e-2)  # up to the rounding of its corners
+    # a fast motion goes many times F/k in a step, and has the same friction
+    for kind in (0.0, 1.0):
+        fast = _work(20 * amplitude, samples=400, friction=force, friction_stiffness=k, dahl=kind)
+        assert fast == pytest.approx(4.0 * force * 20 * amplitude, rel=1e-2)
     share, y = 0.2, 1e-4  # yields long before ± amplitude: z = y to 1e-4, elastic over y on the way back, then tanh
     grown = np.linspace(0.0, 2.0 * amplitude - y, 20001)
     loading = y * np.tanh(grown / y)

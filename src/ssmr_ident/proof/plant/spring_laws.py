@@ -1,7 +1,7 @@
 """What may act beside a linear spring and damper, in the plant's own formulas.
 
 Written from the literature, not from `physics/effects`: friction is a spring with a slider (Jenkins) or Dahl's law
-stepped plainly, play has sharp corners, hardening may have two slopes, Bouc-Wen is stepped plainly too. Same physics,
+by backward steps, play has sharp corners, hardening may have two slopes, Bouc-Wen is stepped plainly too. Same physics,
 other arithmetic.
 """
 
@@ -91,7 +91,8 @@ def advance(s, hidden, step, tangential, laws):
     if laws[FRICTION_STIFFNESS] != 0.0:
         reach = laws[FRICTION] / laws[FRICTION_STIFFNESS]
         if laws[DAHL] != 0.0:
-            hidden[0] += way - abs(way) * hidden[0] / max(reach, abs(way))
+            # the slope at the end of the step: a step may go many times as far as the spring reaches
+            hidden[0] = (hidden[0] + way) / (1.0 + abs(way) / reach)
         else:
             hidden[0] = min(max(hidden[0] + way, -reach), reach)
     if laws[LOOP_SHARE] != 0.0:
