@@ -128,6 +128,11 @@ def effect_vector(effects: Mapping[str, Mapping[str, float]]) -> np.ndarray:
     return vector
 
 
+def is_plain(vector: np.ndarray) -> bool:
+    """Whether none of the effects that the simulator's loop knows acts."""
+    return np.array_equal(vector, _OFF)
+
+
 def _off(slot: str) -> float:
     effect_id, name = slot.split(".")
     parameter = next(p for p in CATALOGUE[effect_id].parameters if p.name == name)

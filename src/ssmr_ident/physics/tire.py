@@ -89,6 +89,8 @@ def contact_force(deflection, sliding, velocity, hub, beside, stiffness, damping
 @kernel
 def weakened(mu_static, mu_kinetic, speed, width):
     """mu_k + (mu_s - mu_k)·exp(-(u/v_s)²); speed u and width v_s : float [m/s]."""
+    if speed == 0.0:  # most contacts stand, and an exponential is most of what they cost
+        return mu_kinetic + (mu_static - mu_kinetic)
     ratio = speed / width
     return mu_kinetic + (mu_static - mu_kinetic) * math.exp(-ratio * ratio)
 

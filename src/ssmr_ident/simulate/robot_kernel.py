@@ -40,6 +40,7 @@ from ssmr_ident.physics.slots import (
     STRIBECK_SPEED,
 )
 from ssmr_ident.physics.tire import combined_share, contact_force, grip_shares, sliding_force, weakened
+from ssmr_ident.simulate.angles import sin_cos
 from ssmr_ident.simulate.floor import contact_speed, floor_height, rough_height
 from ssmr_ident.simulate.layout import (
     DX,
@@ -96,7 +97,8 @@ _belt_force, _lifted, _unlisted = motor_belt.force, lift_effect.load, unlisted.f
 
 @kernel
 def run(
-    p, e, floor, mast, pulling, head, head_step, reference, reference_step, start, step, steps, stride, low_pass, out
+    p, e, floor, mast, pulling, head, head_step, reference, reference_step, start, step, steps, stride, low_pass, out,
+    beyond,
 ):  # fmt: skip
     """Integrate ``steps`` steps and store every ``stride``-th state in ``out``.
 
@@ -119,6 +121,9 @@ def run(
     low_pass : (5,) float
         Difference equation of the accelerometer at ``step``.
     out : (steps // stride + 1, len(OUTPUTS)) float
+    beyond : bool or None
+        None where no effect acts and nothing pulls: a loop of its own is then compiled from this very text, in which
+        none of that is asked for any more.
 
     Returns
     -------
@@ -131,15 +136,23 @@ def run(
     coupling, drag_share, nominal_load = p[SLIP_COUPLING], p[RELEASE_DRAG], 0.25 * p[MASS] * p[GRAVITY_G]
     sliding_speed, together = p[SLIDING_SPEED], p[SLIDING_SPEED] > 0.0
     inv, tensor = p[INVERSE_INERTIA : INVERSE_INERTIA + 9], p[INERTIA : INERTIA + 9]
-    beside = (
-        e[_CUBIC] != 0.0 or e[_KNEE] != 0.0 or e[_QUADRATIC] != 0.0 or e[_FRICTION] != 0.0 or e[_ALPHA] != 1.0
-        or e[_RELAXATION] != 0.0 or e[_GAP] != 0.0
-    )  # fmt: skip
-    patterned, rough = e[_JOINT_DEPTH] != 0.0 or e[_ECCENTRICITY] != 0.0, e[_ROUGHNESS] != 0.0
-    uneven = patterned or rough
-    falling, load_law = e[KINETIC_SHARE] != 1.0, e[LOAD_EXPONENT] != 0.0
-    swaying, stretching = math.isfinite(e[MAST_HZ]), math.isfinite(e[BELT_STIFFNESS])
-    lift, coriolis, share_x_gap = e[_LIFT] > 0.5, e[_CORIOLIS], e[GAP_SHARE_X]
+    beside = remembers = patterned = rough = falling = load_law = swaying = stretching = lift = smooth = pulled = (
+        held
+    ) = False
+    coriolis = rolling = 0.0
+    if beyond is not None:
+        beside = (
+            e[_CUBIC] != 0.0 or e[_KNEE] != 0.0 or e[_QUADRATIC] != 0.0 or e[_FRICTION] != 0.0 or e[_ALPHA] != 1.0
+            or e[_RELAXATION] != 0.0 or e[_GAP] != 0.0
+        )  # fmt: skip
+        remembers = e[_FRICTION] != 0.0 or e[_ALPHA] != 1.0 or e[_RELAXATION] != 0.0
+        patterned, rough = e[_JOINT_DEPTH] != 0.0 or e[_ECCENTRICITY] != 0.0, e[_ROUGHNESS] != 0.0
+        falling, load_law = e[KINETIC_SHARE] != 1.0, e[LOAD_EXPONENT] != 0.0
+        swaying, stretching = math.isfinite(e[MAST_HZ]), math.isfinite(e[BELT_STIFFNESS])
+        lift, coriolis, rolling = e[_LIFT] > 0.5, e[_CORIOLIS], e[ROLLING]
+        smooth = bool(np.any(e[_FREE : _FREE + _TERMS] != 0.0))
+        pulled, held = pulling[PULLED] > 0.5, pulling[HELD] > 0.5
+    uneven, share_x_gap = patterned or rough, e[GAP_SHARE_X]
 
     x, y, z, roll, pitch, yaw = start[0], start[1], start[2], start[3], start[4], start[5]
     u, v, w = start[6], start[7], start[8]
@@ -160,7 +173,6 @@ def run(
         e[f], e[f + 1], e[f + 2], e[f + 3], e[f + 4], e[f + 5], e[f + 6], e[f + 7], e[f + 8], e[f + 9], e[f + 10],
         e[f + 11], e[f + 12], e[f + 13],
     )  # fmt: skip
-    smooth = np.any(e[f : f + _TERMS] != 0.0)
     if beside and start[LOADED] != 0.0:
         for i in range(12):
             pressed = start[LOADED + 1 + i // 3] if i % 3 == 2 else deflection[i // 3, i % 3]
@@ -174,7 +186,6 @@ def run(
     decay = math.exp(-gain * step)
 
     # where the hook stands at rest, so that the cable starts without slack
-    pulled, held = pulling[PULLED] > 0.5, pulling[HELD] > 0.5
     hook_start, tension_last = 0.0, 0.0
     if pulled:
         hx, hy, _ = _to_heading(roll, pitch, pulling[HOOK_X], pulling[HOOK_Y], pulling[HOOK_Z])
@@ -187,7 +198,8 @@ def run(
         # velocity at this whole step
         ue, ve, we = u + 0.5 * step * au, v + 0.5 * step * av, w + 0.5 * step * aw
         pe, qe, re = wx + 0.5 * step * bx, wy + 0.5 * step * by, wz + 0.5 * step * bz
-        cr, sr, cp, sp = math.cos(roll), math.sin(roll), math.cos(pitch), math.sin(pitch)
+        sr, cr = sin_cos(roll)
+        sp, cp = sin_cos(pitch)
         r01, r02, r12, r21, r22 = sp * sr, sp * cr, -sr, cp * sr, cp * cr
         # angular velocity along the heading axes
         ox, oy, oz = cp * pe + r01 * qe + r02 * re, cr * qe + r12 * re, -sp * pe + r21 * qe + r22 * re
@@ -198,7 +210,7 @@ def run(
         belt_pull[0] = belt_pull[1] = 0.0
         cyaw, syaw = 1.0, 0.0
         if uneven or pulled:
-            cyaw, syaw = math.cos(yaw), math.sin(yaw)
+            syaw, cyaw = sin_cos(yaw)
         for i in range(4):
             a, b, c = p[POINTS + 3 * i], p[POINTS + 3 * i + 1], p[POINTS + 3 * i + 2]
             side = 0 if b > 0.0 else 1
@@ -287,8 +299,8 @@ def run(
                 any_sliding += 1.0
             if stretching:
                 belt_pull[side] += force_x
-            if e[ROLLING] != 0.0 and rim != 0.0:
-                force_x += _rolling(weight, hub_x, e[ROLLING])
+            if rolling != 0.0 and rim != 0.0:
+                force_x += _rolling(weight, hub_x, rolling)
             fx += force_x
             fy += force_y
             fz += normal
@@ -407,7 +419,7 @@ def run(
             deflection[i, 1] += step * (hub_y - contact[i, 1])
             if uneven:
                 path[i] += step * contact_speed(hub_x, hub_y)
-            if beside:
+            if remembers:
                 for axis in range(3):
                     element = 3 * i + axis
                     kept = hidden[element, 0], hidden[element, 1], hidden[element, 2]
@@ -419,11 +431,9 @@ def run(
                         kept = element_next(kept, ground_rate[i] - (w + ox * ry - oy * rx), step, False, law)
                     hidden[element, 0], hidden[element, 1], hidden[element, 2] = kept
         # drift: pose rates with the angles half a step ahead
-        cr, sr = math.cos(roll + 0.5 * step * roll_rate), math.sin(roll + 0.5 * step * roll_rate)
-        half_pitch = pitch + 0.5 * step * pitch_rate
-        cp, sp = math.cos(half_pitch), math.sin(half_pitch)
-        half_yaw = yaw + 0.5 * step * yaw_rate
-        cyaw, syaw = math.cos(half_yaw), math.sin(half_yaw)
+        sr, cr = sin_cos(roll + 0.5 * step * roll_rate)
+        sp, cp = sin_cos(pitch + 0.5 * step * pitch_rate)
+        syaw, cyaw = sin_cos(yaw + 0.5 * step * yaw_rate)
         turning = (sr * wy + cr * wz) / cp
         roll_rate, pitch_rate, yaw_rate = wx + sp * turning, cr * wy - sr * wz, turning
         x += step * (cyaw * u - syaw * v)

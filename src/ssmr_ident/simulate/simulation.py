@@ -11,13 +11,12 @@ from ssmr_ident.core.errors import SimulationError
 from ssmr_ident.core.recording import Channel, Provenance, Recording
 from ssmr_ident.core.shown import Shown
 from ssmr_ident.physics.effect import Site
-from ssmr_ident.physics.effects import CATALOGUE, ground_roughness
-from ssmr_ident.physics.robot import GRAVITY, Robot
+from ssmr_ident.physics.effects import CATALOGUE
+from ssmr_ident.physics.robot import Robot
 from ssmr_ident.physics.sensor import low_pass_coefficients
-from ssmr_ident.physics.slots import CUBIC, Effects, checked_for_robot, effect_vector
-from ssmr_ident.physics.statics import rest_pose, tilt
+from ssmr_ident.physics.slots import Effects
 from ssmr_ident.simulate import layout as k
-from ssmr_ident.simulate.mast import inverse_mass_matrix
+from ssmr_ident.simulate.body import body_of, pack_robot
 from ssmr_ident.simulate.pulling import (
     CABLE_D,
     CABLE_K,
@@ -109,70 +108,48 @@ def simulate(
     InputError
         An unknown effect or parameter.
     """
-    active = checked_for_robot(effects or {})
-    e = effect_vector(active)
-    for effect_id, values in active.items():
-        change = CATALOGUE[effect_id].acts.get(Site.ROBOT)
-        if change and not CATALOGUE[effect_id].is_off(values):
-            robot = change(robot, **values)
+    body = body_of(robot, effects or {})
     if step is None:
-        step = choose_step(robot, scenario, e).step
-    stride = max(1, math.ceil(1.0 / (sample_rate * step) - 1e-9))
-    step = 1.0 / (sample_rate * stride)
-    samples = round(scenario.duration * sample_rate)
+        step = choose_step(body.robot, scenario, body.e).step
+    step, stride, samples = grid(scenario, sample_rate, step)
     out = np.empty((samples, len(k.OUTPUTS)))
+    pulling = _pulling(body.robot, scenario, body.active)
     failed = run(
-        pack_robot(robot, scenario, release_drag),
-        e,
-        _floor(active),
-        inverse_mass_matrix(robot, active),
-        _pulling(robot, scenario, active),
+        pack_robot(body.robot, scenario, release_drag),
+        body.e,
+        body.floor,
+        body.mast,
+        pulling,
         scenario.head if len(scenario.head) else np.zeros(1),
         scenario.head_step,
         scenario.wheel_rates,
         scenario.wheel_rate_step,
-        _start(robot, scenario, float(e[CUBIC])),
+        body.start(scenario),
         step,
         (samples - 1) * stride,
         stride,
-        low_pass_coefficients(robot.accelerometer.bandwidth_hz, step),
+        low_pass_coefficients(body.robot.accelerometer.bandwidth_hz, step),
         out,
+        True if body.beyond or pulling[PULLED] else None,
     )
     if failed >= 0:
         raise SimulationError(
             f"{scenario.experiment} left the finite numbers at t = {failed * step:.4g} s (step {step:g} s) with "
-            f"effects {active or 'none'}; mass {robot.mass:g} kg, tire stiffness {robot.stiffness.tolist()} N/m, "
-            f"damping {robot.damping.tolist()} N s/m. Check these values, or take a shorter step"
+            f"effects {body.active or 'none'}; mass {body.robot.mass:g} kg, "
+            f"tire stiffness {body.robot.stiffness.tolist()} N/m, damping {body.robot.damping.tolist()} N s/m. "
+            "Check these values, or take a shorter step"
         )
     time = np.arange(samples) / sample_rate
-    if any(Site.OUTPUT in CATALOGUE[effect_id].acts for effect_id in active):
+    if body.read_otherwise:
         channels = {name: out[:, index] for index, name in enumerate(k.OUTPUTS)}
-        out = np.column_stack(list(sensed(time, channels, active).values()))
+        out = np.column_stack(list(sensed(time, channels, body.active).values()))
     return Simulation(time, out, k.OUTPUTS, scenario, step)
 
 
-def pack_robot(robot: Robot, scenario: Scenario, release_drag: float = 0.0) -> np.ndarray:
-    """The kernel's parameter vector."""
-    p = np.zeros(k.PARAMETERS)
-    p[k.MASS], p[k.PATCH_MASS], p[k.RADIUS] = robot.mass, robot.effective_mass, robot.radius
-    p[k.KX : k.KZ + 1], p[k.DX : k.DZ + 1] = robot.stiffness, robot.damping
-    p[k.MU_STATIC], p[k.MU_KINETIC], p[k.LAMBDA_MAX] = robot.mu_static, robot.mu_kinetic, robot.lambda_max
-    p[k.SLIP_COUPLING], p[k.MOTOR_GAIN], p[k.GRAVITY_G] = robot.slip_coupling, robot.motor_gain, GRAVITY
-    p[k.RELEASE_DRAG] = release_drag
-    p[k.SENSOR : k.SENSOR + 3] = robot.accelerometer.position
-    p[k.POINTS : k.POINTS + 12] = robot.contact_points.ravel()
-    p[k.INVERSE_INERTIA : k.INVERSE_INERTIA + 9] = np.linalg.inv(robot.inertia).ravel()
-    p[k.INERTIA : k.INERTIA + 9] = robot.inertia.ravel()
-    p[k.GRIPPING : k.GRIPPING + 4] = [float(i in scenario.wheels_gripping) for i in (1, 2, 3, 4)]
-    p[k.SLIDING_SPEED] = robot.sliding_speed
-    return p
-
-
-def _floor(active: Effects) -> np.ndarray:
-    values = active.get("ground_roughness")
-    if not values or values["height_m"] == 0.0:
-        return np.zeros((1, 1))
-    return ground_roughness.field(values["height_m"], values["length_m"], values["seed"])
+def grid(scenario: Scenario, sample_rate: float, step: float) -> tuple[float, int, int]:
+    """The step itself, steps from sample to sample, and samples, for an upper limit of the step [s]."""
+    stride = max(1, math.ceil(1.0 / (sample_rate * step) - 1e-9))
+    return 1.0 / (sample_rate * stride), stride, round(scenario.duration * sample_rate)
 
 
 def _pulling(robot: Robot, scenario: Scenario, active: Effects) -> np.ndarray:
@@ -199,22 +176,3 @@ def _pulling(robot: Robot, scenario: Scenario, active: Effects) -> np.ndarray:
     turning = np.cross(q[[HOOK_X, HOOK_Y, HOOK_Z]], along)
     q[MOBILITY] = 1.0 / robot.mass + turning @ np.linalg.solve(robot.inertia, turning)
     return q
-
-
-def _start(robot: Robot, scenario: Scenario, cubic: float) -> np.ndarray:
-    """Rest, displaced and pushed as the scenario says; the tires were set down unstressed at rest."""
-    height, roll, pitch = rest_pose(robot, cubic)
-    offset, velocity = scenario.offset, scenario.velocity
-    pose = np.array([0.0, 0.0, height, roll, pitch, 0.0])
-    pose += [offset.get(name, 0.0) for name in ("x", "y", "z", "roll", "pitch", "yaw")]
-    rates = [velocity.get(name, 0.0) for name in ("x", "y", "z", "roll", "pitch", "yaw")]
-    set_down = robot.contact_points @ tilt(roll, pitch).T
-    heading = np.array([[math.cos(pose[5]), -math.sin(pose[5])], [math.sin(pose[5]), math.cos(pose[5])]])
-    now = (robot.contact_points @ tilt(pose[3], pose[4]).T)[:, :2] @ heading.T + pose[:2]
-    deflection = (now - set_down[:, :2]) @ heading
-    deflection += np.sign(robot.contact_points[:, :2]) * (offset.get("brace_x", 0.0), offset.get("brace_y", 0.0))
-    sway = [part.get(name, 0.0) for part in (offset, velocity) for name in ("sway_x", "sway_y")]
-    hubs = pose[2] + (robot.contact_points @ tilt(pose[3], pose[4]).T)[:, 2]
-    pressed = height + set_down[:, 2] - hubs
-    loaded, unseen = [offset.get("loaded", 0.0)], [offset.get("unseen", 0.0)]
-    return np.concatenate([pose, rates, np.zeros(2), deflection.ravel(), sway, loaded, pressed, unseen])

@@ -1,0 +1,156 @@
+"""A robot with its effects as the compiled loop takes them, and how it is let go."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from weakref import WeakKeyDictionary
+
+import numpy as np
+
+from ssmr_ident.core.kernel import kernel
+from ssmr_ident.physics.effect import Site
+from ssmr_ident.physics.effects import CATALOGUE, ground_roughness
+from ssmr_ident.physics.robot import GRAVITY, Robot
+from ssmr_ident.physics.slots import CUBIC, Effects, checked_for_robot, effect_vector, is_plain
+from ssmr_ident.physics.statics import rest_pose
+from ssmr_ident.simulate import layout as k
+from ssmr_ident.simulate.mast import inverse_mass_matrix
+from ssmr_ident.simulate.scenarios import Scenario
+
+LOADED, UNSEEN = k.LOADED, k.UNSEEN
+FLAT = np.zeros((1, 1))
+_POSE = ("x", "y", "z", "roll", "pitch", "yaw")
+_AWAY = (*_POSE, "brace_x", "brace_y", "sway_x", "sway_y", "loaded", "unseen")
+_MOVING = (*_POSE, "sway_x", "sway_y")
+
+
+@dataclass(frozen=True, eq=False)
+class Body:
+    """What does not depend on where a robot starts.
+
+    Parameters
+    ----------
+    robot : Robot
+        As effects have changed it.
+    active : mapping of effect id to complete parameters
+    e : (SLOTS,) float
+    floor : (n, n) float [m]
+    mast : (8, 8) float
+    beyond : bool
+        False where the baseline is all there is.
+    read_otherwise : bool
+        Sensor effects change the channels.
+    """
+
+    robot: Robot
+    active: Effects
+    e: np.ndarray
+    floor: np.ndarray
+    mast: np.ndarray
+    beyond: bool
+    read_otherwise: bool
+
+    def start(self, scenario: Scenario) -> np.ndarray:
+        """Rest, displaced and pushed as the scenario says; the tires were set down unstressed at rest."""
+        offset, velocity = scenario.offset, scenario.velocity
+        away = np.array([offset.get(name, 0.0) for name in _AWAY])
+        moving = np.array([velocity.get(name, 0.0) for name in _MOVING])
+        out = np.zeros(k.START)
+        _let_go(self.robot.contact_points, rest_pose(self.robot, float(self.e[CUBIC])), away, moving, out)
+        return out
+
+
+def body_of(robot: Robot, effects: Effects) -> Body:
+    """A robot with effects.
+
+    Raises
+    ------
+    InputError
+        An unknown effect or parameter, or a mast heavier than the robot.
+    """
+    active = checked_for_robot(effects)
+    e = effect_vector(active)
+    for effect_id, values in active.items():
+        change = CATALOGUE[effect_id].acts.get(Site.ROBOT)
+        if change and not CATALOGUE[effect_id].is_off(values):
+            robot = change(robot, **values)
+    mast = inverse_mass_matrix(robot, active)
+    read_otherwise = any(Site.OUTPUT in CATALOGUE[effect_id].acts for effect_id in active)
+    return Body(robot, active, e, _floor(active), mast, not is_plain(e), read_otherwise)
+
+
+def _floor(active: Effects) -> np.ndarray:
+    values = active.get("ground_roughness")
+    if not values or values["height_m"] == 0.0:
+        return FLAT
+    return ground_roughness.field(values["height_m"], values["length_m"], values["seed"])
+
+
+def pack_robot(robot: Robot, scenario: Scenario, release_drag: float = 0.0) -> np.ndarray:
+    """The kernel's parameter vector."""
+    known = _PACKED.get(robot)
+    p = _packed(robot) if known is None else known.copy()
+    if known is None:
+        _PACKED[robot] = p.copy()
+    p[k.RELEASE_DRAG] = release_drag
+    p[k.GRIPPING : k.GRIPPING + 4] = [float(i in scenario.wheels_gripping) for i in (1, 2, 3, 4)]
+    return p
+
+
+_PACKED: WeakKeyDictionary[Robot, np.ndarray] = WeakKeyDictionary()
+"""Of robots that are still in use: one robot is let go from many starts."""
+
+
+def _packed(robot: Robot) -> np.ndarray:
+    p = np.zeros(k.PARAMETERS)
+    p[k.MASS], p[k.PATCH_MASS], p[k.RADIUS] = robot.mass, robot.effective_mass, robot.radius
+    p[k.KX : k.KZ + 1], p[k.DX : k.DZ + 1] = robot.stiffness, robot.damping
+    p[k.MU_STATIC], p[k.MU_KINETIC], p[k.LAMBDA_MAX] = robot.mu_static, robot.mu_kinetic, robot.lambda_max
+    p[k.SLIP_COUPLING], p[k.MOTOR_GAIN], p[k.GRAVITY_G] = robot.slip_coupling, robot.motor_gain, GRAVITY
+    p[k.SENSOR : k.SENSOR + 3] = robot.accelerometer.position
+    p[k.POINTS : k.POINTS + 12] = robot.contact_points.ravel()
+    p[k.INVERSE_INERTIA : k.INVERSE_INERTIA + 9] = np.linalg.inv(robot.inertia).ravel()
+    p[k.INERTIA : k.INERTIA + 9] = robot.inertia.ravel()
+    p[k.SLIDING_SPEED] = robot.sliding_speed
+    return p
+
+
+@kernel
+def _let_go(points, rest, away, moving, out):
+    """Fill the loop's starting state.
+
+    Parameters
+    ----------
+    points : (4, 3) float [m]
+    rest : (3,) float
+        Height, roll and pitch at rest.
+    away, moving : (12,) and (8,) float
+        In the order of ``_AWAY`` and ``_MOVING``.
+    out : (START,) float
+        Zeros.
+    """
+    for j in range(6):
+        out[j], out[6 + j] = away[j], moving[j]
+    out[2] += rest[0]
+    out[3] += rest[1]
+    out[4] += rest[2]
+    cosine, sine = math.cos(out[5]), math.sin(out[5])
+    for i in range(4):
+        set_x, set_y, set_z = _tilted(rest[1], rest[2], points[i])
+        now_x, now_y, now_z = _tilted(out[3], out[4], points[i])
+        moved_x = cosine * now_x - sine * now_y + out[0] - set_x
+        moved_y = sine * now_x + cosine * now_y + out[1] - set_y
+        out[14 + 2 * i] = cosine * moved_x + sine * moved_y + np.sign(points[i, 0]) * away[6]
+        out[15 + 2 * i] = cosine * moved_y - sine * moved_x + np.sign(points[i, 1]) * away[7]
+        out[LOADED + 1 + i] = rest[0] + set_z - (out[2] + now_z)
+    out[22], out[23], out[24], out[25] = away[8], away[9], moving[6], moving[7]
+    out[LOADED], out[UNSEEN] = away[10], away[11]
+
+
+@kernel
+def _tilted(roll, pitch, point):
+    """A body vector along the heading axes."""
+    cr, sr, cp, sp = math.cos(roll), math.sin(roll), math.cos(pitch), math.sin(pitch)
+    raised = sr * point[1] + cr * point[2]
+    return cp * point[0] + sp * raised, cr * point[1] - sr * point[2], cp * raised - sp * point[0]

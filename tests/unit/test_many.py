@@ -1,0 +1,82 @@
+"""Many releases in one call are to the last bit what each of them gives alone; the short loop is the long one."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from ssmr_ident.core.errors import InputError
+from ssmr_ident.physics.robot import Robot, robot_from_parameters
+from ssmr_ident.session import read_parameters
+from ssmr_ident.simulate import body as bodies
+from ssmr_ident.simulate.angles import SMALL, sin_cos
+from ssmr_ident.simulate.many import Release, simulate_many
+from ssmr_ident.simulate.scenarios import Scenario, free_response
+from ssmr_ident.simulate.simulation import simulate
+
+NAMES = ("ax", "az", "wy")
+EFFECTS = (
+    {},
+    {"nonlinear_stiffness": {"k3_N_m3": 1e8}},
+    {"sensor_misalignment": {"angle_x_rad": 0.1}},
+    {"dry_friction": {"F_c_N": 3.0}},
+    {"flexible_mast": {"f_mast_Hz": 9.0}},
+    {"ground_roughness": {"height_m": 1e-4}},
+    {"sensor_bandwidth": {"bandwidth_hz": 14.0}},
+)
+TOO_HEAVY = {"flexible_mast": {"f_mast_Hz": 9.0, "mass_kg": 1e4}}
+
+
+@pytest.fixture(scope="module")
+def robot() -> Robot:
+    return robot_from_parameters(read_parameters("p3at-extended"))
+
+
+def _starts(count: int) -> list[Scenario]:
+    random = np.random.default_rng(3)
+    return [
+        Scenario(
+            "free_response",
+            0.3,
+            offset={"x": 1e-3 * a, "roll": 0.01 * b, "brace_y": 1e-3 * c, "loaded": 0.5, "unseen": 0.2},
+            velocity={"z": 0.05 * a, "yaw": 0.2 * b, "sway_x": 0.1 * c},
+        )
+        for a, b, c in random.standard_normal((count, 3))
+    ]
+
+
+def test_many_releases_are_each_release_alone(robot: Robot) -> None:
+    robot = robot.sliding_together()
+    heavier = robot.with_changes(mass=1.1 * robot.mass)
+    asked = [Release(body, e, s) for e in EFFECTS for body in (robot, heavier) for s in _starts(2)]
+    asked.insert(5, Release(robot, TOO_HEAVY, _starts(1)[0]))
+    found = simulate_many(asked, 1000.0, 5e-4, ("ax", "ay", "az"))
+    for release, result in zip(asked, found, strict=True):
+        if release.effects is TOO_HEAVY:
+            assert np.isnan(result).all()
+            with pytest.raises(InputError):
+                bodies.body_of(robot, TOO_HEAVY)
+            continue
+        alone = simulate(release.robot, release.scenario, 1000.0, step=5e-4, effects=release.effects)
+        np.testing.assert_array_equal(result, alone.values[:, :3])
+
+
+def test_a_robot_that_leaves_the_finite_numbers_spoils_no_other(robot: Robot) -> None:
+    away = robot.with_changes(damping=-1e7 * np.ones(3))
+    good, bad = Release(robot, {}, _starts(1)[0]), Release(away, {}, _starts(1)[0])
+    found = simulate_many([good, bad, good], 1000.0, 5e-4, NAMES)
+    assert np.isnan(found[1]).all()
+    np.testing.assert_array_equal(found[0], found[2])
+    np.testing.assert_array_equal(found[0], simulate_many([good], 1000.0, 5e-4, NAMES)[0])
+
+
+def test_the_loop_without_effects_is_the_loop_with_all_of_them_off(robot: Robot, monkeypatch) -> None:
+    short = simulate(robot, free_response("yaw", duration=0.5), step=5e-4)
+    monkeypatch.setattr(bodies, "is_plain", lambda vector: False)
+    np.testing.assert_array_equal(short.values, simulate(robot, free_response("yaw", duration=0.5), step=5e-4).values)
+
+
+def test_small_angles_by_their_series() -> None:
+    for angle in np.linspace(-1.5 * SMALL, 1.5 * SMALL, 2001):
+        np.testing.assert_allclose(sin_cos(angle), (np.sin(angle), np.cos(angle)), rtol=4e-16)
+    assert np.isnan(sin_cos(np.nan)).all()
