@@ -91,10 +91,10 @@ class BodyDecay:
         return np.linalg.qr(np.hstack([columns, middle * columns[:, 1:]]))[0]
 
     def averaged(self, signal: Array) -> Array:
-        """Block averages of a signal on the record's own grid, (m, c) to (n, c)."""
+        """Block averages of a signal on the record's own grid, (..., m, c) to (..., n, c)."""
         skip = round((self.first - (self.block - 1) / 2 * self.record.step) / self.record.step)
-        cut = signal[skip : skip + len(self.samples) * self.block]
-        return cut.reshape(len(self.samples), self.block, -1).mean(axis=1)
+        cut = signal[..., skip : skip + len(self.samples) * self.block, :]
+        return cut.reshape(*cut.shape[:-2], len(self.samples), self.block, -1).mean(axis=-2)
 
     def averaging(self, poles: Array) -> Array:
         """What block averaging makes of e^(st), (k,) complex."""

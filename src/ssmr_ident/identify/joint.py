@@ -20,7 +20,8 @@ from typing import TypeVar
 import numpy as np
 
 from ssmr_ident.identify.coordinates import Model
-from ssmr_ident.identify.trials.trial import Trial
+from ssmr_ident.identify.trials.trial import Asked, Trial, Values
+from ssmr_ident.physics.slots import Effects
 
 Array = np.ndarray
 T = TypeVar("T")
@@ -31,12 +32,22 @@ NUISANCE_STEP = 1e-4
 BURST = 1e30
 """Simulated number, in its SI unit, beyond which an integration has burst; its square would overflow."""
 
-_POOL = ThreadPoolExecutor(max_workers=max(1, min(8, os.cpu_count() or 1)))
+
+def processors() -> int:
+    """Those that this process may use, which may be fewer than the machine has."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+_WORKERS = min(8, processors())
+_POOL = ThreadPoolExecutor(max_workers=_WORKERS)
 
 
 def over(trials: Sequence[Trial], function: Callable[[int], T]) -> list[T]:
     """``function(index)`` for every trial, several at a time; compiled loops let go of the interpreter."""
-    return list(_POOL.map(function, range(len(trials))))
+    indices = range(len(trials))
+    return list(_POOL.map(function, indices) if _WORKERS > 1 else map(function, indices))
 
 
 @dataclass(frozen=True, eq=False)
@@ -183,40 +194,57 @@ def differentiate(fit: JointFit, shared: bool = True) -> JointFit:
     if fit.exact:
         return fit
     model, point = fit.model, fit.point
-    steps = model.steps()
-    names = [unknown.name for unknown in model.unknowns]
+    names = [unknown.name for unknown in model.unknowns] if shared else []
+    here = model.split(point)
+    # robots are asked for by their values: one that has been split once is built once for all trials
+    moved = {coarse: _moved(model, point, coarse) for coarse in {trial.coarse for trial in fit.trials} if shared}
 
     def one(index: int) -> Slopes:
         trial, nuisance = fit.trials[index], fit.nuisances[index]
         centre = trial.whitened(fit.simulated[index])
-        columns = np.zeros((len(centre), len(point)))
-        for column in range(len(point) if shared else 0):
-            if not trial.sees(names[column]):
-                continue
-            moved = point.copy()
-            # towards the prior, so that a bound is not stepped over
-            step = trial.coarse * (steps[column] if point[column] <= 0 else -steps[column])
-            moved[column] += step
-            values, effects = model.split(moved)
-            slope = (trial.whitened(trial.run(values, effects, nuisance)) - centre) / step
+        seen = [column for column, name in enumerate(names) if trial.sees(name)]
+        asked: list[Asked] = [(*moved[trial.coarse][column][1], nuisance) for column in seen]
+        acting, width = _acting(trial, model), NUISANCE_STEP * trial.coarse
+        for column in acting:
+            sides = (1.0, -1.0) if trial.nuisances[column] in trial.even else (1.0,)
+            for side in sides:
+                aside = nuisance.copy()
+                aside[column] += side * width
+                asked.append((*here, aside))
+        columns, own = np.zeros((len(centre), len(point))), np.zeros((len(centre), len(nuisance)))
+        found = iter(trial.whitened(trial.runs(asked)).T if asked else ())
+        for column in seen:
+            slope = (next(found) - centre) / moved[trial.coarse][column][0]
             # where a step leaves what can be simulated, the fit stays along this coordinate
             columns[:, column] = slope if np.all(np.isfinite(slope)) else 0.0
-        values, effects = model.split(point)
-        own = np.zeros((len(centre), len(nuisance)))
-        for column, name in enumerate(trial.nuisances):
-            if name in trial.idle and not any(effect_id in model.held for effect_id in trial.idle[name]):
-                continue
-            width = NUISANCE_STEP * trial.coarse
-            moved = nuisance.copy()
-            moved[column] += width
-            ahead, behind = trial.whitened(trial.run(values, effects, moved)), centre
-            if name in trial.even:
-                moved[column] -= 2.0 * width
-                behind, width = trial.whitened(trial.run(values, effects, moved)), 2.0 * width
-            own[:, column] = (ahead - behind) / width
+        for column in acting:
+            ahead = next(found)
+            even = trial.nuisances[column] in trial.even
+            own[:, column] = (ahead - next(found)) / (2.0 * width) if even else (ahead - centre) / width
         return Slopes(columns, np.where(np.isfinite(own), own, 0.0))
 
     return replace(fit, slopes=tuple(over(fit.trials, one)), exact=shared)
+
+
+def _moved(model: Model, point: Array, coarse: float) -> list[tuple[float, tuple[Values, Effects]]]:
+    """Each coordinate's step, and what the model is after it."""
+    found: list[tuple[float, tuple[Values, Effects]]] = []
+    for column, size in enumerate(model.steps()):
+        moved = point.copy()
+        # towards the prior, so that a bound is not stepped over
+        step = coarse * (size if point[column] <= 0 else -size)
+        moved[column] += step
+        found.append((step, model.split(moved)))
+    return found
+
+
+def _acting(trial: Trial, model: Model) -> list[int]:
+    """Nuisances that do something under a model."""
+    return [
+        column
+        for column, name in enumerate(trial.nuisances)
+        if name not in trial.idle or any(effect_id in model.held for effect_id in trial.idle[name])
+    ]
 
 
 def normal_equations(fit: JointFit, weights: Array, damping: float = 0.0) -> tuple[Array, Array]:

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import math
+import pickle
+from collections import OrderedDict
 from collections.abc import Collection, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
-from threading import local
+from functools import cached_property
 
 import numpy as np
 from scipy.stats import t as student
@@ -95,8 +98,11 @@ def set_aside(unknowns: Sequence[Unknown], motions: Collection[str]) -> tuple[Un
     return tuple(replace(u, prior_std=None) if u.name in free else u for u in unknowns)
 
 
-_LAST = local()
-"""The robot that a thread built last: differences in the state at the release ask for the same one many times."""
+_MADE: OrderedDict[tuple[bytes, tuple[tuple[str, float], ...]], Robot] = OrderedDict()
+"""Robots by what they were made of: recordings of a session ask for the same ones in turn, and what is worked out of a
+robot is kept as long as itself."""
+
+_MOST_MADE = 256
 
 
 @dataclass(frozen=True)
@@ -116,12 +122,18 @@ class RobotBuilder:
         return RobotBuilder(robot_from_parameters(parameters))
 
     def __call__(self, values: Mapping[str, float]) -> Robot:
-        last = getattr(_LAST, "made", None)
-        if last is not None and last[0] is self.nominal and last[1] == values:
-            return last[2]
-        robot = self._made(values)
-        _LAST.made = (self.nominal, dict(values), robot)
+        made = self._print, tuple(values.items())
+        robot = _MADE.get(made)
+        if robot is None:
+            robot = _MADE[made] = self._made(values)
+            if len(_MADE) > _MOST_MADE:
+                with suppress(KeyError):  # another thread may have been first
+                    _MADE.popitem(last=False)
         return robot
+
+    @cached_property
+    def _print(self) -> bytes:
+        return pickle.dumps(self.nominal)
 
     def _made(self, values: Mapping[str, float]) -> Robot:
         robot = self.nominal

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ssmr_ident.campaign import Measurement
-from ssmr_ident.core.errors import InputError, SimulationError
+from ssmr_ident.core.errors import InputError
 from ssmr_ident.identify.body_response import body_response, sensor_gains
 from ssmr_ident.identify.decay_record import spread
 from ssmr_ident.identify.free_decays import BodyDecay, body_decay
@@ -16,13 +16,13 @@ from ssmr_ident.identify.noise import AutoregressiveNoise
 from ssmr_ident.identify.output_error import START_SCALES
 from ssmr_ident.identify.robot_map import RobotBuilder
 from ssmr_ident.identify.trials.pure_rotation import PureRotation, seen_axis
-from ssmr_ident.identify.trials.trial import Array, Course, Trial, Values
+from ssmr_ident.identify.trials.trial import Array, Asked, Course, Trial, Values
 from ssmr_ident.physics.linear import COORDINATES
 from ssmr_ident.physics.robot import Robot
 from ssmr_ident.physics.slots import Effects
 from ssmr_ident.signals.metrics import LOW_PASS_HZ
+from ssmr_ident.simulate.many import Release, simulate_many
 from ssmr_ident.simulate.scenarios import Scenario
-from ssmr_ident.simulate.simulation import simulate
 
 AXES = ("ax", "ay", "az")
 SWAY = ("sway_x", "sway_y")
@@ -123,30 +123,39 @@ def _trial(whole: BodyDecay, kept: int, facts: _Facts) -> Trial:
     raw = decay.record.samples[skip:length].reshape(kept, decay.block, -1)
     counts = np.all(np.abs(raw) < 0.999 * builder.nominal.accelerometer.range_m_s2, axis=1)
 
-    def simulated(values: Values, effects: Effects, nuisance: Array, samples: int, step: float) -> Array:
-        return _course(builder(values), effects, nuisance, decay, samples, step)[:, list(decay.axes)]
+    def simulated(asked: Sequence[Asked], samples: int, step: float) -> Array:
+        duration = samples * decay.record.step
+        releases = [Release(builder(values), effects, _let_go(own, duration)) for values, effects, own in asked]
+        return simulate_many(releases, 1.0 / decay.record.step, step, [AXES[axis] for axis in decay.axes])
 
-    def followed(values: Values, effects: Effects, nuisance: Array, samples: int, step: float) -> Array:
-        if model is None:
-            return simulated(values, effects, nuisance, samples, step)
+    def rotated(values: Values, effects: Effects, nuisance: Array, samples: int, step: float) -> Array:
+        assert model is not None
         others = {name: effect for name, effect in effects.items() if name != "translation_coupling"}
         if "translation_coupling" in effects:
-            return simulated(values, others, nuisance, samples, step)
+            return simulated([(values, others, nuisance)], samples, step)[0]
         pure = model.responses(builder(values), samples, decay.record.step) @ nuisance[:12]
         if not others:
             return pure
         # what an effect adds to the six degrees of freedom, added to the pure rotation
-        more, plain = (simulated(values, e, nuisance, samples, step) for e in (others, {}))
+        more, plain = simulated([(values, e, nuisance) for e in (others, {})], samples, step)
         return pure + more - plain
 
+    def followed(asked: Sequence[Asked], samples: int, step: float) -> Array:
+        if model is None:
+            return simulated(asked, samples, step)
+        return np.stack([rotated(*one, samples, step) for one in asked])
+
+    def many(asked: Sequence[Asked]) -> Array:
+        return decay.averaged(followed(asked, length, facts.step))
+
     def run(values: Values, effects: Effects, nuisance: Array) -> Array:
-        return decay.averaged(followed(values, effects, nuisance, length, facts.step))
+        return many([(values, effects, nuisance)])[0]
 
     everything = decay.record.samples
 
     def settled(values: Values, effects: Effects, nuisance: Array) -> Array:
         # until the sensor's own transient is over, nobody knows what it was doing before the release
-        return followed(values, effects, nuisance, len(everything), FINE_STEP)[skip:]
+        return followed([(values, effects, nuisance)], len(everything), FINE_STEP)[0, skip:]
 
     def begin(values: Values, effects: Effects) -> Array:
         robot = builder(values)
@@ -179,6 +188,7 @@ def _trial(whole: BodyDecay, kept: int, facts: _Facts) -> Trial:
         {"clipped": float((~counts).sum())},
         ("cable.",),
         quiet=True,
+        many=many,
         idle={**dict.fromkeys(SWAYING, ("flexible_mast",)), **dict.fromkeys(BRACE, ("wheel_lift",)), **OWN},
         even=BRACE,
         shorten=lambda seconds: _trial(
@@ -205,15 +215,11 @@ def _loud_until(rest: Array, quiet: int, step: float) -> int:
     return max(min(count, last), min(count, round(0.5 / step)))
 
 
-def _course(robot: Robot, effects: Effects, nuisance: Array, decay: BodyDecay, length: int, step: float) -> Array:
+def _let_go(nuisance: Array, duration: float) -> Scenario:
     state = dict(zip(STATES, map(float, nuisance * SCALES), strict=True))
     offset = {name: state[name] for name in (*COORDINATES, *SWAY, *BRACE, *OWN)}
     velocity = {name: state[f"{name}_rate"] for name in (*COORDINATES, *SWAY)}
-    scenario = Scenario("free_response", length * decay.record.step, offset=offset, velocity=velocity)
-    try:
-        return simulate(robot, scenario, 1.0 / decay.record.step, step=step, effects=effects).values
-    except (SimulationError, InputError):  # the second: a mast heavier than the robot
-        return np.full((length, 3), math.nan)
+    return Scenario("free_response", duration, offset=offset, velocity=velocity)
 
 
 def _columns(robot: Robot, decay: BodyDecay) -> Array:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -17,6 +17,7 @@ from ssmr_ident.physics.slots import Effects
 Array = np.ndarray
 Values = Mapping[str, float]
 Runner = Callable[[Values, Effects, Array], Array]
+Asked = tuple[Values, Effects, Array]
 
 MAINS_HZ = (50.0, 60.0)
 
@@ -106,6 +107,8 @@ class Trial:
         The noise was taken from a stretch in which nothing moves.
     jolt : (float, float) or None [s]
         Times in which the apparatus shows more than what it tests: what is left there tells nothing missing.
+    many : callable or None
+        What ``run`` gives of many at once, (k, n, c), in one call that lets other threads go on.
     """
 
     name: str
@@ -132,6 +135,7 @@ class Trial:
     part: tuple[float, float] | None = None
     quiet: bool = False
     jolt: tuple[float, float] | None = None
+    many: Callable[[Sequence[Asked]], Array] | None = None
 
     @property
     def step(self) -> float:
@@ -176,6 +180,12 @@ class Trial:
     def by_channel(self, residual: Array) -> Array:
         """(N,) back to (n − lost, c)."""
         return residual.reshape(len(self.channels), -1).T
+
+    def runs(self, asked: Sequence[Asked]) -> Array:
+        """``run`` for each of (values, effects, nuisance), one behind the other in the last axis; (n, c, k)."""
+        if self.many is None:
+            return np.stack([self.run(*one) for one in asked], axis=-1)
+        return np.moveaxis(self.many(asked), 0, -1)
 
     def sees(self, name: str) -> bool:
         """False for a parameter that this recording does not depend on, whatever its value."""
