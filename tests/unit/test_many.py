@@ -7,13 +7,16 @@ import pytest
 
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.physics.robot import Robot, robot_from_parameters
+from ssmr_ident.physics.slots import Effects
 from ssmr_ident.session import read_parameters
 from ssmr_ident.simulate import body as bodies
 from ssmr_ident.simulate.angles import SMALL, sin_cos
+from ssmr_ident.simulate.body import AWAY, MOVING
 from ssmr_ident.simulate.many import Release, simulate_many
 from ssmr_ident.simulate.scenarios import Scenario, free_response
 from ssmr_ident.simulate.simulation import simulate
 
+SECONDS = 0.3
 NAMES = ("ax", "az", "wy")
 EFFECTS = (
     {},
@@ -37,7 +40,7 @@ def _starts(count: int) -> list[Scenario]:
     return [
         Scenario(
             "free_response",
-            0.3,
+            SECONDS,
             offset={"x": 1e-3 * a, "roll": 0.01 * b, "brace_y": 1e-3 * c, "loaded": 0.5, "unseen": 0.2},
             velocity={"z": 0.05 * a, "yaw": 0.2 * b, "sway_x": 0.1 * c},
         )
@@ -45,34 +48,40 @@ def _starts(count: int) -> list[Scenario]:
     ]
 
 
+def _release(robot: Robot, effects: Effects, scenario: Scenario) -> tuple[Release, Scenario]:
+    away = np.array([scenario.offset.get(name, 0.0) for name in AWAY])
+    return Release(robot, effects, away, np.array([scenario.velocity.get(name, 0.0) for name in MOVING])), scenario
+
+
 def test_many_releases_are_each_release_alone(robot: Robot) -> None:
     robot = robot.sliding_together()
     heavier = robot.with_changes(mass=1.1 * robot.mass)
-    asked = [Release(body, e, s) for e in EFFECTS for body in (robot, heavier) for s in _starts(2)]
-    asked.insert(5, Release(robot, TOO_HEAVY, _starts(1)[0]))
-    found = simulate_many(asked, 1000.0, 5e-4, ("ax", "ay", "az"))
-    for release, result in zip(asked, found, strict=True):
+    asked = [_release(body, e, s) for e in EFFECTS for body in (robot, heavier) for s in _starts(2)]
+    asked.insert(5, _release(robot, TOO_HEAVY, _starts(1)[0]))
+    found = simulate_many([release for release, _ in asked], SECONDS, 1000.0, 5e-4, ("ax", "ay", "az"))
+    for (release, scenario), result in zip(asked, found, strict=True):
         if release.effects is TOO_HEAVY:
             assert np.isnan(result).all()
             with pytest.raises(InputError):
                 bodies.body_of(robot, TOO_HEAVY)
             continue
-        alone = simulate(release.robot, release.scenario, 1000.0, step=5e-4, effects=release.effects)
+        alone = simulate(release.robot, scenario, 1000.0, step=5e-4, effects=release.effects)
         np.testing.assert_array_equal(result, alone.values[:, :3])
 
 
 def test_a_robot_that_leaves_the_finite_numbers_spoils_no_other(robot: Robot) -> None:
     away = robot.with_changes(damping=-1e7 * np.ones(3))
-    good, bad = Release(robot, {}, _starts(1)[0]), Release(away, {}, _starts(1)[0])
-    found = simulate_many([good, bad, good], 1000.0, 5e-4, NAMES)
+    (good, _), (bad, _) = (_release(body, {}, _starts(1)[0]) for body in (robot, away))
+    found = simulate_many([good, bad, good], SECONDS, 1000.0, 5e-4, NAMES)
     assert np.isnan(found[1]).all()
     np.testing.assert_array_equal(found[0], found[2])
-    np.testing.assert_array_equal(found[0], simulate_many([good], 1000.0, 5e-4, NAMES)[0])
+    np.testing.assert_array_equal(found[0], simulate_many([good], SECONDS, 1000.0, 5e-4, NAMES)[0])
 
 
 def test_the_loop_without_effects_is_the_loop_with_all_of_them_off(robot: Robot, monkeypatch) -> None:
     short = simulate(robot, free_response("yaw", duration=0.5), step=5e-4)
     monkeypatch.setattr(bodies, "is_plain", lambda vector: False)
+    robot = robot.with_changes()  # which no body was made of yet
     np.testing.assert_array_equal(short.values, simulate(robot, free_response("yaw", duration=0.5), step=5e-4).values)
 
 

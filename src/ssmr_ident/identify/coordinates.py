@@ -13,6 +13,7 @@ from ssmr_ident.identify.objective import Unknown
 from ssmr_ident.physics.effects import CATALOGUE
 
 Array = np.ndarray
+Split = tuple[dict[str, float], dict[str, dict[str, float]]]
 
 
 @dataclass(frozen=True)
@@ -63,7 +64,7 @@ class Model:
     def ids(self) -> tuple[str, ...]:
         return tuple(self.held)
 
-    def split(self, point: Array) -> tuple[dict[str, float], dict[str, dict[str, float]]]:
+    def split(self, point: Array) -> Split:
         """Physical values and effects at a point of scaled coordinates."""
         count = len(self.physics)
         values = {u.name: u.value(s) for u, s in zip(self.physics, point[:count], strict=True)}
@@ -71,6 +72,15 @@ class Model:
         for coordinate, s in zip(self.free, point[count:], strict=True):
             effects[coordinate.effect][coordinate.parameter.name] = coordinate.value(float(s))
         return values, effects
+
+    def with_one(self, at: Split, column: int, scaled: float) -> Split:
+        """What ``split`` gives where one coordinate is another; the rest is shared."""
+        values, effects = at
+        if column < len(self.physics):
+            unknown = self.physics[column]
+            return {**values, unknown.name: unknown.value(scaled)}, effects
+        free = self.free[column - len(self.physics)]
+        return values, {**effects, free.effect: {**effects[free.effect], free.parameter.name: free.value(scaled)}}
 
     def steps(self) -> Array:
         """Steps of one-sided differences, in scaled coordinates."""

@@ -19,9 +19,8 @@ from typing import TypeVar
 
 import numpy as np
 
-from ssmr_ident.identify.coordinates import Model
-from ssmr_ident.identify.trials.trial import Asked, Trial, Values
-from ssmr_ident.physics.slots import Effects
+from ssmr_ident.identify.coordinates import Model, Split
+from ssmr_ident.identify.trials.trial import Asked, Trial
 
 Array = np.ndarray
 T = TypeVar("T")
@@ -197,7 +196,7 @@ def differentiate(fit: JointFit, shared: bool = True) -> JointFit:
     names = [unknown.name for unknown in model.unknowns] if shared else []
     here = model.split(point)
     # robots are asked for by their values: one that has been split once is built once for all trials
-    moved = {coarse: _moved(model, point, coarse) for coarse in {trial.coarse for trial in fit.trials} if shared}
+    moved = {coarse: _moved(model, point, here, coarse) for coarse in {trial.coarse for trial in fit.trials} if shared}
 
     def one(index: int) -> Slopes:
         trial, nuisance = fit.trials[index], fit.nuisances[index]
@@ -226,15 +225,13 @@ def differentiate(fit: JointFit, shared: bool = True) -> JointFit:
     return replace(fit, slopes=tuple(over(fit.trials, one)), exact=shared)
 
 
-def _moved(model: Model, point: Array, coarse: float) -> list[tuple[float, tuple[Values, Effects]]]:
+def _moved(model: Model, point: Array, here: Split, coarse: float) -> list[tuple[float, Split]]:
     """Each coordinate's step, and what the model is after it."""
-    found: list[tuple[float, tuple[Values, Effects]]] = []
+    found = []
     for column, size in enumerate(model.steps()):
-        moved = point.copy()
         # towards the prior, so that a bound is not stepped over
-        step = coarse * (size if point[column] <= 0 else -size)
-        moved[column] += step
-        found.append((step, model.split(moved)))
+        step = float(coarse * (size if point[column] <= 0 else -size))
+        found.append((step, model.with_one(here, column, float(point[column] + step))))
     return found
 
 

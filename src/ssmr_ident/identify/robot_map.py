@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import math
 import pickle
-from collections import OrderedDict
 from collections.abc import Collection, Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -14,6 +12,7 @@ import numpy as np
 from scipy.stats import t as student
 
 from ssmr_ident.core.parameter import ParameterSet
+from ssmr_ident.core.recent import Recent
 from ssmr_ident.identify.coupled import FURTHER, body_modes
 from ssmr_ident.identify.decay_result import DecayFit, Mode
 from ssmr_ident.identify.posterior import Observation, Unknown
@@ -98,11 +97,8 @@ def set_aside(unknowns: Sequence[Unknown], motions: Collection[str]) -> tuple[Un
     return tuple(replace(u, prior_std=None) if u.name in free else u for u in unknowns)
 
 
-_MADE: OrderedDict[tuple[bytes, tuple[tuple[str, float], ...]], Robot] = OrderedDict()
-"""Robots by what they were made of: recordings of a session ask for the same ones in turn, and what is worked out of a
-robot is kept as long as itself."""
-
-_MOST_MADE = 256
+_MADE: Recent[Robot] = Recent()
+"""Recordings of a session ask for the same robots in turn, and what is worked out of a robot is kept beside it."""
 
 
 @dataclass(frozen=True)
@@ -122,14 +118,7 @@ class RobotBuilder:
         return RobotBuilder(robot_from_parameters(parameters))
 
     def __call__(self, values: Mapping[str, float]) -> Robot:
-        made = self._print, tuple(values.items())
-        robot = _MADE.get(made)
-        if robot is None:
-            robot = _MADE[made] = self._made(values)
-            if len(_MADE) > _MOST_MADE:
-                with suppress(KeyError):  # another thread may have been first
-                    _MADE.popitem(last=False)
-        return robot
+        return _MADE.of((self._print, *values.items()), lambda: self._made(values))
 
     @cached_property
     def _print(self) -> bytes:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from weakref import WeakKeyDictionary
+from functools import cached_property
 
 import numpy as np
 
 from ssmr_ident.core.kernel import kernel
+from ssmr_ident.core.recent import Recent
 from ssmr_ident.physics.effect import Site
 from ssmr_ident.physics.effects import CATALOGUE, ground_roughness
 from ssmr_ident.physics.robot import GRAVITY, Robot
@@ -18,11 +19,12 @@ from ssmr_ident.simulate import layout as k
 from ssmr_ident.simulate.mast import inverse_mass_matrix
 from ssmr_ident.simulate.scenarios import Scenario
 
-LOADED, UNSEEN = k.LOADED, k.UNSEEN
+LOADED, POINTS, UNSEEN = k.LOADED, k.POINTS, k.UNSEEN
 FLAT = np.zeros((1, 1))
 _POSE = ("x", "y", "z", "roll", "pitch", "yaw")
-_AWAY = (*_POSE, "brace_x", "brace_y", "sway_x", "sway_y", "loaded", "unseen")
-_MOVING = (*_POSE, "sway_x", "sway_y")
+AWAY = (*_POSE, "brace_x", "brace_y", "sway_x", "sway_y", "loaded", "unseen")
+MOVING = (*_POSE, "sway_x", "sway_y")
+"""Order of a scenario's ``offset`` and ``velocity`` as numbers in a row."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,13 +53,23 @@ class Body:
     beyond: bool
     read_otherwise: bool
 
+    @cached_property
+    def rest(self) -> np.ndarray:
+        """Height, roll and pitch at rest, (3,) float."""
+        return rest_pose(self.robot, float(self.e[CUBIC]))
+
+    @cached_property
+    def packed(self) -> np.ndarray:
+        """The loop's parameter vector where all wheels grip."""
+        return pack_robot(self.robot)
+
     def start(self, scenario: Scenario) -> np.ndarray:
         """Rest, displaced and pushed as the scenario says; the tires were set down unstressed at rest."""
         offset, velocity = scenario.offset, scenario.velocity
-        away = np.array([offset.get(name, 0.0) for name in _AWAY])
-        moving = np.array([velocity.get(name, 0.0) for name in _MOVING])
+        away = np.array([offset.get(name, 0.0) for name in AWAY])
+        moving = np.array([velocity.get(name, 0.0) for name in MOVING])
         out = np.zeros(k.START)
-        _let_go(self.robot.contact_points, rest_pose(self.robot, float(self.e[CUBIC])), away, moving, out)
+        let_go(self.packed, self.rest, away, moving, out)
         return out
 
 
@@ -69,7 +81,15 @@ def body_of(robot: Robot, effects: Effects) -> Body:
     InputError
         An unknown effect or parameter, or a mast heavier than the robot.
     """
-    active = checked_for_robot(effects)
+    key = robot, *((effect_id, *values.items()) for effect_id, values in effects.items())
+    return _BODIES.of(key, lambda: _body(robot, checked_for_robot(effects)))
+
+
+_BODIES: Recent[Body] = Recent()
+"""One robot is let go from many starts."""
+
+
+def _body(robot: Robot, active: Effects) -> Body:
     e = effect_vector(active)
     for effect_id, values in active.items():
         change = CATALOGUE[effect_id].acts.get(Site.ROBOT)
@@ -87,22 +107,8 @@ def _floor(active: Effects) -> np.ndarray:
     return ground_roughness.field(values["height_m"], values["length_m"], values["seed"])
 
 
-def pack_robot(robot: Robot, scenario: Scenario, release_drag: float = 0.0) -> np.ndarray:
-    """The kernel's parameter vector."""
-    known = _PACKED.get(robot)
-    p = _packed(robot) if known is None else known.copy()
-    if known is None:
-        _PACKED[robot] = p.copy()
-    p[k.RELEASE_DRAG] = release_drag
-    p[k.GRIPPING : k.GRIPPING + 4] = [float(i in scenario.wheels_gripping) for i in (1, 2, 3, 4)]
-    return p
-
-
-_PACKED: WeakKeyDictionary[Robot, np.ndarray] = WeakKeyDictionary()
-"""Of robots that are still in use: one robot is let go from many starts."""
-
-
-def _packed(robot: Robot) -> np.ndarray:
+def pack_robot(robot: Robot) -> np.ndarray:
+    """The loop's parameter vector for a robot on four wheels that grip."""
     p = np.zeros(k.PARAMETERS)
     p[k.MASS], p[k.PATCH_MASS], p[k.RADIUS] = robot.mass, robot.effective_mass, robot.radius
     p[k.KX : k.KZ + 1], p[k.DX : k.DZ + 1] = robot.stiffness, robot.damping
@@ -112,21 +118,22 @@ def _packed(robot: Robot) -> np.ndarray:
     p[k.POINTS : k.POINTS + 12] = robot.contact_points.ravel()
     p[k.INVERSE_INERTIA : k.INVERSE_INERTIA + 9] = np.linalg.inv(robot.inertia).ravel()
     p[k.INERTIA : k.INERTIA + 9] = robot.inertia.ravel()
+    p[k.GRIPPING : k.GRIPPING + 4] = 1.0
     p[k.SLIDING_SPEED] = robot.sliding_speed
     return p
 
 
 @kernel
-def _let_go(points, rest, away, moving, out):
+def let_go(p, rest, away, moving, out):
     """Fill the loop's starting state.
 
     Parameters
     ----------
-    points : (4, 3) float [m]
+    p : (PARAMETERS,) float
     rest : (3,) float
         Height, roll and pitch at rest.
     away, moving : (12,) and (8,) float
-        In the order of ``_AWAY`` and ``_MOVING``.
+        In the order of ``AWAY`` and ``MOVING``.
     out : (START,) float
         Zeros.
     """
@@ -137,20 +144,21 @@ def _let_go(points, rest, away, moving, out):
     out[4] += rest[2]
     cosine, sine = math.cos(out[5]), math.sin(out[5])
     for i in range(4):
-        set_x, set_y, set_z = _tilted(rest[1], rest[2], points[i])
-        now_x, now_y, now_z = _tilted(out[3], out[4], points[i])
+        a, b, c = p[POINTS + 3 * i], p[POINTS + 3 * i + 1], p[POINTS + 3 * i + 2]
+        set_x, set_y, set_z = _tilted(rest[1], rest[2], a, b, c)
+        now_x, now_y, now_z = _tilted(out[3], out[4], a, b, c)
         moved_x = cosine * now_x - sine * now_y + out[0] - set_x
         moved_y = sine * now_x + cosine * now_y + out[1] - set_y
-        out[14 + 2 * i] = cosine * moved_x + sine * moved_y + np.sign(points[i, 0]) * away[6]
-        out[15 + 2 * i] = cosine * moved_y - sine * moved_x + np.sign(points[i, 1]) * away[7]
+        out[14 + 2 * i] = cosine * moved_x + sine * moved_y + np.sign(a) * away[6]
+        out[15 + 2 * i] = cosine * moved_y - sine * moved_x + np.sign(b) * away[7]
         out[LOADED + 1 + i] = rest[0] + set_z - (out[2] + now_z)
     out[22], out[23], out[24], out[25] = away[8], away[9], moving[6], moving[7]
     out[LOADED], out[UNSEEN] = away[10], away[11]
 
 
 @kernel
-def _tilted(roll, pitch, point):
+def _tilted(roll, pitch, a, b, c):
     """A body vector along the heading axes."""
     cr, sr, cp, sp = math.cos(roll), math.sin(roll), math.cos(pitch), math.sin(pitch)
-    raised = sr * point[1] + cr * point[2]
-    return cp * point[0] + sp * raised, cr * point[1] - sr * point[2], cp * raised - sp * point[0]
+    raised = sr * b + cr * c
+    return cp * a + sp * raised, cr * b - sr * c, cp * raised - sp * a

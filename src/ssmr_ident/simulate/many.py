@@ -13,14 +13,13 @@ from ssmr_ident.physics.robot import Robot
 from ssmr_ident.physics.sensor import low_pass_coefficients
 from ssmr_ident.physics.slots import Effects
 from ssmr_ident.simulate import layout
-from ssmr_ident.simulate.body import Body, body_of, pack_robot
+from ssmr_ident.simulate.body import Body, body_of, let_go
 from ssmr_ident.simulate.pulling import PULLING
 from ssmr_ident.simulate.robot_kernel import run
-from ssmr_ident.simulate.scenarios import Scenario
 from ssmr_ident.simulate.sensed import sensed
 from ssmr_ident.simulate.simulation import grid
 
-_OUTPUTS = len(layout.OUTPUTS)
+_OUTPUTS, _START = len(layout.OUTPUTS), layout.START
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,21 +30,25 @@ class Release:
     ----------
     robot : Robot
     effects : mapping of effect id to mapping of parameter to value
-    scenario : Scenario
+    away, moving : (12,) and (8,) float
+        Offsets and velocities of a scenario, in the order of ``AWAY`` and ``MOVING``.
     """
 
     robot: Robot
     effects: Effects
-    scenario: Scenario
+    away: np.ndarray
+    moving: np.ndarray
 
 
-def simulate_many(releases: Sequence[Release], sample_rate: float, step: float, names: Sequence[str]) -> np.ndarray:
-    """Integrate releases of one duration; to the last bit what ``simulate`` gives of each.
+def simulate_many(
+    releases: Sequence[Release], duration: float, sample_rate: float, step: float, names: Sequence[str]
+) -> np.ndarray:
+    """Integrate releases; to the last bit what ``simulate`` gives of each.
 
     Parameters
     ----------
     releases : sequence of Release
-        Those that follow each other with the very same robot and effects share what is worked out of these.
+    duration : float [s]
     sample_rate : float [Hz]
     step : float [s]
         Upper limit of the integration step.
@@ -57,7 +60,7 @@ def simulate_many(releases: Sequence[Release], sample_rate: float, step: float, 
     (k, n, c) float
         NaN all through where a state was no longer finite, or the robot cannot have its effects.
     """
-    step, stride, samples = grid(releases[0].scenario, sample_rate, step)
+    step, stride, samples = grid(duration, sample_rate, step)
     out = np.empty((len(releases), samples, len(names)))
     kept = np.array([layout.OUTPUTS.index(name) for name in names])
     bodies = _bodies(releases)
@@ -68,27 +71,25 @@ def simulate_many(releases: Sequence[Release], sample_rate: float, step: float, 
         else:
             groups.setdefault((id(body.floor), body.beyond), []).append(index)
     for members in groups.values():
-        own = list(dict.fromkeys(body for body in (bodies[index] for index in members) if body is not None))
-        place = {body: index for index, body in enumerate(own)}
-        chosen = [(index, body) for index in members if (body := bodies[index]) is not None]
-        some = out if len(members) == len(releases) else np.empty((len(members), samples, len(names)))
+        own = list(dict.fromkeys(body for index in members if (body := bodies[index]) is not None))
+        place = {id(body): number for number, body in enumerate(own)}
         run_many(
-            np.array([pack_robot(body.robot, releases[members[0]].scenario) for body in own]),
+            np.array([body.packed for body in own]),
             np.array([body.e for body in own]),
             own[0].floor,
             np.array([body.mast for body in own]),
             np.array([low_pass_coefficients(body.robot.accelerometer.bandwidth_hz, step) for body in own]),
-            np.array([place[body] for _, body in chosen]),
-            np.array([body.start(releases[index].scenario) for index, body in chosen]),
+            np.array([body.rest for body in own]),
+            np.array([(index, place[id(bodies[index])]) for index in members]),
+            np.array([releases[index].away for index in members]),
+            np.array([releases[index].moving for index in members]),
             step,
             (samples - 1) * stride,
             stride,
             True if own[0].beyond else None,
             kept,
-            some,
+            out,
         )
-        if some is not out:
-            out[members] = some
     time = np.arange(samples) / sample_rate
     for result, body in zip(out, bodies, strict=True):
         if body is not None and body.read_otherwise:
@@ -101,41 +102,42 @@ def _bodies(releases: Sequence[Release]) -> list[Body | None]:
     found: list[Body | None] = []
     last: Release | None = None
     for release in releases:
-        if last is not None and release.robot is last.robot and release.effects is last.effects:
-            found.append(found[-1])
-            continue
-        last = release
-        try:
-            found.append(body_of(release.robot, release.effects))
-        except InputError:  # a mast heavier than the robot
-            found.append(None)
+        if last is None or release.robot is not last.robot or release.effects is not last.effects:
+            last = release
+            try:
+                body: Body | None = body_of(release.robot, release.effects)
+            except InputError:  # a mast heavier than the robot
+                body = None
+        found.append(body)
     return found
 
 
 @kernel
-def run_many(p, e, floor, mast, low_pass, which, starts, step, steps, stride, beyond, kept, out):
-    """``run`` for every start.
+def run_many(p, e, floor, mast, low_pass, rest, which, away, moving, step, steps, stride, beyond, kept, out):
+    """``run`` for every release.
 
     Parameters
     ----------
-    p, e, mast, low_pass : (m, ...) float
-        Of each body, as ``run`` takes them.
-    which : (k,) int
-        Body of each start.
-    starts : (k, START) float
+    p, e, mast, low_pass, rest : (m, ...) float
+        Of each body, as ``run`` and ``let_go`` take them.
+    which : (k, 2) int
+        Place in ``out``, and body, of each release.
+    away, moving : (k, 12) and (k, 8) float
     kept : (c,) int
         Outputs that are wanted.
-    out : (k, n, c) float
+    out : (l, n, c) float
         Filled; NaN where a state was no longer finite.
     """
     pulling, head, reference = np.zeros(PULLING), np.zeros(1), np.zeros((1, 2))
     whole = np.empty((out.shape[1], _OUTPUTS))
     for k in range(len(which)):
-        b = which[k]
+        place, b = which[k]
+        start = np.zeros(_START)
+        let_go(p[b], rest[b], away[k], moving[k], start)
         failed = run(
-            p[b], e[b], floor, mast[b], pulling, head, 1.0, reference, 1.0, starts[k], step, steps, stride,
+            p[b], e[b], floor, mast[b], pulling, head, 1.0, reference, 1.0, start, step, steps, stride,
             low_pass[b], whole, beyond,
         )  # fmt: skip
         for n in range(out.shape[1]):
             for c in range(len(kept)):
-                out[k, n, c] = whole[n, kept[c]] if failed < 0 else np.nan
+                out[place, n, c] = whole[n, kept[c]] if failed < 0 else np.nan

@@ -16,7 +16,7 @@ from ssmr_ident.physics.robot import Robot
 from ssmr_ident.physics.sensor import low_pass_coefficients
 from ssmr_ident.physics.slots import Effects
 from ssmr_ident.simulate import layout as k
-from ssmr_ident.simulate.body import body_of, pack_robot
+from ssmr_ident.simulate.body import body_of
 from ssmr_ident.simulate.pulling import (
     CABLE_D,
     CABLE_K,
@@ -111,11 +111,14 @@ def simulate(
     body = body_of(robot, effects or {})
     if step is None:
         step = choose_step(body.robot, scenario, body.e).step
-    step, stride, samples = grid(scenario, sample_rate, step)
+    step, stride, samples = grid(scenario.duration, sample_rate, step)
     out = np.empty((samples, len(k.OUTPUTS)))
     pulling = _pulling(body.robot, scenario, body.active)
+    p = body.packed.copy()
+    p[k.RELEASE_DRAG] = release_drag
+    p[k.GRIPPING : k.GRIPPING + 4] = [float(i in scenario.wheels_gripping) for i in (1, 2, 3, 4)]
     failed = run(
-        pack_robot(body.robot, scenario, release_drag),
+        p,
         body.e,
         body.floor,
         body.mast,
@@ -146,10 +149,10 @@ def simulate(
     return Simulation(time, out, k.OUTPUTS, scenario, step)
 
 
-def grid(scenario: Scenario, sample_rate: float, step: float) -> tuple[float, int, int]:
+def grid(duration: float, sample_rate: float, step: float) -> tuple[float, int, int]:
     """The step itself, steps from sample to sample, and samples, for an upper limit of the step [s]."""
     stride = max(1, math.ceil(1.0 / (sample_rate * step) - 1e-9))
-    return 1.0 / (sample_rate * stride), stride, round(scenario.duration * sample_rate)
+    return 1.0 / (sample_rate * stride), stride, round(duration * sample_rate)
 
 
 def _pulling(robot: Robot, scenario: Scenario, active: Effects) -> np.ndarray:
