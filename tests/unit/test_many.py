@@ -2,13 +2,23 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from ssmr_ident.campaign import Measurement
 from ssmr_ident.core.errors import InputError
+from ssmr_ident.core.recording import Channel, Provenance, Recording
+from ssmr_ident.identify import joint
+from ssmr_ident.identify.coordinates import Model
+from ssmr_ident.identify.joint import differentiate, evaluate
+from ssmr_ident.identify.objective import Unknown
+from ssmr_ident.identify.robot_map import RobotBuilder
+from ssmr_ident.identify.trials.decay import decay_trial
 from ssmr_ident.physics.robot import Robot, robot_from_parameters
 from ssmr_ident.physics.slots import Effects
-from ssmr_ident.session import read_parameters
+from ssmr_ident.session import Entry, read_parameters
 from ssmr_ident.simulate import body as bodies
 from ssmr_ident.simulate.angles import SMALL, sin_cos
 from ssmr_ident.simulate.body import AWAY, MOVING
@@ -89,3 +99,25 @@ def test_small_angles_by_their_series() -> None:
     for angle in np.linspace(-1.5 * SMALL, 1.5 * SMALL, 2001):
         np.testing.assert_allclose(sin_cos(angle), (np.sin(angle), np.cos(angle)), rtol=4e-16)
     assert np.isnan(sin_cos(np.nan)).all()
+
+
+def test_slopes_of_many_at_once_are_those_of_one_after_the_other(robot: Robot, monkeypatch) -> None:
+    made = simulate(robot, free_response("pitch", duration=1.5), 1000.0, step=1e-4)
+    channels = tuple(Channel(axis, made[axis], "m/s^2") for axis in ("ax", "az"))
+    recording = Recording(made.time, channels, Provenance("pitch.csv", "", "test"))
+    entry = Entry("pitch.csv", "free_response", motion="pitch")
+    trial = decay_trial(Measurement(entry, recording), RobotBuilder(robot))
+    known = (
+        Unknown("tire.stiffness_x_N_m", "N/m", float(robot.stiffness[0]), 500.0),
+        Unknown("mass_kg", "kg", 30.0, 1.0),
+    )
+    model, point = Model(known).with_effect("dry_friction", {"F_c_N": 2.0}, {})
+    point = np.concatenate([[0.1, -0.2], point])
+    nuisance = 0.1 * np.random.default_rng(5).standard_normal(len(trial.scales))
+    fits = [evaluate([one], model, point, [nuisance]) for one in (trial, replace(trial, many=None))]
+    monkeypatch.setattr(joint, "_WORKERS", 1)  # a single processor takes one trial after the other
+    together, apart = (differentiate(fit).slopes[0] for fit in fits)
+    # matrices are multiplied in another order, and differences of 1e-3 magnify that
+    np.testing.assert_allclose(together.shared, apart.shared, atol=1e-11 * np.abs(apart.shared).max())
+    np.testing.assert_allclose(together.own, apart.own, atol=1e-11 * np.abs(apart.own).max())
+    assert np.all(np.any(together.shared != 0.0, axis=0))
