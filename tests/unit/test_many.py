@@ -79,6 +79,13 @@ def test_many_releases_are_each_release_alone(robot: Robot) -> None:
         np.testing.assert_array_equal(result, alone.values[:, :3])
 
 
+def test_one_axis_of_a_turned_sensor_reads_all_three(robot: Robot) -> None:
+    release, scenario = _release(robot, {"sensor_misalignment": {"angle_x_rad": 0.1, "angle_z_rad": 0.2}}, _starts(1)[0])
+    (found,) = simulate_many([release], SECONDS, 1000.0, 5e-4, ("wy", "ay"))
+    whole = simulate(robot, scenario, 1000.0, step=5e-4, effects=release.effects)
+    assert np.array_equal(found, np.column_stack([whole["wy"], whole["ay"]]))
+
+
 def test_a_robot_that_leaves_the_finite_numbers_spoils_no_other(robot: Robot) -> None:
     away = robot.with_changes(damping=-1e7 * np.ones(3))
     (good, _), (bad, _) = (_release(body, {}, _starts(1)[0]) for body in (robot, away))

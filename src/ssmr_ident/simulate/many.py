@@ -61,9 +61,11 @@ def simulate_many(
         NaN all through where a state was no longer finite, or the robot cannot have its effects.
     """
     step, stride, samples = grid(duration, sample_rate, step)
-    out = np.empty((len(releases), samples, len(names)))
-    kept = np.array([layout.OUTPUTS.index(name) for name in names])
     bodies = _bodies(releases)
+    # one axis of a turned sensor reads all three
+    read = layout.OUTPUTS if any(body is not None and body.read_otherwise for body in bodies) else tuple(names)
+    out = np.empty((len(releases), samples, len(read)))
+    kept = np.array([layout.OUTPUTS.index(name) for name in read])
     groups: dict[tuple[int, bool], list[int]] = {}
     for index, body in enumerate(bodies):
         if body is None:
@@ -93,9 +95,9 @@ def simulate_many(
     time = np.arange(samples) / sample_rate
     for result, body in zip(out, bodies, strict=True):
         if body is not None and body.read_otherwise:
-            channels = {name: result[:, index] for index, name in enumerate(names)}
+            channels = {name: result[:, index] for index, name in enumerate(read)}
             result[:] = np.column_stack(list(sensed(time, channels, body.active).values()))
-    return out
+    return out if read == tuple(names) else out[:, :, [read.index(name) for name in names]]
 
 
 def _bodies(releases: Sequence[Release]) -> list[Body | None]:
