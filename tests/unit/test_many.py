@@ -80,7 +80,8 @@ def test_many_releases_are_each_release_alone(robot: Robot) -> None:
 
 
 def test_one_axis_of_a_turned_sensor_reads_all_three(robot: Robot) -> None:
-    release, scenario = _release(robot, {"sensor_misalignment": {"angle_x_rad": 0.1, "angle_z_rad": 0.2}}, _starts(1)[0])
+    turned = {"sensor_misalignment": {"angle_x_rad": 0.1, "angle_z_rad": 0.2}}
+    release, scenario = _release(robot, turned, _starts(1)[0])
     (found,) = simulate_many([release], SECONDS, 1000.0, 5e-4, ("wy", "ay"))
     whole = simulate(robot, scenario, 1000.0, step=5e-4, effects=release.effects)
     assert np.array_equal(found, np.column_stack([whole["wy"], whole["ay"]]))
