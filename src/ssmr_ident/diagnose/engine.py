@@ -23,8 +23,8 @@ from ssmr_ident.diagnose.accept import (
 )
 from ssmr_ident.diagnose.coupling import coupled
 from ssmr_ident.diagnose.explain import without
-from ssmr_ident.diagnose.explore import LAST, Search, best_baseline, prepared, search
-from ssmr_ident.diagnose.polish import polish, turned
+from ssmr_ident.diagnose.explore import LAST, Search, best_baseline, prepared, search, unsteady
+from ssmr_ident.diagnose.polish import calmed, polish, turned
 from ssmr_ident.diagnose.race import Progress
 from ssmr_ident.diagnose.setup import Setup
 from ssmr_ident.diagnose.weigh import TIE, Explanation, evidences
@@ -112,7 +112,10 @@ def examine(setup: Setup, parameters: ParameterSet, progress: Progress | None = 
         if not better(leader, chosen, first) or not significant(found_fit) or within_file(found_fit, parameters):
             break
         further = [name for name in leader.fit.model.ids if name not in chosen.fit.model.ids]
-        bare = explained(kept, differentiate(descend(without(leader.fit, further[-1]), LAST // 2)), leader.kept)
+        stripped = without(leader.fit, further[-1])
+        # the leader of pulls was led far, over hollows: what is without it begins where it ended, and is led as far
+        stripped = descend(calmed(stripped) if unsteady(stripped) else stripped, LAST // 2)
+        bare = explained(kept, differentiate(stripped), leader.kept)
         if bare.id == chosen.id and _cost(bare, chosen) < _cost(chosen, chosen):
             # the effect had only shown the way to a better fit without it
             tried[tried.index(chosen)], chosen = bare, bare

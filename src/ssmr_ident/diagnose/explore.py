@@ -7,9 +7,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.stats import chi2
 
 from ssmr_ident.compare.recorded import follow, radian
 from ssmr_ident.core.parameter import ParameterSet
+from ssmr_ident.diagnose.accept import CHANCE
 from ssmr_ident.diagnose.race import Progress, raced, ranked, screened, started, variants
 from ssmr_ident.diagnose.scan import Suspect, candidates, scan
 from ssmr_ident.diagnose.setup import Setup
@@ -18,6 +20,7 @@ from ssmr_ident.identify.clouds import settled
 from ssmr_ident.identify.descent import LOUD, chatters, descend
 from ssmr_ident.identify.horizons import horizons, led
 from ssmr_ident.identify.joint import JointFit, differentiate, evaluate
+from ssmr_ident.identify.swings import led_through_slides
 from ssmr_ident.identify.trials import Trial
 
 PROMISING = 6.0
@@ -29,7 +32,8 @@ CLOSE = 1.5
 still overtake another: a factor of 4.5."""
 
 WIDE = 4.0
-"""The same for the median recording when an effect has been found already."""
+"""Variance over the noise's that the median recording may be left with when an effect has been found already, or where
+what pulls leave may be swings out of step: of sessions without missing physics it was left with up to 3.5."""
 
 SCREENED, REFITTED = 8, 3
 """Effects that are refitted on the first horizons, and to the end."""
@@ -91,11 +95,26 @@ def best_baseline(
     if float(np.max(fit.parts / [t.size for t in fit.trials])) > LOUD and len(lengths) > 1:
         other = differentiate(led(fit.trials, fit.model, fit.point, lengths, LAST // 2))
         fit = min((fit, other), key=lambda f: f.cost(fit.counted))
-    if chatters(fit):
-        fit = min((fit, *from_all_sides(fit)), key=lambda f: f.cost(fit.counted))
-        other = descend(settled(fit), LAST)
-        fit = differentiate(min((fit, other), key=lambda f: f.cost(fit.counted)))
-    return fit, lengths
+    return led_out(fit) if chatters(fit) or unsteady(fit) else fit, lengths
+
+
+def led_out(fit: JointFit) -> JointFit:
+    """Pulls led out of the hollow in which a descent has left them: from all sides, through their slides, by clouds."""
+    begun = (fit, *from_all_sides(fit))
+    best = min((*begun, *(led_through_slides(f) for f in begun if unsteady(f))), key=lambda f: f.cost(fit.counted))
+    best = min((best, descend(best, LAST), descend(settled(best), LAST)), key=lambda f: f.cost(fit.counted))
+    return differentiate(best)
+
+
+def unsteady(fit: JointFit) -> bool:
+    """Whether pulls leave more than noise does by chance, and no more than swings that are out of step.
+
+    Far less than what is large: from a hollow of the baseline any effect is a way out. Where most recordings are left
+    with much more, it is no swing that is missed.
+    """
+    by_chance = [chi2.isf(CHANCE, t.size) if t.slides_from is not None else np.inf for t in fit.trials]
+    near = float(np.median(fit.parts / [t.size for t in fit.trials])) < WIDE
+    return near and bool(np.any(fit.parts > by_chance))
 
 
 def from_all_sides(fit: JointFit) -> list[JointFit]:

@@ -7,13 +7,14 @@ from dataclasses import replace
 import numpy as np
 
 from ssmr_ident.compare.recorded import follow
-from ssmr_ident.diagnose.explore import LAST, mended
+from ssmr_ident.diagnose.explore import LAST, mended, unsteady
 from ssmr_ident.diagnose.race import ranked
 from ssmr_ident.diagnose.scan import combinations
 from ssmr_ident.identify.clouds import settled
 from ssmr_ident.identify.descent import LOUD, chatters, descend
 from ssmr_ident.identify.horizons import led
 from ssmr_ident.identify.joint import JointFit, evaluate
+from ssmr_ident.identify.swings import led_through_slides
 from ssmr_ident.physics.effects import CATALOGUE
 
 FAR = 3.0
@@ -64,10 +65,10 @@ def heard(fit: JointFit) -> JointFit:
     """A fit that leaves much in some recordings, led by those alone and then on with all, where that is better.
 
     What a recording leaves is what it is measured by: those that are explained to the noise hold the fit where it is,
-    and those that are not have no say. Pulls are led by plain squares, and by clouds.
+    and those that are not have no say. Pulls are led by plain squares, through their slides, and by clouds.
     """
     if chatters(fit):
-        return ranked((fit, descend(settled(descend(fit, LAST, plain=True)), LAST)))[0]
+        return calmed(fit)
     left = fit.parts / [t.size for t in fit.trials]
     unheard = [k for k, size in enumerate(left) if size > LOUD]
     if not unheard or len(unheard) == len(left):
@@ -77,3 +78,14 @@ def heard(fit: JointFit) -> JointFit:
     own = dict(enumerate(fit.nuisances)) | dict(zip(unheard, led_by.nuisances, strict=True))
     other = descend(evaluate(fit.trials, fit.model, led_by.point, [own[k] for k in range(len(left))]), LAST)
     return ranked((fit, other))[0]
+
+
+def calmed(fit: JointFit) -> JointFit:
+    """Pulls led on by plain squares, through their slides where these may be out of step, and by clouds.
+
+    Through the slides at once: a descent over the whole of them would first find the nearest hollow.
+    """
+    begun = descend(fit, LAST, plain=True)
+    if unsteady(fit):
+        begun = min((begun, led_through_slides(fit)), key=lambda f: f.rss + f.penalty)
+    return ranked((fit, descend(settled(begun), LAST)))[0]

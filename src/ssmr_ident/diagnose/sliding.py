@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from ssmr_ident.campaign import Campaign
 from ssmr_ident.core.parameter import Estimate, ParameterSet
-from ssmr_ident.diagnose.explore import best_baseline
+from ssmr_ident.diagnose.explore import best_baseline, unsteady
+from ssmr_ident.diagnose.polish import calmed
 from ssmr_ident.diagnose.race import Progress
 from ssmr_ident.diagnose.setup import Setup, set_up
+from ssmr_ident.identify.joint import JointFit, differentiate, evaluate
 from ssmr_ident.physics.robot import SLIDING_SPEED
 
 KEY = "tire.sliding_speed_m_s"
@@ -43,10 +46,42 @@ def with_law_of_sliding(
         progress("fitting the baseline", 0, 1)
     decided = known.updated({KEY: Estimate(SLIDING_SPEED, None, "m/s", fixed=True)})
     cone = set_up(replace(campaign, parameters=decided), decided)
-    begun = [best_baseline(s.fitted, s, p) for s, p in ((relay, known), (cone, decided))]
-    fits = [fit for fit, _ in begun]
-    finite = [fit for fit in fits if np.isfinite(fit.rss)]
-    if finite and min(finite, key=lambda fit: fit.cost(finite[-1].counted)) is fits[1]:
+    found = [best_baseline(s.fitted, s, p) for s, p in ((relay, known), (cone, decided))]
+    fits = crossed([fit for fit, _ in found])
+    begun = [(fit, lengths) for fit, (_, lengths) in zip(fits, found, strict=True)]
+    if _best(fits) == 1:
         note = "contacts slide along both axes together (Coulomb's cone), which fits better than a relay on each"
         return replace(cone, notes=(*cone.notes, note), begun=begun[1]), decided
     return replace(relay, begun=begun[0]), known
+
+
+def _best(fits: Sequence[JointFit]) -> int:
+    """Which of several fits of the same recordings is the best, samples counted in that which leaves least of them
+    depending on each other."""
+    finite = [fit for fit in fits if np.isfinite(fit.rss)]
+    if not finite:
+        return 0
+    counted = max(finite, key=lambda fit: fit.independent).counted
+    return int(np.argmin([fit.cost(counted) for fit in fits]))
+
+
+def crossed(fits: Sequence[JointFit]) -> list[JointFit]:
+    """Fits under two laws of sliding, the worse one begun from where the better one ended, and the other way round
+    where it has overtaken it.
+
+    Both ask for nearly the same robot, and each has hollows of its own. A law that is left in one loses to the wrong
+    one, beside which an effect then makes up the difference.
+    """
+    found = list(fits)
+    for _ in found:
+        first = _best(found)
+        last, best = found[1 - first], found[first]
+        if not np.isfinite(best.rss) or not (unsteady(last) or unsteady(best)):
+            break
+        begun = evaluate(last.trials, last.model, best.point, best.nuisances)
+        other = differentiate(calmed(begun)) if np.isfinite(begun.rss) else last
+        if _best([last, other]) == 1:
+            found[1 - first] = other
+        if _best(found) == first:
+            break
+    return found

@@ -13,6 +13,7 @@ from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.identify.decay_record import spread
 from ssmr_ident.identify.noise import AutoregressiveNoise
 from ssmr_ident.identify.robot_map import RobotBuilder
+from ssmr_ident.identify.trials.moments import lets_go, tightening
 from ssmr_ident.identify.trials.teeth import find_teeth
 from ssmr_ident.identify.trials.trial import Array, Course, Trial, Values
 from ssmr_ident.physics.rig import Block, block_from_parameters
@@ -32,9 +33,6 @@ JOLT, SHARE = (-0.15, 0.35), 0.1
 with a jolt of some 20 N for each mm/s, which the body swings out within two periods: larger than all else that is left,
 it would hold the fit by the moment at which the slack ends. But a log that begins without slack has the cell's zero
 nowhere else."""
-
-RISE = (0.06, 0.18)
-"""Shares of a pull's largest force between which its beginning counts as a straight line."""
 
 LONGEST_BLOCK, FEWEST_BLOCKS = 0.25, 150.0
 """Seconds that are averaged into one number at the most, and numbers that a recording keeps at the least: a pull is
@@ -130,6 +128,8 @@ def pull_trial(measurement: Measurement, parameters: ParameterSet) -> Trial:
         tight = simulated(values, effects, 0.0)
         return np.array([find_slack(measured[rising], travel[rising], tight[rising]) / size])
 
+    # a block alone has nothing to swing on
+    swings = measurement.entry.experiment == "pull" and "tire.stiffness_y_N_m" in parameters
     noise = spread(averaged(measured)[:, 0] / share[:, 0]) if teeth is None else teeth.noise
     target = averaged(measured)
     return Trial(
@@ -153,6 +153,7 @@ def pull_trial(measurement: Measurement, parameters: ParameterSet) -> Trial:
         searched=True,
         quiet=teeth is not None,
         jolt=(tightened + JOLT[0], tightened + JOLT[1]),
+        slides_from=float(times[lets_go(target / share)]) if swings and teeth is None else None,
     )
 
 
@@ -241,26 +242,6 @@ def _block(nominal: Block, values: Values) -> Block:
         values.get("mu_kinetic", mu_static if nominal.mu_kinetic == nominal.mu_static else nominal.mu_kinetic),
         values.get("cable.stiffness_N_m", nominal.cable_stiffness),
     )
-
-
-def tightening(force: Array, block: int) -> int:
-    """Sample at which the cable tightens: the straight line through the first rise, back to where it began.
-
-    From the log alone: a stiffness that is not yet known would misplace it, and with it what does not count.
-    """
-    count = len(force) // block
-    smooth = force[: count * block].reshape(count, block).mean(axis=1)
-    low, high = float(smooth[0]), float(smooth.max())
-    if not high > low:
-        return 0
-    crossings = []
-    for share in RISE:
-        level = low + share * (high - low)
-        after = max(int(np.argmax(smooth > level)), 1)
-        below, above = smooth[after - 1], smooth[after]
-        crossings.append(after - (above - level) / (above - below))
-    onset = crossings[0] - (crossings[1] - crossings[0]) * RISE[0] / (RISE[1] - RISE[0])
-    return max(round(block * (onset + 0.5)), 0)
 
 
 def find_slack(force: Array, travel: Array, tight: Array) -> float:

@@ -109,6 +109,8 @@ class Trial:
         Times in which the apparatus shows more than what it tests: what is left there tells nothing missing.
     many : callable or None
         What ``run`` gives of many at once, (k, n, c), in one call that lets other threads go on.
+    slides_from : float or None [s]
+        When a robot that is pulled begins to slide as a whole; None where nothing slides, or in teeth.
     """
 
     name: str
@@ -136,6 +138,7 @@ class Trial:
     quiet: bool = False
     jolt: tuple[float, float] | None = None
     many: Callable[[Sequence[Asked]], Array] | None = None
+    slides_from: float | None = None
 
     @property
     def step(self) -> float:
