@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import math
-import pickle
-from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Collection, Hashable, Mapping, Sequence
+from dataclasses import dataclass, fields, is_dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -101,6 +100,13 @@ _MADE: Recent[Robot] = Recent()
 """Recordings of a session ask for the same robots in turn, and what is worked out of a robot is kept beside it."""
 
 
+def _by_value(thing: object) -> Hashable:
+    """What is equal for equal arrays and numbers, however often they were made."""
+    if is_dataclass(thing):
+        return tuple(_by_value(getattr(thing, field.name)) for field in fields(thing))
+    return (thing.shape, thing.tobytes()) if isinstance(thing, np.ndarray) else thing
+
+
 @dataclass(frozen=True)
 class RobotBuilder:
     """From parameter values to a robot.
@@ -121,8 +127,8 @@ class RobotBuilder:
         return _MADE.of((self._print, *values.items()), lambda: self._made(values))
 
     @cached_property
-    def _print(self) -> bytes:
-        return pickle.dumps(self.nominal)
+    def _print(self) -> Hashable:
+        return _by_value(self.nominal)
 
     def _made(self, values: Mapping[str, float]) -> Robot:
         robot = self.nominal
