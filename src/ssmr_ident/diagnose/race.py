@@ -8,11 +8,13 @@ from dataclasses import replace
 
 import numpy as np
 
+from ssmr_ident.compare.recorded import follow
 from ssmr_ident.diagnose.explain import beside, with_suspect
 from ssmr_ident.diagnose.scan import Suspect, both_ways
 from ssmr_ident.identify.descent import chatters, descend
 from ssmr_ident.identify.horizons import STEPS, led
 from ssmr_ident.identify.joint import JointFit, evaluate
+from ssmr_ident.physics.effect import Site
 from ssmr_ident.physics.effects import CATALOGUE
 
 Progress = Callable[[str, int, int], None]
@@ -107,7 +109,7 @@ def screened(
         if progress:
             progress("trying effects", index, len(groups) + 3)
         for suspect in group:
-            begun.append(descend(beside(first, suspect), HEATS[0][1]))
+            begun.append(_begun(first, suspect))
     field = begun
     second = lengths[1:2] if len(lengths) > 2 else lengths[:1]
     for heat, (kept, steps) in enumerate(HEATS[1:]):
@@ -121,6 +123,19 @@ def screened(
     if progress:
         progress("trying effects", 1, 1)
     return ranked(field)
+
+
+def _begun(first: JointFit, suspect: Suspect) -> JointFit:
+    """A probe's first step on the first horizon; where it is worse than nothing, from starts of its own as well.
+
+    Where wheels have play, the start that a release has without it lies on the other side of the gap.
+    """
+    probe = beside(first, suspect)
+    fit = descend(probe, HEATS[0][1])
+    if fit.cost(first.counted) < first.cost(first.counted) or Site.ELEMENT not in CATALOGUE[suspect.effect].acts:
+        return fit
+    anew = descend(follow(first.trials, probe.model, probe.point, first.nuisances), HEATS[0][1])
+    return ranked((fit, anew))[0] if np.isfinite(anew.rss) else fit
 
 
 def ranked(fits: Sequence[JointFit]) -> list[JointFit]:

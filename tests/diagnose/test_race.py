@@ -1,0 +1,41 @@
+"""How a probe is begun: from the starts that it finds, or from those that it needs itself."""
+
+from __future__ import annotations
+
+import pytest
+from small_rigs import Run, campaign, fitted, prepared
+
+from ssmr_ident.diagnose import race
+from ssmr_ident.diagnose.explain import beside
+from ssmr_ident.diagnose.scan import Suspect
+from ssmr_ident.identify.descent import descend
+from ssmr_ident.identify.joint import JointFit
+
+PLAY = {"gap_m": 2e-3, "rounding": 0.2}
+
+
+def _suspect(effect: str, at: dict[str, float]) -> Suspect:
+    return Suspect(effect, at, {}, {}, 0.0, None)  # type: ignore[arg-type]
+
+
+@pytest.fixture(scope="module")
+def first() -> JointFit:
+    """Releases with play, fitted without it."""
+    return fitted(prepared(campaign({"free_play": PLAY}, [Run(release=4e-3), Run(release=3e-3)], seed=4, duration=1.0)))
+
+
+def test_a_probe_that_is_worse_than_nothing_gets_starts_of_its_own(first: JointFit, monkeypatch) -> None:  # type: ignore[no-untyped-def]
+    loose, near = _suspect("free_play", {**PLAY, "gap_m": 0.02}), descend(beside(first, _suspect("free_play", PLAY)), 4)
+    assert descend(beside(first, loose), 1).cost(first.counted) > first.cost(first.counted) > near.cost(first.counted)
+    monkeypatch.setattr(race, "follow", lambda trials, model, point, nuisances: near)
+    assert race._begun(first, loose).cost(first.counted) <= near.cost(first.counted)
+
+
+def test_a_probe_that_helps_at_once_is_followed_no_further(first: JointFit, monkeypatch) -> None:  # type: ignore[no-untyped-def]
+    monkeypatch.setattr(race, "follow", lambda *_: pytest.fail("costs twenty simulations for nothing"))
+    assert race._begun(first, _suspect("free_play", {**PLAY, "gap_m": 2e-4})).cost(first.counted) < first.cost(
+        first.counted
+    )
+    # a sensor changes no motion
+    slow = _suspect("sensor_bandwidth", {"bandwidth_hz": 3.0})
+    assert race._begun(first, slow).model.ids == ("sensor_bandwidth",)
