@@ -36,6 +36,6 @@ def test_a_probe_that_helps_at_once_is_followed_no_further(first: JointFit, monk
     assert race._begun(first, _suspect("free_play", {**PLAY, "gap_m": 2e-4})).cost(first.counted) < first.cost(
         first.counted
     )
-    # a sensor changes no motion
-    slow = _suspect("sensor_bandwidth", {"bandwidth_hz": 3.0})
-    assert race._begun(first, slow).model.ids == ("sensor_bandwidth",)
+    # what holds a body as before has the starts of before
+    stiff = _suspect("nonlinear_stiffness", {"k3_N_m3": 1e12})
+    assert race._begun(first, stiff).model.ids == ("nonlinear_stiffness",)

@@ -14,7 +14,6 @@ from ssmr_ident.diagnose.scan import Suspect, both_ways
 from ssmr_ident.identify.descent import chatters, descend
 from ssmr_ident.identify.horizons import STEPS, led
 from ssmr_ident.identify.joint import JointFit, evaluate
-from ssmr_ident.physics.effect import Site
 from ssmr_ident.physics.effects import CATALOGUE
 
 Progress = Callable[[str, int, int], None]
@@ -132,7 +131,7 @@ def _begun(first: JointFit, suspect: Suspect) -> JointFit:
     """
     probe = beside(first, suspect)
     fit = descend(probe, HEATS[0][1])
-    if fit.cost(first.counted) < first.cost(first.counted) or Site.ELEMENT not in CATALOGUE[suspect.effect].acts:
+    if fit.cost(first.counted) < first.cost(first.counted) or not CATALOGUE[suspect.effect].loosens:
         return fit
     anew = descend(follow(first.trials, probe.model, probe.point, first.nuisances), HEATS[0][1])
     return ranked((fit, anew))[0] if np.isfinite(anew.rss) else fit

@@ -103,6 +103,8 @@ class Effect(Shown):
         Parameters that a small effect is proportional to, where these are not the ones that switch it off.
     sudden : bool
         Acts beyond a threshold alone, and is not proportional to anything.
+    loosens : bool
+        Takes away what holds a body near rest, so that it starts elsewhere than without the effect.
     spans : mapping of str to tuple of float
         Values of its parameters, and after ``baseline.`` factors on a parameter that a fit without the effect moves:
         every combination is simulated where sliding contacts leave so much that no single probe leads anywhere.
@@ -123,6 +125,7 @@ class Effect(Shown):
     forms: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
     grows: tuple[str, ...] = ()
     sudden: bool = False
+    loosens: bool = False
     spans: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
 
     @property

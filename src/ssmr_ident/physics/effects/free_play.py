@@ -45,4 +45,5 @@ EFFECT = Effect(
         {"gap_m": Sized(0.3, "deflection"), "rounding": 0.2},
     ),
     holds={"share_x": (1.0, 0.0)},
+    loosens=True,
 )
