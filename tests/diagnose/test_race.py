@@ -38,4 +38,6 @@ def test_a_probe_that_helps_at_once_is_followed_no_further(first: JointFit, monk
     )
     # what holds a body as before has the starts of before
     stiff = _suspect("nonlinear_stiffness", {"k3_N_m3": 1e12})
-    assert race._begun(first, stiff).model.ids == ("nonlinear_stiffness",)
+    found = race._begun(first, stiff)
+    assert found.model.ids == ("nonlinear_stiffness",)
+    assert found.cost(first.counted) > first.cost(first.counted)

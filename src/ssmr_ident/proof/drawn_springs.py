@@ -1,9 +1,9 @@
 """Effects drawn at random that act beside a spring and a damper: in a tire, or in a rig.
 
 A strength of 0 is the limit: what a refitted baseline leaves on further recordings begins to rise above what it leaves
-where nothing is hidden. 1 is plain to see, and below 0 lies what is fainter. The limits were read off the 300 cases of
-three proofs (seeds 7000, 8000, 9000). The scale of each family is its own: a deflection of half a millimetre in
-decays, a millimetre on rigs, some millimetres in pulls.
+where nothing is hidden. 1 is plain to see, and below 0 lies what is fainter. Most limits were read off the 300 cases of
+three proofs (seeds 7000, 8000, 9000; decision 11 says which). The scale of each family is its own: a deflection of half
+a millimetre in decays, a millimetre on rigs, some millimetres in pulls.
 """
 
 from __future__ import annotations
