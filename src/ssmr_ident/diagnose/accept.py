@@ -9,7 +9,7 @@ from scipy.stats import chi2
 
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.setup import BANDWIDTH, SHEET
-from ssmr_ident.diagnose.weigh import CERTAIN, Explanation, evidences
+from ssmr_ident.diagnose.weigh import CERTAIN, Explanation, asked, evidences
 from ssmr_ident.identify.descent import LOUD
 from ssmr_ident.identify.joint import JointFit
 
@@ -71,10 +71,8 @@ def relieves(leader: Explanation, before: Explanation) -> bool:
     A baseline that reaches the recordings with its contacts moved by eight deviations has said that something is
     missing, though nothing is left of it to see.
     """
-    count = len(before.fit.model.physics)
-    asked = [float(e.fit.point[:count] @ e.fit.point[:count]) for e in (before, leader)]
     worse = float(np.mean(np.log(leader.fit.parts / before.fit.parts)))
-    return asked[0] - asked[1] > 2.0 * CERTAIN and worse < float(np.log(UNHARMED))
+    return asked(before) - asked(leader) > 2.0 * CERTAIN and worse < float(np.log(UNHARMED))
 
 
 def touches(chosen: Explanation, baseline: Explanation) -> bool:

@@ -15,6 +15,7 @@ from ssmr_ident.diagnose.locate import located
 from ssmr_ident.diagnose.residual_map import residual_maps
 from ssmr_ident.diagnose.surface import surfaces
 from ssmr_ident.diagnose.weigh import Explanation, shares
+from ssmr_ident.diagnose.within import REACH, measure_of
 from ssmr_ident.diagnose.words import law, missing, nothing, readable, told, undetermined
 from ssmr_ident.diagnose.worth import grows_with_motion, overlays, predictions, reddest, without_jolts, worth
 from ssmr_ident.identify.joint import JointFit, differentiate
@@ -46,8 +47,9 @@ def assembled(outcome: Outcome, parameters: ParameterSet, everything: JointFit |
         The chosen model fitted to all recordings but the session's own held-out ones, where the tool kept some back.
     seed : int
     """
-    base, best = outcome.baseline, outcome.chosen
-    named = best is not base
+    free, best = outcome.baseline, outcome.chosen
+    named = best is not free
+    base = measure_of(best, free) if named else free
     before_fit, after_fit = predictions(base.fit), predictions(best.fit)
     before_kept, after_kept = predictions(base.kept), predictions(best.kept)
     training = worth(before_fit, after_fit, [t.name for t in base.fit.trials])
@@ -98,7 +100,7 @@ def assembled(outcome: Outcome, parameters: ParameterSet, everything: JointFit |
         before=exported(base.fit, parameters),
         after=after if named else exported(base.fit, parameters),
         summary=summary,
-        notes=(*outcome.setup.notes, *jolts, *_notes(best, heldout)),
+        notes=(*outcome.setup.notes, *jolts, *_elsewhere(free, base, conflicts), *_notes(best, heldout)),
         evidence=evidence,
     )
 
@@ -153,6 +155,19 @@ def _tried(outcome: Outcome) -> tuple[Tried, ...]:
         Tried(e.id, worth(p := predictions(e.kept), p, ()).before, float(outcome.found[e.id])) for e in outcome.tried
     ]
     return tuple(sorted(rows, key=lambda t: -t.log_evidence))
+
+
+def _elsewhere(free: Explanation, within: Explanation, conflicts: tuple[Conflict, ...]) -> tuple[str, ...]:
+    """What a baseline leaves that is not held within its priors, where the one that is shown is."""
+    if free is within:
+        return ()
+    left = worth(p := predictions(free.kept), p, ()).before
+    off = f" ({conflicts[0].parameter} {conflicts[0].sigmas:+.1f} standard deviations off)" if conflicts else ""
+    return (
+        f"the baseline shown is the best within {REACH:.0f} standard deviations of all that is known; as another "
+        f"robot{off} it leaves {left:.3g} % on recordings never fitted: what is known of the robot gives the name, not "
+        "the recordings alone",
+    )
 
 
 def _notes(best: Explanation, heldout: Worth) -> tuple[str, ...]:

@@ -54,16 +54,23 @@ class Explanation:
 
 def log_evidence(explanation: Explanation, best: Explanation) -> float:
     """Up to a constant, in units of the best one's independent samples; kept recordings count as well."""
+    return from_recordings(explanation, best) - 0.5 * asked(explanation)
+
+
+def asked(explanation: Explanation) -> float:
+    """Of the priors: squared deviations of the baseline's parameters from what is known of them, summed."""
+    return float(np.sum(explanation.fit.point[: len(explanation.fit.model.physics)] ** 2))
+
+
+def from_recordings(explanation: Explanation, best: Explanation) -> float:
+    """Log evidence but for what the priors say."""
     counted, further = best.fit.counted, best.kept.counted
-    physics = len(explanation.fit.model.physics)
-    asked = float(np.sum(explanation.fit.point[:physics] ** 2))
     parameters = len(explanation.fit.model.free) + sum(
         not any(c.effect == name for c in explanation.fit.model.free) for name in explanation.fit.model.held
     )
     return -0.5 * (
         float(counted @ np.log(explanation.fit.parts))
         + float(further @ np.log(explanation.kept.parts))
-        + asked
         + parameters * math.log(float(counted.sum() + further.sum()))
     )
 
