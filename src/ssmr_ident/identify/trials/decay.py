@@ -200,6 +200,7 @@ def _trial(whole: BodyDecay, kept: int, facts: _Facts) -> Trial:
         many=many,
         idle={**dict.fromkeys(SWAYING, ("flexible_mast",)), **dict.fromkeys(BRACE, ("wheel_lift",)), **OWN},
         even=BRACE,
+        lined=facts.basis.shape[1] > 1,
         shorten=lambda seconds: _trial(
             whole, min(kept, max(FEWEST, round(seconds / whole.step))), replace(facts, step=ROUGH_STEP)
         ),

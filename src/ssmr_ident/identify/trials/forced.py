@@ -1,4 +1,8 @@
-"""A rig under a measured force, or let go, as a trial: start, zero of the force and gain of a second sensor vary."""
+"""A rig under a measured force, or let go, as a trial: start, zero of the force and gain of a second sensor vary.
+
+A sensor's zero drifts within its sheet; what moves steadily through a recording says nothing of a spring, and would be
+taken for one that is stiffer to one side. The path of a mass that nothing holds may itself go on and on.
+"""
 
 from __future__ import annotations
 
@@ -152,7 +156,7 @@ def forced_trial(measurement: Measurement, parameters: ParameterSet) -> Trial:
             even.start + (np.arange(count) + 0.5 * (block - 1) / block) * block / rate,
             target,
             tuple(_noise(target[:, c], loose and COLUMN[name] == 0) for c, name in enumerate(outputs)),
-            np.ones((count, 1)),
+            np.vander(np.linspace(-1.0, 1.0, count), 1 if loose else 2, increasing=True),
             run,
             begin,
             nuisances,

@@ -73,7 +73,8 @@ class Trial:
     noises : tuple of AutoregressiveNoise
         Per channel.
     basis : (n, b) float
-        Columns that each channel may have a share of without saying anything of the physics: its zero, mains lines.
+        Columns that each channel may have a share of without saying anything of the physics: its zero and how that
+        drifts, mains lines.
     run : callable
         ``run(values, effects, nuisance)`` simulates the channels, (n, c).
     begin : callable
@@ -111,6 +112,8 @@ class Trial:
         What ``run`` gives of many at once, (k, n, c), in one call that lets other threads go on.
     slides_from : float or None [s]
         When a robot that is pulled begins to slide as a whole; None where nothing slides, or in teeth.
+    lined : bool
+        The basis has the mains lines already.
     """
 
     name: str
@@ -139,6 +142,7 @@ class Trial:
     jolt: tuple[float, float] | None = None
     many: Callable[[Sequence[Asked]], Array] | None = None
     slides_from: float | None = None
+    lined: bool = False
 
     @property
     def step(self) -> float:
@@ -202,7 +206,7 @@ class Trial:
         if self.shorten is None or seconds >= float(self.times[-1] - self.times[0]):
             return self
         short = self.shorten(seconds)
-        return replace(short, noises=self.noises, basis=self.basis[: len(short.times)])
+        return replace(short, noises=self.noises, basis=self.basis[: len(short.times)], lined=self.lined)
 
     def renoised(self, simulated: Array) -> Trial:
         """The same with each channel's noise taken from what a simulation leaves at its fastest: white noise shows in
@@ -217,11 +221,12 @@ class Trial:
 
     def with_lines(self, residual: Array) -> Trial:
         """The same with the mains lines that stand out of a residual, (n, c), added to the basis."""
-        lines = mains_lines(residual, self.step)
-        if not lines or self.basis.shape[1] > 1:
+        lines = () if self.lined else mains_lines(residual, self.step)
+        if not lines:
             return self
         since = self.times - self.times[0]
-        return replace(self, basis=np.hstack([self.basis, nuisance_columns(since, lines)[:, 1:]]))
+        columns = np.hstack([self.basis, nuisance_columns(since, lines)[:, 1:]])
+        return replace(self, basis=columns, lined=True)
 
     def colour(self, simulated: Array) -> Array:
         """Unwhitened residual, (n, c), its share of the basis taken out by least squares."""
