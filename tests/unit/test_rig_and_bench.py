@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
 from ssmr_ident.core.errors import InputError, SimulationError
+from ssmr_ident.identify.trials.pull import QUICK
 from ssmr_ident.physics.rig import Block, Rig
 from ssmr_ident.physics.robot import Robot, robot_from_parameters
 from ssmr_ident.session import read_parameters
@@ -123,6 +126,28 @@ def test_a_rope_adds_its_compliance_to_a_dragged_wheel(robot: Robot) -> None:
     force = drag_wheel(robot, head, 0.01, effects={"cable_compliance": {"K_cable_N_m": 6000.0}})
     tire = robot.stiffness[1]
     assert np.polyfit(head[50:], force[50:], 1)[0] == pytest.approx(6000.0 * tire / (6000.0 + tire), rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    "effects",
+    [
+        {},
+        {"dry_friction": {"F_c_N": 8.0, "element_stiffness_N_m": 1e4}},
+        {"viscoelastic_relaxation": {"K_m_N_m": 8000.0, "tau_s": 0.02}},
+        {"hysteresis": {"alpha": 0.6, "yield_m": 1e-3}},
+        {"free_play": {"gap_m": 1e-3}},
+        {"stribeck": {"kinetic_share": 0.8, "stribeck_velocity_m_s": 2e-3}},
+    ],
+    ids=lambda effects: next(iter(effects), "none"),
+)
+@pytest.mark.parametrize("damping", [0.3, 1.0])
+def test_the_long_steps_of_a_fit_say_the_same(robot: Robot, effects: dict, damping: float) -> None:
+    """A load cell's noise is some 0.5 N; where friction falls with the speed, steps are not lengthened."""
+    soft = replace(robot, damping=tuple(damping * d for d in robot.damping))
+    head = 1e-3 * np.maximum(5e-3 * np.arange(3000) - 0.5, 0.0)
+    fine, quick = (drag_wheel(soft, head, 5e-3, effects=effects, longest=s) for s in (None, QUICK))
+    assert quick == pytest.approx(fine, abs=0.2)
+    assert np.sqrt(np.mean((quick - fine) ** 2)) < 0.1
 
 
 def test_a_force_of_no_list_acts_on_a_dragged_wheel(robot: Robot) -> None:

@@ -24,12 +24,19 @@ from ssmr_ident.physics.slots import (
 from ssmr_ident.physics.tire import contact_force
 from ssmr_ident.simulate.sensed import sensed
 
-_LONGEST_STEP = 2e-4  # s; a tenth of the carcass' time constant D/K
+LONGEST_STEP = 2e-4
+"""s; a tenth of the carcass' time constant D/K."""
+
 _friction_law, _unlisted = stribeck.coefficient, unlisted.force
 
 
 def drag_wheel(
-    robot: Robot, head: np.ndarray, step: float, free_normal: bool = True, effects: Effects | None = None
+    robot: Robot,
+    head: np.ndarray,
+    step: float,
+    free_normal: bool = True,
+    effects: Effects | None = None,
+    longest: float | None = None,
 ) -> np.ndarray:
     """Lateral force on one wheel whose hub follows the machine's head (section 3.3).
 
@@ -43,6 +50,8 @@ def drag_wheel(
         Position of the head at multiples of ``step``.
     step : float [s]
     effects : mapping of effect id to parameters
+    longest : float, optional [s]
+        Of the steps inside, by default ``LONGEST_STEP``; friction that falls with the speed takes none longer.
 
     Returns
     -------
@@ -53,10 +62,12 @@ def drag_wheel(
     load = robot.mass * GRAVITY / 4.0
     grip = (robot.mu_static * load, robot.mu_kinetic * load) if free_normal else (math.inf, math.inf)
     force = np.empty(len(head))
-    substeps = max(1, math.ceil(step / _LONGEST_STEP))
+    e = effect_vector(active)
+    falling = e[KINETIC_SHARE] != 1.0 or robot.mu_kinetic != robot.mu_static
+    substeps = max(1, math.ceil(step / (LONGEST_STEP if falling or longest is None else longest)))
     cable = _cable(math.inf, active)
     tire = (robot.stiffness[1], robot.damping[1], robot.effective_mass)
-    _drag(*tire, *grip, load, cable, effect_vector(active), head - head[0], step, substeps, force)
+    _drag(*tire, *grip, load, cable, e, head - head[0], step, substeps, force)
     return _read(force, step, active)
 
 
