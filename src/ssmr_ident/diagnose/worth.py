@@ -17,7 +17,7 @@ from ssmr_ident.diagnose.evidence import Overlay
 from ssmr_ident.identify.decay_record import spread
 from ssmr_ident.identify.joint import JointFit
 from ssmr_ident.identify.trials.trial import Trial
-from ssmr_ident.signals.clean import MAINS_HZ, mains_line
+from ssmr_ident.signals.clean import MAINS_HZ, mains_line, rounding
 from ssmr_ident.signals.filters import ORDER, low_pass
 
 Array = np.ndarray
@@ -74,7 +74,7 @@ def _where(prediction: Prediction, inside: Array) -> Prediction:
 
 
 def noise_floor(prediction: Prediction) -> float:
-    """The metric that white noise and hum alone would leave, from what a prediction leaves at its fastest.
+    """The metric that white noise, rounding and hum alone would leave, from what a prediction leaves at its fastest.
 
     Second differences see white noise and hardly any motion; the noise below the metric's low-pass is taken to be as
     dense as above it. The hum passes the low-pass by its gain at the mains frequency.
@@ -86,7 +86,7 @@ def noise_floor(prediction: Prediction) -> float:
         gain = 1.0 / (1.0 + (MAINS_HZ / prediction.low_pass_hz) ** (2 * ORDER))
     scale = np.ones(measured.shape[1]) if len(set(prediction.units)) == 1 else measured.std(axis=0)
     noise = 0.0
-    for column, size in zip(rest.T, scale, strict=True):
+    for column, logged, size in zip(rest.T, prediction.measured.T, scale, strict=True):
         hum = 0.0
         if rate > 2.2 * MAINS_HZ:
             try:
@@ -96,7 +96,9 @@ def noise_floor(prediction: Prediction) -> float:
             if line is not None:
                 column = column - line.samples(len(column), rate)
                 hum = 0.5 * (gain * line.amplitude) ** 2
-        noise += (share * spread(column) ** 2 + hum) / size**2
+        # a tail that rests within one step of the converter has no differences
+        white = max(spread(column), rounding(logged))
+        noise += (share * white**2 + hum) / size**2
     signal = float(np.sum(((measured - measured.mean(axis=0)) / scale).var(axis=0)))
     return 100.0 * float(np.sqrt(noise / signal))
 

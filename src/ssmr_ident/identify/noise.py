@@ -21,10 +21,13 @@ class AutoregressiveNoise:
         Whitening filter, first coefficient 1.
     std : float
         Standard deviation of w, in the signal's unit.
+    least : float
+        What it is at the least, whatever a record shows: what its converter rounds away.
     """
 
     filter: Array
     std: float
+    least: float = 0.0
 
     @property
     def order(self) -> int:

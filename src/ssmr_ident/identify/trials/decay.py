@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -20,6 +21,7 @@ from ssmr_ident.identify.trials.trial import Array, Asked, Course, Trial, Values
 from ssmr_ident.physics.linear import COORDINATES
 from ssmr_ident.physics.robot import Robot
 from ssmr_ident.physics.slots import Effects
+from ssmr_ident.signals.clean import rounding
 from ssmr_ident.signals.metrics import LOW_PASS_HZ
 from ssmr_ident.simulate.body import AWAY, MOVING
 from ssmr_ident.simulate.many import Release, simulate_many
@@ -97,7 +99,10 @@ def decay_trial(measurement: Measurement, builder: RobotBuilder, decoupled: bool
     quiet = int((1.0 - LONGEST_QUIET) * len(decay.samples))
     rest = decay.samples - whole @ np.linalg.lstsq(whole[quiet:], decay.samples[quiet:], rcond=None)[0]
     # second differences hardly see a motion that goes on to the end; a fitted noise model would take it for noise
-    noises = tuple(AutoregressiveNoise(np.ones(1), spread(rest[quiet:, c])) for c in range(len(names)))
+    noises = tuple(
+        AutoregressiveNoise(np.ones(1), max(spread(rest[quiet:, c]), rounding(column) / math.sqrt(decay.block)))
+        for c, (_, column) in enumerate(channels)
+    )
     kept = _loud_until(rest, quiet, decay.step)
     model = PureRotation(names[0]) if decoupled else None
     basis = whole if whole.shape[1] else np.ones((len(rest), 1))

@@ -20,6 +20,7 @@ from ssmr_ident.identify.noise import AutoregressiveNoise
 from ssmr_ident.identify.trials.trial import Array, Course, Trial, Values
 from ssmr_ident.physics.rig import RIG_KEYS, Rig, rig_from_parameters
 from ssmr_ident.physics.slots import Effects
+from ssmr_ident.signals.clean import rounding
 from ssmr_ident.signals.grid import even_samples
 from ssmr_ident.signals.metrics import LOW_PASS_HZ
 from ssmr_ident.simulate.rig import band_limited, simulate_rig
@@ -155,7 +156,10 @@ def forced_trial(measurement: Measurement, parameters: ParameterSet) -> Trial:
             outputs,
             even.start + (np.arange(count) + 0.5 * (block - 1) / block) * block / rate,
             target,
-            tuple(_noise(target[:, c], loose and COLUMN[name] == 0) for c, name in enumerate(outputs)),
+            tuple(
+                _noise(target[:, c], loose and COLUMN[name] == 0, rounding(measured[:, c]) / math.sqrt(block))
+                for c, name in enumerate(outputs)
+            ),
             np.vander(np.linspace(-1.0, 1.0, count), 1 if loose else 2, increasing=True),
             run,
             begin,
@@ -178,11 +182,12 @@ def forced_trial(measurement: Measurement, parameters: ParameterSet) -> Trial:
     return assembled(whole, FINE)
 
 
-def _noise(samples: Array, loose: bool) -> AutoregressiveNoise:
+def _noise(samples: Array, loose: bool, least: float) -> AutoregressiveNoise:
     """White, or where nothing holds the mass white in its second difference: a small error of force carries a free mass
     away for good, so its path is compared by its curvature."""
     bend = np.array([1.0, -2.0, 1.0]) if loose else np.ones(1)
-    return AutoregressiveNoise(bend, spread(lfilter(bend, [1.0], samples)[len(bend) - 1 :]))
+    least *= float(np.linalg.norm(bend))
+    return AutoregressiveNoise(bend, max(spread(lfilter(bend, [1.0], samples)[len(bend) - 1 :]), least), least)
 
 
 def linear_start(trial: Trial, run, second: int | None = None) -> Array:

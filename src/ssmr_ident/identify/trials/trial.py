@@ -212,12 +212,11 @@ class Trial:
         """The same with each channel's noise taken from what a simulation leaves at its fastest: white noise shows in
         second differences, and a slow misfit hardly does."""
         rest = self.colour(simulated)
-        return self.with_noises(
-            tuple(
-                AutoregressiveNoise(noise.filter, spread(lfilter(noise.filter, [1.0], column)[noise.order :]))
-                for noise, column in zip(self.noises, rest.T, strict=True)
-            )
-        )
+        found = []
+        for noise, column in zip(self.noises, rest.T, strict=True):
+            std = spread(lfilter(noise.filter, [1.0], column)[noise.order :])
+            found.append(replace(noise, std=max(std, noise.least)))
+        return self.with_noises(tuple(found))
 
     def with_lines(self, residual: Array) -> Trial:
         """The same with the mains lines that stand out of a residual, (n, c), added to the basis."""

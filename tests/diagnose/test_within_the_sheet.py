@@ -1,4 +1,4 @@
-"""A zero that drifts within its sheet is no spring that is stiffer to one side."""
+"""What converters and sensors do within their sheets is no physics that is missing."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def drifting(effects: dict, size: float) -> Campaign:
 
 
 @pytest.mark.parametrize("size", [0.5, 2.0])
-def test_nothing_is_missing(size: float) -> None:
+def test_a_zero_that_drifts_is_no_spring_that_is_stiffer_to_one_side(size: float) -> None:
     assert diagnose(drifting({}, size)).verdict == "nothing_missing"
 
 
@@ -36,3 +36,20 @@ def test_a_spring_that_is_stiffer_to_one_side_is_found_beside_it() -> None:
     (effect,) = found.effects
     assert effect.id == "unlisted"
     assert effect.parameters["c_abs_s_N_m"].value == pytest.approx(3000.0, abs=3.0 * 120.0)
+
+
+def test_steps_of_a_converter_are_noise() -> None:
+    """Of four deviations of the noise: a tail that rests within one step shows no noise at all."""
+    made = drifting({}, 0.0)
+    changed = []
+    for measurement in made.measurements:
+        (channel,) = measurement.recording.channels
+        step = 4.0 * NOISE
+        recording = replace(
+            measurement.recording,
+            channels=(replace(channel, samples=step * np.round(channel.samples / step)),),
+        )
+        changed.append(replace(measurement, recording=recording))
+    found = diagnose(replace(made, measurements=tuple(changed)))
+    assert found.verdict == "nothing_missing"
+    assert found.heldout.before == pytest.approx(found.heldout.noise_floor, rel=0.3)
