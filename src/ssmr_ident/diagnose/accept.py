@@ -50,9 +50,7 @@ def better(leader: Explanation, before: Explanation, first: bool) -> bool:
     if not certain(leader, before):
         return False
     change = np.log(leader.kept.parts / before.kept.parts)
-    # the baseline may have fitted one recording better than its noise, at the expense of all others
-    explained = leader.kept.parts < LOUD * np.array([t.size for t in leader.kept.trials])
-    unharmed = float(np.exp(np.mean(np.where(explained, np.minimum(change, 0.0), change)))) < UNHARMED
+    unharmed = harmless(leader, before)
     if not first:
         # the loudest recordings, which show a second effect best, are never kept back
         return unharmed and mends(leader, before)
@@ -63,6 +61,14 @@ def better(leader: Explanation, before: Explanation, first: bool) -> bool:
     every = _changes(leader, before)
     most = float(np.median(every)) < np.log(STRONG) and float(np.mean(change)) < np.log(ALIKE)
     return most or (unharmed and float(np.min(every)) < np.log(STRONG))
+
+
+def harmless(leader: Explanation, before: Explanation) -> bool:
+    """Whether the recordings kept back do not speak against an explanation."""
+    change = np.log(leader.kept.parts / before.kept.parts)
+    # the baseline may have fitted one recording better than its noise, at the expense of all others
+    explained = leader.kept.parts < LOUD * np.array([t.size for t in leader.kept.trials])
+    return float(np.exp(np.mean(np.where(explained, np.minimum(change, 0.0), change)))) < UNHARMED
 
 
 def relieves(leader: Explanation, before: Explanation) -> bool:

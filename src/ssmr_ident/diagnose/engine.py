@@ -26,6 +26,7 @@ from ssmr_ident.diagnose.explain import without
 from ssmr_ident.diagnose.explore import LAST, Search, best_baseline, prepared, search, unsteady
 from ssmr_ident.diagnose.polish import calmed, polish, turned
 from ssmr_ident.diagnose.race import Progress
+from ssmr_ident.diagnose.rotate import shown_in_turn
 from ssmr_ident.diagnose.setup import Setup
 from ssmr_ident.diagnose.weigh import TIE, Explanation, evidences
 from ssmr_ident.identify.descent import descend
@@ -104,12 +105,12 @@ def examine(setup: Setup, parameters: ParameterSet, progress: Progress | None = 
         found_fit = differentiate(leader.fit)
         first = chosen is baseline
         others = [e for e in new if e is not leader]
-        if first and others and better(leader, chosen, first) and not significant(found_fit):
+        if first and others and _good(leader, chosen, first) and not significant(found_fit):
             # a law whose size the recordings do not give stands in for another
             leader = _at_its_best(leading(chosen, others), new, kept, lengths)
             found_fit = differentiate(leader.fit)
         tried = _with(tried, new)
-        if not better(leader, chosen, first) or not significant(found_fit) or within_file(found_fit, parameters):
+        if not _good(leader, chosen, first) or not significant(found_fit) or within_file(found_fit, parameters):
             break
         further = [name for name in leader.fit.model.ids if name not in chosen.fit.model.ids]
         stripped = without(leader.fit, further[-1])
@@ -120,7 +121,7 @@ def examine(setup: Setup, parameters: ParameterSet, progress: Progress | None = 
             # the effect had only shown the way to a better fit without it
             tried[tried.index(chosen)], chosen = bare, bare
             baseline = bare if first else baseline
-            if not better(leader, bare, first):
+            if not _good(leader, bare, first):
                 continue
         chosen = replace(leader, fit=found_fit)
         tried[tried.index(leader)] = chosen
@@ -136,6 +137,10 @@ def examine(setup: Setup, parameters: ParameterSet, progress: Progress | None = 
         key=lambda e: -found[e.id],
     )
     return Outcome(setup, baseline, tuple(tried), chosen, tuple(rivals), found, tuple(searches))
+
+
+def _good(leader: Explanation, before: Explanation, first: bool) -> bool:
+    return better(leader, before, first) or (first and shown_in_turn(leader, before))
 
 
 def explained(kept: Sequence[Trial], fit: JointFit, near: JointFit | None = None) -> Explanation:

@@ -8,7 +8,7 @@ import numpy as np
 
 from ssmr_ident.compare.recorded import follow
 from ssmr_ident.diagnose.explore import LAST, mended, unsteady
-from ssmr_ident.diagnose.race import ranked
+from ssmr_ident.diagnose.race import FAR, ranked
 from ssmr_ident.diagnose.scan import combinations
 from ssmr_ident.identify.clouds import settled
 from ssmr_ident.identify.descent import LOUD, chatters, descend
@@ -16,9 +16,6 @@ from ssmr_ident.identify.horizons import led
 from ssmr_ident.identify.joint import JointFit, evaluate
 from ssmr_ident.identify.swings import led_through_slides
 from ssmr_ident.physics.effects import CATALOGUE
-
-FAR = 3.0
-"""Prior standard deviations by which a parameter may have moved beside an effect before the fit is begun again."""
 
 
 def turned(fit: JointFit, lengths: tuple[float, ...]) -> JointFit:

@@ -1,0 +1,44 @@
+"""An effect that no recording kept back shows, shown by one that was fitted: kept back in its turn."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.stats import chi2
+
+from ssmr_ident.compare.recorded import follow
+from ssmr_ident.diagnose.accept import CHANCE, certain, harmless
+from ssmr_ident.diagnose.weigh import Explanation
+from ssmr_ident.identify.descent import descend
+from ssmr_ident.identify.joint import JointFit, evaluate
+
+FEWEST = 3
+"""Recordings from which one can be spared."""
+
+STEPS = 8
+"""Gauss-Newton steps without it, from where the fit with it ended."""
+
+
+def shown_in_turn(leader: Explanation, before: Explanation) -> bool:
+    """Whether the fitted recording that gains most from an effect gains as well when it is not fitted.
+
+    The loudest recordings are never kept back, and show most of what is missing. Both models are fitted without that
+    one and then predict it; its n ln(RSS) must fall by more than that of a recording that was kept back from the start.
+    What was kept back must not speak against the effect.
+    """
+    trials = leader.fit.trials
+    if len(trials) < FEWEST or not certain(leader, before) or not harmless(leader, before):
+        return False
+    gain = leader.fit.counted * np.log(before.fit.parts / leader.fit.parts)
+    spared = int(np.argmax(gain))
+    left = [_without(e.fit, spared) for e in (before, leader)]
+    change = float(np.log(left[1] / left[0]))
+    return -float(leader.fit.counted[spared]) * change > chi2.isf(CHANCE, 1)
+
+
+def _without(fit: JointFit, spared: int) -> float:
+    """What a model that is fitted to all recordings but one leaves in that one."""
+    others = [k for k in range(len(fit.trials)) if k != spared]
+    few = evaluate([fit.trials[k] for k in others], fit.model, fit.point, [fit.nuisances[k] for k in others])
+    refitted = descend(few, STEPS)
+    followed = follow([fit.trials[spared]], fit.model, refitted.point, [fit.nuisances[spared]], refitted)
+    return float(followed.parts[0])
