@@ -33,6 +33,9 @@ def test_a_centre_of_mass_is_off_beyond_what_the_file_leaves_open(offset: float,
     model, begin = Model((shift,)).with_effect("com_offset", at, {"offset_x_m": 0.01, "offset_y_m": 0.01})
     fit = JointFit((), model, np.concatenate([[0.0], begin]), (), (), ())
     assert within_file(fit, ParameterSet("robot", {})) is within
+    # the same place, half of it by contacts that are elsewhere
+    shared = JointFit((), model, np.array([-0.5 * offset / 0.003, 0.0, begin[1] / 2.0]), (), (), ())
+    assert within_file(shared, ParameterSet("robot", {})) is within
 
 
 @pytest.mark.parametrize(("bent", "left", "relieved"), [(6.0, 1.0, True), (3.0, 1.0, False), (6.0, 1.2, False)])

@@ -152,11 +152,13 @@ def within_file(fit: JointFit, parameters: ParameterSet) -> bool:
     Sheets are never good to a few percent. Where contacts and centre of mass are is one question, and the baseline has
     an answer of its own with the file's deviation.
     """
-    _, effects = fit.model.split(fit.point)
+    values, effects = fit.model.split(fit.point)
     if "com_offset" in effects:
+        # what the contacts are moved by beside it adds to it
         stds = {u.name: u.prior_spread for u in fit.model.physics}
-        away = [effects["com_offset"][f"offset_{x}_m"] / stds.get(f"contact_shift_{x}_m", np.inf) for x in "xy"]
-        known = any(f"contact_shift_{x}_m" in stds for x in "xy")
+        own = [(effects["com_offset"][f"offset_{x}_m"], f"contact_shift_{x}_m") for x in "xy"]
+        away = [(offset - values.get(name, 0.0)) / stds.get(name, np.inf) for offset, name in own]
+        known = any(name in stds for _, name in own)
         if known and float(np.sum(np.square(away))) < chi2.isf(CHANCE, 2):
             return True
     if "sensor_bandwidth" not in effects:

@@ -73,10 +73,22 @@ def _effects(fit: JointFit, effects: dict[str, dict[str, float]], stds: np.ndarr
     for index, coordinate in enumerate(fit.model.free):
         name, unknown = coordinate.parameter.name, coordinate.unknown
         value = effects[coordinate.effect][name]
-        spread = unknown.std(float(fit.point[count + index]), float(stds[count + index]))
+        spread = max(unknown.std(float(fit.point[count + index]), float(stds[count + index])), _place(fit, name))
         bound = value in (coordinate.parameter.lower, coordinate.parameter.upper)
         found[coordinate.effect][name] = Estimate(value, spread, unknown.unit, SOURCE, at_bound=bound)
     return found
+
+
+def _place(fit: JointFit, parameter: str) -> float:
+    """What an offset of the centre of mass cannot be known better than: contacts and sensor, as far as they are known.
+
+    Of contacts alone the recordings tell the sum of both. Slopes across contacts that let go are too rough to say so.
+    """
+    if not parameter.startswith("offset_"):
+        return 0.0
+    names = f"contact_shift_{parameter[7:]}", f"accelerometer.position_m.{parameter[7:-2]}"
+    known = [u.prior_spread for u in fit.model.physics if u.name in names and u.prior_std is not None]
+    return float(1.0 / np.sqrt(np.sum(1.0 / np.square(known)))) if known else 0.0
 
 
 def _prior(old: Estimate) -> str:

@@ -41,12 +41,37 @@ def loud(fit: JointFit) -> bool:
 def polish(fit: JointFit, lengths: tuple[float, ...]) -> JointFit:
     """An explanation led to its best: on from where it stands, and where that is far from what is known or leaves more
     than noise, once more from what is known."""
-    further = mended(descend(fit, LAST))
+    further = gathered(mended(descend(gathered(fit), LAST)))
     physics = len(further.model.physics)
     further = heard(further)
     if len(lengths) == 1 or not (loud(further) or float(np.max(np.abs(further.point[:physics]), initial=0.0)) > FAR):
         return further
     return min((anew(further, lengths), further), key=lambda f: f.cost(further.counted))
+
+
+def gathered(fit: JointFit) -> JointFit:
+    """The same robot, with all that its centre of mass is off by in the offset that has no prior.
+
+    Contacts and sensor that the baseline had moved against what is known, and an offset, add up to one place. The
+    recordings know only that, and a descent does not go along a valley so flat.
+    """
+    if "com_offset" not in fit.model.held:
+        return fit
+    columns = {unknown.name: (k, unknown) for k, unknown in enumerate(fit.model.unknowns)}
+    best = fit
+    for moved in (("com_offset.offset_{}_m", "accelerometer.position_m.{}"), ("com_offset.offset_{}_m",)):
+        point = fit.point.copy()
+        for axis in "xy":
+            own = columns.get(f"contact_shift_{axis}_m")
+            if own is None:
+                continue
+            shift = own[1].value(float(fit.point[own[0]]))
+            others = [columns[n.format(axis)] for n in moved if n.format(axis) in columns]
+            for k, unknown in (own, *others):
+                point[k] = unknown.scaled(unknown.value(float(fit.point[k])) - shift)
+        other = evaluate(fit.trials, fit.model, point, fit.nuisances, fit.slopes)
+        best = min((best, other), key=lambda f: f.cost(fit.counted))
+    return best
 
 
 def anew(fit: JointFit, lengths: tuple[float, ...]) -> JointFit:

@@ -1,0 +1,56 @@
+"""One place of the centre of mass, however it is split between contacts, sensor and offset."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from made_pulls import made_pulls
+
+from ssmr_ident.core.parameter import ParameterSet
+from ssmr_ident.diagnose.exported import exported
+from ssmr_ident.diagnose.polish import gathered
+from ssmr_ident.diagnose.setup import Setup
+from ssmr_ident.identify.joint import JointFit, differentiate, evaluate
+
+PULLS = [("lateral", 2.0, 0.008), ("longitudinal", 2.0, 0.008)]
+
+
+@pytest.fixture(scope="module")
+def pulled() -> tuple[Setup, ParameterSet]:
+    return made_pulls(PULLS, {}, 3)
+
+
+def split(setup: Setup, shift: float, offset: float) -> JointFit:
+    """Contacts 2 deviations from the file, and an offset beside them."""
+    at = {"offset_x_m": offset, "offset_y_m": 0.004}
+    model, begin = setup.model.with_effect("com_offset", at, {"offset_x_m": 0.01, "offset_y_m": 0.01})
+    point = np.concatenate([np.zeros(len(setup.model.physics)), begin])
+    names = [u.name for u in model.physics]
+    point[names.index("contact_shift_x_m")] = shift
+    values, effects = model.split(point)
+    trials = (*setup.fitted, *setup.kept)
+    return evaluate(trials, model, point, [t.begin(values, effects) for t in trials])
+
+
+def test_it_is_the_same_robot_at_less_cost(pulled: tuple[Setup, ParameterSet]) -> None:
+    setup, _ = pulled
+    fit = split(setup, -2.0, 0.01)
+    found = gathered(fit)
+    for before, after in zip(fit.simulated, found.simulated, strict=True):
+        assert after == pytest.approx(before, abs=1e-9)
+    values, effects = found.model.split(found.point)
+    moved = fit.model.split(fit.point)[0]["contact_shift_x_m"]
+    assert moved != 0.0
+    assert values["contact_shift_x_m"] == 0.0
+    assert effects["com_offset"]["offset_x_m"] == pytest.approx(0.01 - moved)
+    # two deviations of the contacts against a third of one of an offset that is loosely held
+    assert found.cost(fit.counted) < fit.cost(fit.counted) - 3.0
+    assert gathered(found) is found
+
+
+def test_it_is_known_no_better_than_the_contacts(pulled: tuple[Setup, ParameterSet]) -> None:
+    setup, known = pulled
+    fit = differentiate(split(setup, 0.0, 0.01))
+    std = exported(fit, known).effects["com_offset"]["offset_x_m"].std
+    assert std is not None
+    assert std >= known["contact_points_m"].std / np.sqrt(2.0)
