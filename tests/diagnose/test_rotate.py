@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import pytest
 from small_rigs import Run, campaign
 
@@ -50,3 +52,9 @@ def test_what_one_recording_alone_has_is_not_shown_by_it(monkeypatch: pytest.Mon
     diagnose(campaign({"nonlinear_stiffness": {"k3_N_m3": 5e5}}, runs, seed=3, duration=4.0))
     assert asked
     assert not any(asked)
+
+
+def test_no_pull_is_kept_back_in_its_turn() -> None:
+    """Where contacts slide, two simulators differ by more than small effects do."""
+    sliding = SimpleNamespace(fit=SimpleNamespace(trials=(SimpleNamespace(searched=True),) * 4))
+    assert not shown_in_turn(sliding, sliding)  # type: ignore[arg-type]
