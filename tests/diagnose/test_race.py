@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 from small_rigs import Run, campaign, fitted, prepared
 
@@ -9,7 +10,7 @@ from ssmr_ident.diagnose import race
 from ssmr_ident.diagnose.explain import beside
 from ssmr_ident.diagnose.scan import Suspect
 from ssmr_ident.identify.descent import descend
-from ssmr_ident.identify.joint import JointFit
+from ssmr_ident.identify.joint import JointFit, evaluate
 
 PLAY = {"gap_m": 2e-3, "rounding": 0.2}
 
@@ -41,3 +42,14 @@ def test_a_probe_that_helps_at_once_is_followed_no_further(first: JointFit, monk
     found = race._begun(first, stiff)
     assert found.model.ids == ("nonlinear_stiffness",)
     assert found.cost(first.counted) > first.cost(first.counted)
+
+
+def test_a_baseline_that_has_left_what_is_known_is_begun_from_there_as_well() -> None:
+    """A rig without anything missing: from the file its fit comes back, wherever it stood."""
+    fit = fitted(prepared(campaign({}, [Run(release=4e-3), Run(release=3e-3)], seed=4, duration=1.0)))
+    assert race._from_what_is_known(fit) is None
+    bent = evaluate(fit.trials, fit.model, np.full(len(fit.point), 1.5 * race.FAR), fit.nuisances)
+    found = race._from_what_is_known(bent)
+    assert found is not None
+    assert np.max(np.abs(found.point)) < 1.0
+    assert found.rss < 1.5 * fit.rss < 0.1 * bent.rss

@@ -105,12 +105,14 @@ def examine(setup: Setup, parameters: ParameterSet, progress: Progress | None = 
         found_fit = differentiate(leader.fit)
         first = chosen is baseline
         others = [e for e in new if e is not leader]
-        if first and others and _good(leader, chosen, first) and not significant(found_fit):
+        good = _good(leader, chosen, first)
+        if first and others and good and not significant(found_fit):
             # a law whose size the recordings do not give stands in for another
             leader = _at_its_best(leading(chosen, others), new, kept, lengths)
             found_fit = differentiate(leader.fit)
+            good = _good(leader, chosen, first)
         tried = _with(tried, new)
-        if not _good(leader, chosen, first) or not significant(found_fit) or within_file(found_fit, parameters):
+        if not good or not significant(found_fit) or within_file(found_fit, parameters):
             break
         further = [name for name in leader.fit.model.ids if name not in chosen.fit.model.ids]
         stripped = without(leader.fit, further[-1])
