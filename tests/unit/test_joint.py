@@ -155,3 +155,11 @@ def test_a_value_with_a_reach_never_leaves_it_and_is_the_plain_one_near_its_prio
         assert held.slope(scaled) == pytest.approx(slope, rel=1e-4, abs=1e-7)
         if abs(scaled) <= 1.0:
             assert within == pytest.approx(scaled, rel=0.004)
+
+
+def test_what_is_white_in_its_second_difference_is_infinitely_dense_at_rest() -> None:
+    noise = AutoregressiveNoise(np.array([1.0, -2.0, 1.0]), 2.0)
+    density = noise.density(np.array([0.0, 50.0]), 0.01)
+    assert np.isinf(density[0])
+    # at half the sampling rate the second difference is four times the sample
+    assert density[1] == pytest.approx(2.0 * 0.01 * 4.0 / 16.0)

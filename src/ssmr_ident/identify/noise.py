@@ -56,7 +56,8 @@ class AutoregressiveNoise:
     def density(self, frequency: Array, step: float) -> Array:
         """One-sided power spectral density at frequencies [Hz], (n,) float [unit²/Hz]."""
         response = np.abs(self.gain(2j * np.pi * np.asarray(frequency), step)) ** 2
-        return 2.0 * step * self.std**2 / response
+        with np.errstate(divide="ignore"):  # what is white in its differences is infinitely dense where nothing changes
+            return np.asarray(2.0 * step * self.std**2 / response)
 
 
 def fit_noise(samples: Array, largest_order: int = 24, spent: int = 0) -> AutoregressiveNoise:
