@@ -14,6 +14,7 @@ from bank.robot_plant import run_robot
 from bank.robots import draw_robot, true_values
 from bank.truth import BankSession, Made, Truth, recording
 from ssmr_ident.campaign import Campaign
+from ssmr_ident.core.errors import SimulationError
 from ssmr_ident.physics.linear import COORDINATES, linear_robot
 from ssmr_ident.physics.robot import GRAVITY, Robot
 from ssmr_ident.session import Entry, Session
@@ -50,7 +51,7 @@ def _decays(kind: str, seed: int, effect: str | None, size: float | None, short:
     if "wheel_lift" in left.effects:
         lifted = 1.05 * (1.8 / 1.05) ** size
     starts = [release(robot, motion, random, lifted) for motion, _, _ in plan]
-    runs = [_run(robot, start, seconds, rate, left, slides=lifted is not None) for start in starts]
+    left, runs = _standing(robot, starts, seconds, rate, left, slides=lifted is not None)
     if "sensor_saturation" in left.effects:
         # az carries gravity: what clips is what goes beyond it
         share = left.effects["sensor_saturation"]["share_of_peak"]
@@ -79,6 +80,18 @@ def _decays(kind: str, seed: int, effect: str | None, size: float | None, short:
         {one.entry.file: one.noise_floor for one in made},
     )
     return BankSession("decays" if baseline == "rigid6" else "decoupled", kind, seed, size, campaign, truth)
+
+
+def _standing(
+    robot: Robot, starts: list[np.ndarray], seconds: float, rate: float, left: Left, slides: bool
+) -> tuple[Left, list[np.ndarray]]:
+    """The runs, with half of the softening as long as the robot falls over: that makes no recording."""
+    while True:
+        try:
+            return left, [_run(robot, start, seconds, rate, left, slides) for start in starts]
+        except SimulationError:
+            k3 = left.effects["nonlinear_stiffness"]["k3_N_m3"]
+            left = replace(left, effects={**left.effects, "nonlinear_stiffness": {"k3_N_m3": 0.5 * k3}})
 
 
 def choose(

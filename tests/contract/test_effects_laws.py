@@ -385,6 +385,22 @@ def test_belts_are_in_series_with_the_tires_they_drive(robot: Robot) -> None:
     assert 1 / soft - 1 / stiff == pytest.approx(1 / (2 * belt), rel=0.03)
 
 
+@law("motor_belt")
+def test_a_robot_is_let_go_with_belts_and_tires_in_equilibrium(robot: Robot) -> None:
+    """As on tires that are softer by the series of both, with no ringing of the rims."""
+    belt, kx = 3e4, float(robot.stiffness[0])
+    share = belt / (belt + 2 * kx)  # of a slow strain, the tire's
+    damping = share**2 * robot.damping[0] + (1 - share) ** 2 * 5.0 / 2
+    soft = robot.with_changes(
+        stiffness=np.array([kx * share, *robot.stiffness[1:]]), damping=np.array([damping, *robot.damping[1:]])
+    )
+    belts = {"motor_belt": {"K_b_N_m": belt, "D_b_N_s_m": 5.0, "rim_mass_kg": 0.1}}
+    let_go = Scenario("free_response", 1.0, offset={"x": 1e-3}, velocity={"x": 0.02})
+    made, series = simulate(robot, let_go, 1000.0, effects=belts), simulate(soft, let_go, 1000.0)
+    away = np.std(made["ax"] - series["ax"]) / np.std(series["ax"])
+    assert away < 0.04  # the rims' own mass is 0.6 % of the robot's
+
+
 @law("stribeck")
 def test_steady_sliding_costs_what_the_stribeck_curve_says(robot: Robot) -> None:
     """A light contact slides steadily where friction falls by less than D over speed, else it sticks and slips."""

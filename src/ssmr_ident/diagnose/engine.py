@@ -86,7 +86,7 @@ def examine(setup: Setup, parameters: ParameterSet, progress: Progress | None = 
             result = Search(fit, (), tuple(e.fit for e in new), lengths)
         else:
             result = search(chosen.fit, setup.campaign.session.baseline, lengths, chosen is not baseline, progress)
-            new = [explained(kept, f, chosen.kept) for f in result.tried]
+            new = _all_explained(kept, result.tried, chosen.kept)
         searches.append(result)
         if not new:
             break
@@ -98,7 +98,7 @@ def examine(setup: Setup, parameters: ParameterSet, progress: Progress | None = 
         if chosen is not baseline and not setup.decoupled and mends(leader, chosen):
             # the first effect may have stood in for two
             partners = _partners(leader, kept, setup.campaign.session.baseline, lengths, progress)
-            singles.append(partners[0])
+            singles += partners[:1]
             new = _each_set_once([*new, *partners])
             other = leading(chosen, new)
             leader = leader if other is leader else _at_its_best(other, new, kept, lengths)
@@ -153,6 +153,15 @@ def explained(kept: Sequence[Trial], fit: JointFit, near: JointFit | None = None
     return Explanation(fit, follow(kept, fit.model, fit.point, None if near is None else near.nuisances, fit))
 
 
+def _all_explained(kept: Sequence[Trial], fits: Sequence[JointFit], near: JointFit) -> list[Explanation]:
+    """Fits as explanations, but for those that make no robot of the recordings kept back."""
+    return [e for e in (explained(kept, fit, near) for fit in fits) if _followable(e)]
+
+
+def _followable(explanation: Explanation) -> bool:
+    return bool(np.all(np.isfinite(explanation.kept.parts)))
+
+
 def informed(setup: Setup, parameters: ParameterSet) -> Setup:
     """A setup whose baseline knows what its calibration recordings tell."""
     if not setup.calibration:
@@ -190,7 +199,7 @@ def _at_its_best(
 ) -> Explanation:
     """The leader led on, which takes its place where that is better."""
     further = explained(kept, turned(polish(leader.fit, lengths), lengths), leader.kept)
-    if further.fit.cost(further.fit.counted) < leader.fit.cost(further.fit.counted):
+    if _followable(further) and further.fit.cost(further.fit.counted) < leader.fit.cost(further.fit.counted):
         new[new.index(leader)], leader = further, further
     return leader
 
@@ -201,7 +210,7 @@ def _partners(
     """The second effect of a pair by itself, and beside all others."""
     alone = differentiate(polish(without(pair.fit, pair.fit.model.ids[0]), lengths))
     found = search(alone, baseline, lengths, True, progress)
-    return [explained(kept, f, pair.kept) for f in (alone, *found.tried)]
+    return _all_explained(kept, (alone, *found.tried), pair.kept)
 
 
 def _backward(

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ssmr_ident.core.errors import InputError
-from ssmr_ident.identify.decay_start import mains_frequency, nuisance_columns
+from ssmr_ident.identify.decay_start import nuisance_columns
+from ssmr_ident.identify.mains import mains_lines
 from ssmr_ident.identify.noise import AutoregressiveNoise, fit_noise
 from ssmr_ident.identify.poles import Block, PoleFit, modelled
 from ssmr_ident.identify.release import find_release
@@ -50,13 +51,7 @@ def prepare(time: Array, samples: Array, start_s: float | None, mains_hz: float 
     uneven = float(np.max(np.abs(time - time[0] - step * np.arange(len(time))))) / step
     if uneven > 1.0:
         raise InputError(where, f"the time grid is uneven by {uneven:.1f} samples", "Resample it, or cut out the gap.")
-    lines: tuple[float, ...] = ()
-    if mains_hz is not None:
-        found = mains_frequency(samples[len(samples) // 3 :], step, mains_hz)
-        lines = () if found is None else (found,)
-    if lines and lines[0] * 2 < 0.45 / step:
-        harmonic = mains_frequency(samples[len(samples) // 3 :], step, 2 * lines[0])
-        lines += () if harmonic is None else (2 * lines[0],)
+    lines = () if mains_hz is None else mains_lines(samples[len(samples) // 3 :], step, mains_hz)
     start = find_release(samples, step, lines) if start_s is None else int(np.searchsorted(time, start_s - step / 2))
     if len(time) - start < 64:
         raise InputError(where, f"only {len(time) - start} samples follow the start of the decay", "Log for longer.")

@@ -9,9 +9,6 @@ from scipy.linalg import hankel
 
 Array = np.ndarray
 
-MAINS_SPREAD_HZ = 0.3
-"""How far from its nominal frequency a mains line is sought; grids hold ±0.05 Hz, a logger's clock ±1e-3."""
-
 
 def spectral_poles(samples: Array, step: float, modes: int, width: int, low_hz: float = 0.0) -> Array:
     """Poles of the highest spectral peak by a rational fit to the bins around it, (modes,) complex [1/s].
@@ -90,45 +87,6 @@ def matrix_pencil(samples: Array, step: float, modes: int, pencil: int | None = 
     # The right singular vectors span conjugated exponentials as well, so the sign of ω is free.
     poles = poles[poles.imag > 0]
     return poles[np.argsort(-np.abs(poles.imag))][:modes]
-
-
-def mains_frequency(samples: Array, step: float, nominal: float = 60.0) -> float | None:
-    """Frequency of the mains line [Hz], or None where no line stands above the noise around it.
-
-    Parameters
-    ----------
-    samples : (n, c) float
-        A stretch without transients is best; the line's own frequency is refined to a fraction of a bin.
-    step : float [s]
-    nominal : float [Hz]
-    """
-    count = len(samples)
-    if count * step < 0.25 or nominal + 2 > 0.45 / step:
-        return None
-    taper = np.hanning(count)[:, None]
-    centred = (samples - samples.mean(axis=0)) * taper
-    times = step * (np.arange(count) - count / 2)
-
-    def power(frequency: float) -> float:
-        return float(np.sum(np.abs(np.exp(-2j * np.pi * frequency * times) @ centred) ** 2))
-
-    resolution = 1.0 / (count * step)
-    around = [power(nominal + sign * offset * resolution) for sign in (-1, 1) for offset in (4.5, 6.5, 8.5)]
-    # Bins of noise are exponential in power; their median is 0.69 of the mean, and 12 means are passed by
-    # chance once in 160 000.
-    if power(nominal) < 12 * np.median(around) / 0.69:
-        return None
-    low, high = nominal - MAINS_SPREAD_HZ, nominal + MAINS_SPREAD_HZ
-    grid = np.linspace(low, high, max(7, math.ceil((high - low) / (0.5 * resolution))))
-    best = float(grid[int(np.argmax([power(f) for f in grid]))])
-    width = min(0.25 * resolution, MAINS_SPREAD_HZ / 4)
-    for _ in range(25):
-        left, middle, right = power(best - width), power(best), power(best + width)
-        curvature = left - 2 * middle + right
-        if curvature < 0:
-            best += float(np.clip(0.5 * (left - right) / curvature, -1, 1)) * width
-        width *= 0.5
-    return best
 
 
 def nuisance_columns(times: Array, lines_hz: tuple[float, ...]) -> Array:

@@ -41,6 +41,7 @@ from ssmr_ident.physics.slots import (
 )
 from ssmr_ident.physics.tire import combined_share, contact_force, grip_shares, sliding_force, weakened
 from ssmr_ident.simulate.angles import sin_cos
+from ssmr_ident.simulate.belts import take_up
 from ssmr_ident.simulate.floor import contact_speed, floor_height, rough_height
 from ssmr_ident.simulate.layout import (
     DX,
@@ -164,6 +165,9 @@ def run(
     deflection = np.empty((4, 2))
     for i in range(4):
         deflection[i, 0], deflection[i, 1] = start[14 + 2 * i], start[15 + 2 * i]
+    belt, belt_rate, belt_pull = np.zeros(2), np.zeros(2), np.zeros(2)
+    if stretching:
+        take_up(p, e[BELT_STIFFNESS], start, deflection, belt, belt_rate)
     contact, slip = np.zeros((4, 2)), np.zeros((4, 2))  # velocities of contact points, and of hubs over them
     sliding = np.zeros((4, 2), dtype=np.bool_)
     hidden = np.zeros((12, STATES))  # of x, y, z of the first wheel, then of the next
@@ -178,7 +182,6 @@ def run(
             pressed = start[LOADED + 1 + i // 3] if i % 3 == 2 else deflection[i // 3, i % 3]
             hidden[i, 0], hidden[i, 1], hidden[i, 2] = element_loaded(pressed, start[LOADED], i % 3 < 2, law)
     arm, load, path, ground_rate = np.zeros((4, 3)), np.zeros(4), np.zeros(4), np.zeros(4)
-    belt, belt_rate, belt_pull = np.zeros(2), np.zeros(2), np.zeros(2)
     sway, sway_rate, sway_acceleration = np.zeros(2), np.zeros(2), np.zeros(2)
     sway[0], sway[1], sway_rate[0], sway_rate[1] = start[22], start[23], start[24], start[25]
     solved = np.zeros(8)

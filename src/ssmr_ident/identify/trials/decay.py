@@ -236,9 +236,10 @@ def _columns(robot: Robot, decay: BodyDecay) -> Array:
     times = decay.first + decay.step * np.arange(len(decay.samples))
     bandwidth = robot.accelerometer.bandwidth_hz
     gains = sensor_gains(response.poles, bandwidth, decay.record.step) * decay.averaging(response.poles)
-    waves = response.waves(times)
-    weights = response.weights(np.broadcast_to(gains, (len(decay.axes), len(gains))), decay.axes)
-    return np.stack([waves @ weight for weight in weights], axis=1) * START_SCALES
+    with np.errstate(over="ignore", invalid="ignore"):  # a robot that falls over has no start
+        waves = response.waves(times)
+        weights = response.weights(np.broadcast_to(gains, (len(decay.axes), len(gains))), decay.axes)
+        return np.stack([waves @ weight for weight in weights], axis=1) * START_SCALES
 
 
 def _linear_start(trial: Trial, columns: Array) -> Array:

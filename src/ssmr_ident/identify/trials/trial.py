@@ -10,7 +10,8 @@ import numpy as np
 from scipy.signal import lfilter
 
 from ssmr_ident.identify.decay_record import spread
-from ssmr_ident.identify.decay_start import mains_frequency, nuisance_columns
+from ssmr_ident.identify.decay_start import nuisance_columns
+from ssmr_ident.identify.mains import MAINS_HZ, mains_lines
 from ssmr_ident.identify.noise import AutoregressiveNoise
 from ssmr_ident.physics.slots import Effects
 
@@ -18,19 +19,6 @@ Array = np.ndarray
 Values = Mapping[str, float]
 Runner = Callable[[Values, Effects, Array], Array]
 Asked = tuple[Values, Effects, Array]
-
-MAINS_HZ = (50.0, 60.0)
-
-
-def mains_lines(samples: Array, step: float) -> tuple[float, ...]:
-    """Mains lines that stand out of samples, (n, c), as they appear at this rate [Hz]."""
-    rate = 1.0 / step
-    found = []
-    for nominal in MAINS_HZ:
-        seen = abs(nominal - round(nominal * step) * rate)
-        if 5.0 < seen < 0.45 * rate - 2.0:
-            found.append(mains_frequency(samples, step, seen))
-    return tuple(line for line in found if line is not None)
 
 
 @dataclass(frozen=True, eq=False)
@@ -220,7 +208,11 @@ class Trial:
 
     def with_lines(self, residual: Array) -> Trial:
         """The same with the mains lines that stand out of a residual, (n, c), added to the basis."""
-        lines = () if self.lined else mains_lines(residual, self.step)
+        lines = (
+            ()
+            if self.lined
+            else tuple(line for hz in MAINS_HZ for line in mains_lines(residual, self.step, hz, folds=True))
+        )
         if not lines:
             return self
         since = self.times - self.times[0]

@@ -28,6 +28,7 @@ EFFECT = Effect(
     ),
     experiments=("free_response", "pull", "swivel"),
     acts={Site.BODY: force},
+    sudden=True,
     probes=(
         {"K_b_N_m": Sized(0.5, "stiffness"), "D_b_N_s_m": 50.0, "rim_mass_kg": 1.0},
         {"K_b_N_m": Sized(2.0, "stiffness"), "D_b_N_s_m": 50.0, "rim_mass_kg": 1.0},

@@ -1,0 +1,98 @@
+"""Mains lines in samples: the fundamental to a fraction of a bin, and those of its harmonics that stand out."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+Array = np.ndarray
+
+MAINS_HZ = (50.0, 60.0)
+MAINS_SPREAD_HZ = 0.3
+"""How far from its nominal frequency a mains line is sought; grids hold ±0.05 Hz, a logger's clock ±1e-3."""
+
+HARMONICS = range(2, 10)
+"""That are looked for: rectifiers draw odd ones, and a transformer's hum is the second."""
+
+LOWEST_HZ = 5.0
+"""Lines that seem slower at a low sampling rate are left: that is where motions are."""
+
+FAINTEST = 12.0
+"""Power of a line over the mean of bins nearby. Bins of noise are exponential in power; twelve means are passed by
+chance once in 160 000."""
+
+APART = 4.0
+"""Bins from which on two lines are two: a tapered one is four bins wide."""
+
+
+class _Periodogram:
+    """Power of tapered samples, (n, c), at any frequency."""
+
+    def __init__(self, samples: Array, step: float) -> None:
+        count = len(samples)
+        self.resolution = 1.0 / (count * step)
+        self.highest = 0.45 / step - 2.0
+        self._centred = (samples - samples.mean(axis=0)) * np.hanning(count)[:, None]
+        self._times = step * (np.arange(count) - count / 2)
+
+    def power(self, frequency: float) -> float:
+        return float(np.sum(np.abs(np.exp(-2j * np.pi * frequency * self._times) @ self._centred) ** 2))
+
+    def stands_out(self, frequency: float) -> bool:
+        """Whether a line is far above the noise around it; False where the record is too short to tell."""
+        if self.resolution > 4.0 or frequency > self.highest:
+            return False
+        around = [self.power(frequency + sign * k * self.resolution) for sign in (-1, 1) for k in (4.5, 6.5, 8.5)]
+        return self.power(frequency) > FAINTEST * float(np.median(around)) / 0.69  # median of an exponential
+
+    def refined(self, nominal: float) -> float:
+        low, high = nominal - MAINS_SPREAD_HZ, nominal + MAINS_SPREAD_HZ
+        grid = np.linspace(low, high, max(7, math.ceil((high - low) / (0.5 * self.resolution))))
+        best = float(grid[int(np.argmax([self.power(f) for f in grid]))])
+        width = min(0.25 * self.resolution, MAINS_SPREAD_HZ / 4)
+        for _ in range(25):
+            left, middle, right = (self.power(f) for f in (best - width, best, best + width))
+            curvature = left - 2 * middle + right
+            if curvature < 0:
+                best += float(np.clip(0.5 * (left - right) / curvature, -1, 1)) * width
+            width *= 0.5
+        return best
+
+
+def mains_lines(samples: Array, step: float, nominal: float, folds: bool = False) -> tuple[float, ...]:
+    """Fundamental and harmonics [Hz] that stand above the noise around them, as they are seen at this sampling rate.
+
+    A harmonic goes with the fundamental's own frequency, and without a fundamental there is none.
+
+    Parameters
+    ----------
+    samples : (n, c) float
+        A stretch without transients is best.
+    step : float [s]
+    nominal : float [Hz]
+        50 or 60.
+    folds : bool
+        Lines above half of the rate are looked for as well, where they fold to. Not where a motion may be.
+    """
+    spectrum = _Periodogram(samples, step)
+    half = np.inf if folds else 0.5 / step
+    seen, sign = _folded(nominal, step)
+    if nominal > half or seen < LOWEST_HZ or not spectrum.stands_out(seen):
+        return ()
+    found = spectrum.refined(seen)
+    multiples = [order * (nominal + sign * (found - seen)) for order in HARMONICS]
+    harmonics = [_folded(hz, step)[0] for hz in multiples if hz < half]
+    lines = [found]
+    for hz in sorted(harmonics, key=spectrum.power, reverse=True):
+        # two that fold to one place are one line
+        apart = min(abs(hz - line) for line in lines) > APART * spectrum.resolution
+        if apart and hz > LOWEST_HZ and spectrum.stands_out(hz):
+            lines.append(hz)
+    return tuple(lines)
+
+
+def _folded(frequency: float, step: float) -> tuple[float, float]:
+    """Where a line is seen in samples, and 1 or -1: whether it moves there with the true one, or against it."""
+    apart = frequency - round(frequency * step) / step
+    return abs(apart), float(np.sign(apart))
