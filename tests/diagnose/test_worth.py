@@ -1,4 +1,4 @@
-"""What is left of a pull is judged without the jolt at which its cable tightens."""
+"""What is left is judged against noise and mains, and of a pull without the jolt at which its cable tightens."""
 
 from __future__ import annotations
 
@@ -42,3 +42,15 @@ def test_a_jolt_counts_unless_the_cable_tightens_there(spike_s: float, seen: boo
     (cut,) = without_jolts(SimpleNamespace(trials=(trial,)), [whole])  # type: ignore[arg-type]
     assert measure(whole)[0] > 1.6 * noise_floor(whole)
     assert (measure(cut)[0] > 1.6 * noise_floor(cut)) is seen
+
+
+@pytest.mark.parametrize(("rate", "hum"), [(1000.0, 0.0), (1000.0, 1.0), (500.0, 1.0)])
+def test_the_floor_is_what_noise_and_mains_leave_of_the_metric(rate: float, hum: float) -> None:
+    """A loud third harmonic is no noise: it does not pass the low-pass, and second differences see little else."""
+    random = np.random.default_rng(7)
+    time = np.arange(round(3.0 * rate)) / rate
+    motion = 2.0 * np.exp(-time) * np.sin(2.0 * np.pi * 5.0 * time)
+    line = np.sin(2.0 * np.pi * 60.01 * time) + 0.2 * np.sin(2.0 * np.pi * 180.03 * time + 1.0)
+    logged = motion + hum * line + 0.02 * random.standard_normal(len(time))
+    prediction = Prediction(time, ("ax",), ("m/s^2",), logged[:, None], motion[:, None], low_pass_hz=50.0)
+    assert noise_floor(prediction) == pytest.approx(measure(prediction)[0], rel=0.1)

@@ -12,7 +12,7 @@ from scipy.stats import chi2
 from ssmr_ident.compare.recorded import follow, radian
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.accept import CHANCE
-from ssmr_ident.diagnose.race import Progress, raced, ranked, screened, started, variants
+from ssmr_ident.diagnose.race import Progress, raced, ranked, run_on, screened, started, variants
 from ssmr_ident.diagnose.scan import Suspect, candidates, scan
 from ssmr_ident.diagnose.setup import Setup
 from ssmr_ident.diagnose.start import begin
@@ -169,7 +169,7 @@ def search(
         rough = raced(base, groups, progress)
     else:
         chosen = [g for g in groups if g[0].gain > PROMISING + len(g[0].at)][: REFITTED if further else SCREENED]
-        rough = ranked([started(base, suspect) for group in chosen for suspect in variants(group)])
+        rough = run_on([started(base, suspect) for group in chosen for suspect in variants(group)])
     tried: list[JointFit] = []
     rough = _finalists([fit for fit in rough if _close(rough, fit)], starts=2 if chatters(base) else 1)
     for index, fit in enumerate(rough):

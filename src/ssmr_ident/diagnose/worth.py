@@ -11,13 +11,14 @@ from scipy.stats import spearmanr
 from ssmr_ident.compare.comparison import measure
 from ssmr_ident.compare.outcome import Prediction
 from ssmr_ident.compare.recorded import predicted
-from ssmr_ident.core.errors import InputError
 from ssmr_ident.diagnose.diagnosis import Worth
 from ssmr_ident.diagnose.evidence import Overlay
 from ssmr_ident.identify.decay_record import spread
+from ssmr_ident.identify.decay_start import nuisance_columns
 from ssmr_ident.identify.joint import JointFit
+from ssmr_ident.identify.mains import MAINS_HZ, mains_lines
 from ssmr_ident.identify.trials.trial import Trial
-from ssmr_ident.signals.clean import MAINS_HZ, mains_line, rounding
+from ssmr_ident.signals.clean import rounding
 from ssmr_ident.signals.filters import ORDER, low_pass
 
 Array = np.ndarray
@@ -77,28 +78,24 @@ def noise_floor(prediction: Prediction) -> float:
     """The metric that white noise, rounding and hum alone would leave, from what a prediction leaves at its fastest.
 
     Second differences see white noise and hardly any motion; the noise below the metric's low-pass is taken to be as
-    dense as above it. The hum passes the low-pass by its gain at the mains frequency.
+    dense as above it. Mains lines pass the low-pass by its gain at theirs.
     """
     rate, rest = prediction.sample_rate, prediction.measured - prediction.simulated
-    measured, share, gain = prediction.measured, passed(prediction), 1.0
+    measured, share = prediction.measured, passed(prediction)
+    lines = np.array([line for hz in MAINS_HZ for line in mains_lines(rest, 1.0 / rate, hz)])
+    gain = np.ones(len(lines))
     if prediction.low_pass_hz is not None and prediction.low_pass_hz < 0.45 * rate:
         measured = low_pass(measured, rate, prediction.low_pass_hz)
-        gain = 1.0 / (1.0 + (MAINS_HZ / prediction.low_pass_hz) ** (2 * ORDER))
+        gain = 1.0 / (1.0 + (lines / prediction.low_pass_hz) ** (2 * ORDER))
+    hum = nuisance_columns(prediction.time, tuple(lines))
+    waves = np.linalg.lstsq(hum, rest, rcond=None)[0]
+    power = 0.5 * np.sum(np.repeat(gain, 2)[:, None] ** 2 * waves[1:] ** 2, axis=0)
     scale = np.ones(measured.shape[1]) if len(set(prediction.units)) == 1 else measured.std(axis=0)
     noise = 0.0
-    for column, logged, size in zip(rest.T, prediction.measured.T, scale, strict=True):
-        hum = 0.0
-        if rate > 2.2 * MAINS_HZ:
-            try:
-                line = mains_line(column, rate)
-            except InputError:  # too short to tell the hum from motion
-                line = None
-            if line is not None:
-                column = column - line.samples(len(column), rate)
-                hum = 0.5 * (gain * line.amplitude) ** 2
+    for column, logged, own, size in zip((rest - hum @ waves).T, prediction.measured.T, power, scale, strict=True):
         # a tail that rests within one step of the converter has no differences
         white = max(spread(column), rounding(logged))
-        noise += (share * white**2 + hum) / size**2
+        noise += (share * white**2 + own) / size**2
     signal = float(np.sum(((measured - measured.mean(axis=0)) / scale).var(axis=0)))
     return 100.0 * float(np.sqrt(noise / signal))
 
