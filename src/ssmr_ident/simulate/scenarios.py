@@ -33,7 +33,8 @@ class Scenario:
         backward against each other, ``brace_y`` the same for left and right [m]: what a light wheel that slid while
         the robot was pushed leaves behind. ``loaded`` is the share of the state in which a quick push to this place
         leaves friction, loops and relaxing branches of the tires; 0 is at rest. ``unseen`` is the share of the first
-        acceleration that the sensor's low-pass has not met yet: 1 where what held the robot lets go at once.
+        acceleration that the sensor's low-pass has not met yet: 1 where what held the robot lets go at once. Belts
+        begin in equilibrium with the tires.
     velocity : mapping
         Start velocities: ``x``, ``y``, ``z`` [m/s], ``roll``, ``pitch``, ``yaw`` [rad/s], ``sway_x``, ``sway_y`` [m/s].
     wheel_rates : (k, 2) float [rad/s]
