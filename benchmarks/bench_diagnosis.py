@@ -12,8 +12,9 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from bank import FAMILIES, draw, mixed
-from scoring import append, engine, read, row_of, summary, table
+from bank import FAMILIES, BankSession, draw, mixed
+from scoring import Row, append, engine, read, row_of, summary, table, write
+from visible import true_evidence
 
 from ssmr_ident.pipeline.diagnose import diagnose
 
@@ -36,11 +37,7 @@ def main() -> None:
         for seed in range(arguments.first, arguments.first + arguments.count):
             if seed in done:
                 continue
-            if arguments.kind:
-                family = families[seed % len(families)]
-                drawn = draw(family, arguments.kind, seed, arguments.effect)
-            else:
-                drawn = mixed(seed, families)
+            drawn = _drawn(seed, arguments, families)
             truth = drawn.truth
             row, _ = row_of(
                 f"{drawn.family}-{seed}",
@@ -65,10 +62,26 @@ def main() -> None:
                 flush=True,
             )
     rows = read(arguments.out)
+    if any("true_evidence" not in row for row in rows if row["outcome"] == "missed"):
+        rows = [_judged(row, arguments, families) for row in rows]
+        write(arguments.out, rows)
     if arguments.table:
         print(table(rows))
     print(summary(rows))
     print("\nby kind\n" + summary(rows, "kind").split("\n\n")[0])
+
+
+def _drawn(seed: int, arguments: argparse.Namespace, families: tuple[str, ...]) -> BankSession:
+    if arguments.kind:
+        return draw(families[seed % len(families)], arguments.kind, seed, arguments.effect)
+    return mixed(seed, families)
+
+
+def _judged(row: Row, arguments: argparse.Namespace, families: tuple[str, ...]) -> Row:
+    """A row that says, where an effect was missed, whether its session shows it."""
+    if row["outcome"] != "missed" or "true_evidence" in row:
+        return row
+    return {**row, "true_evidence": true_evidence(_drawn(row["seed"], arguments, families))}
 
 
 if __name__ == "__main__":

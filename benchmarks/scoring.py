@@ -15,7 +15,9 @@ from typing import Any
 
 import numpy as np
 
+from ssmr_ident.core.atomic import write_text
 from ssmr_ident.diagnose.diagnosis import NOTHING, UNDETERMINED, Diagnosis
+from ssmr_ident.diagnose.weigh import CERTAIN
 
 LARGEST_TIE = 3
 UNSEEN = 1.02
@@ -135,6 +137,11 @@ def read(file: Path) -> list[Row]:
     return [json.loads(line) for line in file.read_text(encoding="utf-8").splitlines() if line.strip()]
 
 
+def write(file: Path, rows: Sequence[Row]) -> None:
+    """All lines anew, complete or not at all."""
+    write_text(file, "".join(json.dumps(row, default=float) + "\n" for row in rows))
+
+
 def append(file: Path, row: Row) -> None:
     """One line more."""
     file.parent.mkdir(parents=True, exist_ok=True)
@@ -154,8 +161,15 @@ def share(good: int, of: int) -> str:
 
 
 def is_unseen(row: Row) -> bool:
-    """Missed where the baseline explains even recordings that were never fitted down to their noise."""
-    return row["outcome"] == "missed" and row["before"] <= UNSEEN * row["floor"]
+    """Missed where the session does not show it.
+
+    The baseline explains even recordings that were never fitted down to their noise, or the truth itself, refitted from
+    the true values, has no more evidence than noise alone gives some effect (``visible.true_evidence``).
+    """
+    if row["outcome"] != "missed":
+        return False
+    evidence = row.get("true_evidence")
+    return bool(row["before"] <= UNSEEN * row["floor"] or (evidence is not None and evidence < CERTAIN))
 
 
 def summary(rows: Sequence[Row], by: str = "family") -> str:
