@@ -87,17 +87,23 @@ def noise_floor(prediction: Prediction) -> float:
     if prediction.low_pass_hz is not None and prediction.low_pass_hz < 0.45 * rate:
         measured = low_pass(measured, rate, prediction.low_pass_hz)
         gain = 1.0 / (1.0 + (lines / prediction.low_pass_hz) ** (2 * ORDER))
-    hum = nuisance_columns(prediction.time, tuple(lines))
-    waves = np.linalg.lstsq(hum, rest, rcond=None)[0]
-    power = 0.5 * np.sum(np.repeat(gain, 2)[:, None] ** 2 * waves[1:] ** 2, axis=0)
+    columns, waves = mains(rest, prediction.time, lines)
+    power = 0.5 * np.sum(np.repeat(gain, 2)[:, None] ** 2 * waves**2, axis=0)
     scale = np.ones(measured.shape[1]) if len(set(prediction.units)) == 1 else measured.std(axis=0)
     noise = 0.0
-    for column, logged, own, size in zip((rest - hum @ waves).T, prediction.measured.T, power, scale, strict=True):
+    clean = rest - columns @ waves
+    for column, logged, own, size in zip(clean.T, prediction.measured.T, power, scale, strict=True):
         # a tail that rests within one step of the converter has no differences
         white = max(spread(column), rounding(logged))
         noise += (share * white**2 + own) / size**2
     signal = float(np.sum(((measured - measured.mean(axis=0)) / scale).var(axis=0)))
     return 100.0 * float(np.sqrt(noise / signal))
+
+
+def mains(rest: Array, time: Array, lines: Sequence[float] | Array) -> tuple[Array, Array]:
+    """Cosine and sine of each line, (n, 2 k), and how much of them is in (n, c) samples, (2 k, c)."""
+    columns = nuisance_columns(time, tuple(lines))
+    return columns[:, 1:], np.linalg.lstsq(columns, rest, rcond=None)[0][1:]
 
 
 def passed(prediction: Prediction) -> float:
@@ -128,6 +134,9 @@ def grows_with_motion(found: Sequence[Prediction]) -> float:
     left: list[float] = []
     for prediction in found:
         rate, rest = prediction.sample_rate, prediction.measured - prediction.simulated
+        # where a low-pass sets in, a loud line rings: in all recordings where they are loud
+        columns, waves = mains(rest, prediction.time, [f for hz in MAINS_HZ for f in mains_lines(rest, 1.0 / rate, hz)])
+        rest = rest - columns @ waves
         smooth = prediction.low_pass_hz is not None and prediction.low_pass_hz < 0.45 * rate
         if smooth:
             rest = low_pass(rest, rate, prediction.low_pass_hz)  # type: ignore[arg-type]

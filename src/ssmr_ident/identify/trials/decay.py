@@ -105,7 +105,8 @@ def decay_trial(measurement: Measurement, builder: RobotBuilder, decoupled: bool
     )
     kept = _loud_until(rest, quiet, decay.step)
     model = PureRotation(names[0]) if decoupled else None
-    basis = whole if whole.shape[1] else np.ones((len(rest), 1))
+    # a zero drifts within its sheet: that is no slow motion
+    basis = np.column_stack([whole, np.linspace(-1.0, 1.0, len(rest))])
     facts = _Facts(measurement.name, measurement.entry.motion or "", names, STEP, builder, model, basis)
     return _trial(replace(decay, noises=noises), kept, facts)
 
@@ -205,7 +206,7 @@ def _trial(whole: BodyDecay, kept: int, facts: _Facts) -> Trial:
         many=many,
         idle={**dict.fromkeys(SWAYING, ("flexible_mast",)), **dict.fromkeys(BRACE, ("wheel_lift",)), **OWN},
         even=BRACE,
-        lined=facts.basis.shape[1] > 1,
+        lined=bool(whole.record.lines),
         shorten=lambda seconds: _trial(
             whole, min(kept, max(FEWEST, round(seconds / whole.step))), replace(facts, step=ROUGH_STEP)
         ),
