@@ -2,11 +2,20 @@
 
 from __future__ import annotations
 
+import atexit
 import os
+import shutil
+import tempfile
 from pathlib import Path
 
 # before numpy loads: small matrices on several threads of a busy machine cost many times the work
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+# before matplotlib loads: its list of fonts is kept between programs, and one written while an environment was being
+# removed lacks matplotlib's own fonts, of which every later program then complains. Workers take over this folder
+if "MPLCONFIGDIR" not in os.environ:
+    os.environ["MPLCONFIGDIR"] = tempfile.mkdtemp(prefix="matplotlib-")
+    atexit.register(shutil.rmtree, os.environ["MPLCONFIGDIR"], ignore_errors=True)
 
 import matplotlib as mpl
 import pytest
