@@ -12,7 +12,7 @@ from ssmr_ident.compare.comparison import measure
 from ssmr_ident.compare.outcome import Prediction
 from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.core.recording import Channel, Provenance, Recording
-from ssmr_ident.diagnose.worth import noise_floor, without_jolts
+from ssmr_ident.diagnose.worth import grows_with_motion, noise_floor, without_jolts
 from ssmr_ident.identify.trials.pull import pull_trial
 from ssmr_ident.session import Entry
 
@@ -54,3 +54,16 @@ def test_the_floor_is_what_noise_and_mains_leave_of_the_metric(rate: float, hum:
     logged = motion + hum * line + 0.02 * random.standard_normal(len(time))
     prediction = Prediction(time, ("ax",), ("m/s^2",), logged[:, None], motion[:, None], low_pass_hz=50.0)
     assert noise_floor(prediction) == pytest.approx(measure(prediction)[0], rel=0.1)
+
+
+@pytest.mark.parametrize(("missed", "told"), [(0.0, False), (0.05, True)])
+def test_a_line_that_rings_where_the_low_pass_sets_in_does_not_follow_the_motion(missed: float, told: bool) -> None:
+    random = np.random.default_rng(5)
+    time = np.arange(1500) / 500.0
+    found = []
+    for amplitude in np.linspace(1.0, 2.0, 8):
+        motion = amplitude * np.exp(-2.0 * time) * np.sin(2.0 * np.pi * 5.0 * time)
+        hum = np.sin(2.0 * np.pi * 60.01 * time + random.uniform(0.0, 2.0 * np.pi))
+        logged = (1.0 + missed) * motion + hum + 0.005 * random.standard_normal(len(time))
+        found.append(Prediction(time, ("ax",), ("m/s^2",), logged[:, None], motion[:, None], low_pass_hz=50.0))
+    assert (grows_with_motion(found) < 1e-3) is told

@@ -16,7 +16,7 @@ from ssmr_ident.diagnose.evidence import Overlay
 from ssmr_ident.identify.decay_record import spread
 from ssmr_ident.identify.decay_start import nuisance_columns
 from ssmr_ident.identify.joint import JointFit
-from ssmr_ident.identify.mains import MAINS_HZ, mains_lines
+from ssmr_ident.identify.mains import any_mains_lines
 from ssmr_ident.identify.trials.trial import Trial
 from ssmr_ident.signals.clean import rounding
 from ssmr_ident.signals.filters import ORDER, low_pass
@@ -82,16 +82,14 @@ def noise_floor(prediction: Prediction) -> float:
     """
     rate, rest = prediction.sample_rate, prediction.measured - prediction.simulated
     measured, share = prediction.measured, passed(prediction)
-    lines = np.array([line for hz in MAINS_HZ for line in mains_lines(rest, 1.0 / rate, hz)])
+    clean, lines, waves = without_mains(rest, prediction.time)
     gain = np.ones(len(lines))
     if prediction.low_pass_hz is not None and prediction.low_pass_hz < 0.45 * rate:
         measured = low_pass(measured, rate, prediction.low_pass_hz)
         gain = 1.0 / (1.0 + (lines / prediction.low_pass_hz) ** (2 * ORDER))
-    columns, waves = mains(rest, prediction.time, lines)
     power = 0.5 * np.sum(np.repeat(gain, 2)[:, None] ** 2 * waves**2, axis=0)
     scale = np.ones(measured.shape[1]) if len(set(prediction.units)) == 1 else measured.std(axis=0)
     noise = 0.0
-    clean = rest - columns @ waves
     for column, logged, own, size in zip(clean.T, prediction.measured.T, power, scale, strict=True):
         # a tail that rests within one step of the converter has no differences
         white = max(spread(column), rounding(logged))
@@ -100,10 +98,12 @@ def noise_floor(prediction: Prediction) -> float:
     return 100.0 * float(np.sqrt(noise / signal))
 
 
-def mains(rest: Array, time: Array, lines: Sequence[float] | Array) -> tuple[Array, Array]:
-    """Cosine and sine of each line, (n, 2 k), and how much of them is in (n, c) samples, (2 k, c)."""
-    columns = nuisance_columns(time, tuple(lines))
-    return columns[:, 1:], np.linalg.lstsq(columns, rest, rcond=None)[0][1:]
+def without_mains(rest: Array, time: Array) -> tuple[Array, Array, Array]:
+    """(n, c) samples less the mains lines that stand out of them; those, (k,) [Hz], and their waves, (2 k, c)."""
+    lines = any_mains_lines(rest, float(time[1] - time[0]))
+    columns = nuisance_columns(time, lines)
+    waves = np.linalg.lstsq(columns, rest, rcond=None)[0][1:]
+    return rest - columns[:, 1:] @ waves, np.array(lines), waves
 
 
 def passed(prediction: Prediction) -> float:
@@ -134,9 +134,8 @@ def grows_with_motion(found: Sequence[Prediction]) -> float:
     left: list[float] = []
     for prediction in found:
         rate, rest = prediction.sample_rate, prediction.measured - prediction.simulated
-        # where a low-pass sets in, a loud line rings: in all recordings where they are loud
-        columns, waves = mains(rest, prediction.time, [f for hz in MAINS_HZ for f in mains_lines(rest, 1.0 / rate, hz)])
-        rest = rest - columns @ waves
+        # a loud line rings where the low-pass sets in, and that is where decays are loud
+        rest = without_mains(rest, prediction.time)[0]
         smooth = prediction.low_pass_hz is not None and prediction.low_pass_hz < 0.45 * rate
         if smooth:
             rest = low_pass(rest, rate, prediction.low_pass_hz)  # type: ignore[arg-type]

@@ -92,6 +92,11 @@ def mains_lines(samples: Array, step: float, nominal: float, folds: bool = False
     return tuple(lines)
 
 
+def any_mains_lines(samples: Array, step: float, folds: bool = False) -> tuple[float, ...]:
+    """``mains_lines`` of both grids."""
+    return tuple(line for nominal in MAINS_HZ for line in mains_lines(samples, step, nominal, folds))
+
+
 def _folded(frequency: float, step: float) -> tuple[float, float]:
     """Where a line is seen in samples, and 1 or -1: whether it moves there with the true one, or against it."""
     apart = frequency - round(frequency * step) / step
