@@ -12,7 +12,7 @@ from ssmr_ident.diagnose.explore import LAST, best_baseline, prepared
 from ssmr_ident.diagnose.polish import polish
 from ssmr_ident.diagnose.scan import Suspect
 from ssmr_ident.diagnose.sliding import with_law_of_sliding
-from ssmr_ident.diagnose.weigh import evidences
+from ssmr_ident.diagnose.weigh import surplus
 from ssmr_ident.identify.descent import descend
 from ssmr_ident.identify.joint import evaluate
 
@@ -41,5 +41,5 @@ def true_evidence(drawn: BankSession) -> float | None:
     for start in (begun, follow(fit.trials, begun.model, true)):
         if np.isfinite(start.rss):
             found.append(explained(kept, polish(descend(start, LAST), lengths), baseline.kept))
-    gains = [evidences([baseline, one])[one.id] for one in found if np.all(np.isfinite(one.kept.parts))]
+    gains = [surplus(one, baseline) for one in found if np.all(np.isfinite(one.kept.parts))]
     return max(gains, default=None)

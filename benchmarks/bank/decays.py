@@ -90,7 +90,9 @@ def _standing(
         try:
             return left, [_run(robot, start, seconds, rate, left, slides) for start in starts]
         except SimulationError:
-            k3 = left.effects["nonlinear_stiffness"]["k3_N_m3"]
+            k3 = left.effects.get("nonlinear_stiffness", {}).get("k3_N_m3", 0.0)
+            if not k3 < 0.0:
+                raise
             left = replace(left, effects={**left.effects, "nonlinear_stiffness": {"k3_N_m3": 0.5 * k3}})
 
 

@@ -55,10 +55,12 @@ def test_what_lies_below_the_noise_does_not_speak_against_a_second_effect() -> N
 
     def explained(parts: list[float], kept: float) -> Explanation:
         def fit(values: list[float]) -> SimpleNamespace:
-            size = 500
+            size, random = 500, np.random.default_rng(1)
+            trial = SimpleNamespace(size=size, by_channel=lambda left: left[:, None], nuisances=(), idle={})
+            noise = random.standard_normal((len(values), size))
             return SimpleNamespace(
                 model=Model(()), point=np.zeros(0), parts=size * np.array(values), counted=np.full(len(values), 300.0),
-                trials=[SimpleNamespace(size=size)] * len(values),
+                trials=[trial] * len(values), residuals=[np.sqrt(v) * n for v, n in zip(values, noise, strict=True)],
             )  # fmt: skip
 
         return Explanation(fit(parts), fit([kept]))  # type: ignore[arg-type]

@@ -163,3 +163,20 @@ def test_what_is_white_in_its_second_difference_is_infinitely_dense_at_rest() ->
     assert np.isinf(density[0])
     # at half the sampling rate the second difference is four times the sample
     assert density[1] == pytest.approx(2.0 * 0.01 * 4.0 / 16.0)
+
+
+def test_coloured_noise_is_whitened_with_and_without_a_drift() -> None:
+    count, std, pole = 300, 0.1, 0.6
+    random = np.random.default_rng(8)
+    target, shared, own = random.standard_normal(count), np.zeros((count, 3)), np.zeros((count, 1))
+    noise = AutoregressiveNoise(np.array([1.0, -pole]), std)
+    plain = replace(_trial(shared, own, target, std, "a.csv"), noises=(noise,))
+    white = (target[1:] - pole * target[:-1]) / std
+    np.testing.assert_allclose(plain.white_target, white - white.mean(), atol=1e-12)
+    # a drift of unit size is size S in white noise of unit size: of it S/(1 + S^2)^(1/2) is left, and all beside it
+    column = 0.2 * np.linspace(-1.0, 1.0, count)
+    drifting = replace(plain, drift=column[:, None])
+    size = np.linalg.norm(plain.whitened(column[:, None]))
+    assert np.linalg.norm(drifting.whitened(column[:, None])) == pytest.approx(size / np.sqrt(1.0 + size**2))
+    beside = target - column * (plain.whitened(column[:, None]) @ plain.white_target) / size**2
+    np.testing.assert_allclose(drifting.whitened(beside[:, None]), plain.whitened(beside[:, None]), atol=1e-9)

@@ -9,7 +9,9 @@ from ssmr_ident.campaign import Measurement
 from ssmr_ident.core.parameter import Estimate
 from ssmr_ident.core.recording import Channel, Provenance, Recording
 from ssmr_ident.identify.trials.pull import find_slack, holds, pull_trial, tightening
+from ssmr_ident.physics.robot import robot_from_parameters
 from ssmr_ident.session import Entry, read_parameters
+from ssmr_ident.simulate import Scenario, simulate
 
 STEP, SPEED, STIFFNESS = 0.01, 1e-3, 2e4
 
@@ -77,3 +79,28 @@ def test_a_pull_of_one_friction_coefficient_moves_smoothly_with_what_it_hardly_d
     for name, value in (("tire.damping_x_N_s_m", 50.1), ("inertia_kg_m2.zz", 0.925), ("contact_shift_y_m", 1e-6)):
         moved = trial.run({name: value}, {}, np.array([0.02]))
         assert 0.0 <= np.std(moved - plain) < 0.01, name
+
+
+def test_a_slack_is_found_while_wheels_spin() -> None:
+    """They have turned by the time the cable tightens: the force over the travel that is left is another."""
+    known = read_parameters("p3at-extended")
+    slip = {"slip_coupling": {"weight": 0.3, "lambda_max": 0.15}}
+    slack, travel = 0.3e-3, ramp_and_hold(6.0, 0.0)
+    head = np.append(np.maximum(travel - slack, 0.0), travel[-1] + SPEED * STEP - slack)
+    scenario = Scenario(
+        "pull", len(travel) * STEP, head=head, head_step=STEP, direction="lateral", height=0.05,
+        wheels_gripping=(1, 2, 3, 4), wheel_rates=np.full((1, 2), 0.1), held=True,
+    )  # fmt: skip
+    force = simulate(robot_from_parameters(known), scenario, 1.0 / STEP, effects=slip)["force"]
+    force = force + 0.5 * np.random.default_rng(6).standard_normal(len(force))
+    log = Recording(
+        STEP * np.arange(len(force)),
+        (Channel("force", force, "N"), Channel("position", travel, "m")),
+        Provenance("made", "", "test"),
+    )
+    entry = Entry("pull.csv", "pull", direction="lateral", speed_mm_s=1.0, height_m=0.05, wheel_rate_rad_s=0.1)
+    trial = pull_trial(Measurement(entry, log), known)
+    found = trial.begin({}, slip) * trial.scales
+    assert found[0] == pytest.approx(slack, abs=2.5e-5)
+    left = trial.white_target - trial.whitened(trial.run({}, slip, found / trial.scales))
+    assert float(left @ left) < 50.0 * trial.size

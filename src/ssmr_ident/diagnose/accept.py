@@ -8,8 +8,9 @@ import numpy as np
 from scipy.stats import chi2
 
 from ssmr_ident.core.parameter import ParameterSet
+from ssmr_ident.diagnose.coloured import told_by
 from ssmr_ident.diagnose.setup import BANDWIDTH, SHEET
-from ssmr_ident.diagnose.weigh import CERTAIN, Explanation, asked, evidences
+from ssmr_ident.diagnose.weigh import CERTAIN, Explanation, asked, evidences, surplus
 from ssmr_ident.identify.descent import LOUD
 from ssmr_ident.identify.joint import JointFit
 
@@ -54,7 +55,8 @@ def better(leader: Explanation, before: Explanation, first: bool) -> bool:
     if not first:
         # the loudest recordings, which show a second effect best, are never kept back
         return unharmed and mends(leader, before)
-    if -float(leader.kept.counted @ change) > chi2.isf(CHANCE, 1) or (unharmed and relieves(leader, before)):
+    told = -float(told_by(leader.kept, before.kept) @ change)
+    if told > chi2.isf(CHANCE, 1) or (unharmed and relieves(leader, before)):
         return True
     # a sensor clips in the loudest recordings only: what was kept back need not show it, but must not suffer; where
     # most recordings gain, that one may be a little worse
@@ -93,8 +95,7 @@ def touches(chosen: Explanation, baseline: Explanation) -> bool:
 
 def certain(leader: Explanation, before: Explanation) -> bool:
     """Whether all recordings together, fitted and kept, say so."""
-    found = evidences([before, leader])
-    return found[leader.id] - found[before.id] > CERTAIN
+    return surplus(leader, before) > CERTAIN
 
 
 def mends(pair: Explanation, single: Explanation) -> bool:

@@ -48,7 +48,10 @@ def exported(fit: JointFit, before: ParameterSet) -> ParameterSet:
             place[SENSOR.index(unknown.name)] = value
             widest.setdefault("accelerometer.position_m", []).append((std, float(told)))
         else:
-            old = before[unknown.name]
+            # gains are in a file only once they have been fitted
+            old = before.get(unknown.name) or Estimate(
+                unknown.prior, unknown.prior_std, unknown.unit, "its sensitivity"
+            )
             kept = None if unknown.prior_std is None and not told else std
             changes[unknown.name] = replace(old, value=value, std=kept, source=SOURCE if told else _prior(old))
     for path in before:

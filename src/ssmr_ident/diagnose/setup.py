@@ -12,7 +12,7 @@ from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.identify.coordinates import Model
 from ssmr_ident.identify.joint import JointFit
 from ssmr_ident.identify.objective import Unknown
-from ssmr_ident.identify.robot_map import robot_unknowns
+from ssmr_ident.identify.robot_map import GAINS, robot_unknowns
 from ssmr_ident.identify.trials import Trial, trial_of
 from ssmr_ident.identify.trials.make import EXPERIMENTS
 from ssmr_ident.physics.rig import RIG_KEYS
@@ -24,6 +24,8 @@ KEPT_BACK = 1 / 3
 """Share of the targets that is kept back where a session has no held-out recordings."""
 
 BANDWIDTH = "accelerometer.bandwidth_hz"
+
+SENSITIVITY = "accelerometer.volts_per_m_s2"
 
 SHEET = 3.0
 """Standard deviations by which a sensor's bandwidth may be off its sheet before it is an effect."""
@@ -218,4 +220,23 @@ def unknowns_of(campaign: Campaign, parameters: ParameterSet) -> tuple[Unknown, 
             # a sensor slower than any uncertainty of its sheet is an effect
             reach = SHEET if key == BANDWIDTH else np.inf
             found.append(Unknown(key, parameters[key].unit, value, known, reach=reach))
-    return tuple(found)
+    return (*found, *(_gains(campaign, parameters) if baseline == "rigid6" else ()))
+
+
+def _gains(campaign: Campaign, parameters: ParameterSet) -> list[Unknown]:
+    """What each axis of the accelerometer reads, as far as its sheet leaves that open.
+
+    Of a single axis the size of the push cannot be told from it.
+    """
+    logged = {
+        name for m in campaign.measurements if m.entry.experiment == "free_response" for name in m.recording.names
+    }
+    found = []
+    for name in (n for n in GAINS if f"a{n[-1]}" in logged):
+        value, std = parameters.number(name, 1.0), parameters[name].std if name in parameters else None
+        sheet = parameters.get(SENSITIVITY)
+        if std is None and sheet is not None and sheet.std is not None and not sheet.fixed:
+            std = sheet.std / abs(float(sheet.value))
+        if std is not None and std > 0.0 and not (name in parameters and parameters[name].fixed):
+            found.append(Unknown(name, "1", value, std))
+    return found if len(found) > 1 else []

@@ -203,8 +203,8 @@ def differentiate(fit: JointFit, shared: bool = True) -> JointFit:
         centre = trial.whitened(fit.simulated[index])
         seen = [column for column, name in enumerate(names) if trial.sees(name)]
         asked: list[Asked] = [(*moved[trial.coarse][column][1], nuisance) for column in seen]
-        acting, width = _acting(trial, model), NUISANCE_STEP * trial.coarse
-        for column in acting:
+        own_columns, width = acting(trial, model), NUISANCE_STEP * trial.coarse
+        for column in own_columns:
             sides = (1.0, -1.0) if trial.nuisances[column] in trial.even else (1.0,)
             for side in sides:
                 aside = nuisance.copy()
@@ -216,7 +216,7 @@ def differentiate(fit: JointFit, shared: bool = True) -> JointFit:
             slope = (next(found) - centre) / moved[trial.coarse][column][0]
             # where a step leaves what can be simulated, the fit stays along this coordinate
             columns[:, column] = slope if np.all(np.isfinite(slope)) else 0.0
-        for column in acting:
+        for column in own_columns:
             ahead = next(found)
             even = trial.nuisances[column] in trial.even
             own[:, column] = (ahead - next(found)) / (2.0 * width) if even else (ahead - centre) / width
@@ -235,7 +235,7 @@ def _moved(model: Model, point: Array, here: Split, coarse: float) -> list[tuple
     return found
 
 
-def _acting(trial: Trial, model: Model) -> list[int]:
+def acting(trial: Trial, model: Model) -> list[int]:
     """Nuisances that do something under a model."""
     return [
         column

@@ -27,6 +27,9 @@ SHIFTS = ("contact_shift_x_m", "contact_shift_y_m")
 SENSOR = tuple(f"accelerometer.position_m.{axis}" for axis in "xyz")
 """Place of the accelerometer, coordinate by coordinate."""
 
+GAINS = tuple(f"accelerometer.gain.{axis}" for axis in "xyz")
+"""What each axis reads of a true acceleration."""
+
 LINEAR_FREQUENCY = 0.001
 LINEAR_DAMPING = 0.01
 """Shares by which modes of small motions may differ from those of the motions that were recorded (finite angles,
@@ -126,6 +129,11 @@ class RobotBuilder:
     def __call__(self, values: Mapping[str, float]) -> Robot:
         return _MADE.of((self._print, *values.items()), lambda: self._made(values))
 
+    def gains(self, values: Mapping[str, float]) -> np.ndarray:
+        """What each axis reads of a true acceleration, (3,)."""
+        own = self.nominal.accelerometer.gain
+        return np.array([values.get(name, gain) for name, gain in zip(GAINS, own, strict=True)])
+
     @cached_property
     def _print(self) -> Hashable:
         return _by_value(self.nominal)
@@ -162,6 +170,7 @@ class RobotBuilder:
             accelerometer=replace(
                 robot.accelerometer,
                 position=place,
+                gain=self.gains(values),
                 bandwidth_hz=values.get("accelerometer.bandwidth_hz", robot.accelerometer.bandwidth_hz),
             ),
         )

@@ -147,4 +147,5 @@ def accelerometer_from_parameters(parameters: ParameterSet) -> Accelerometer:
         range_m_s2=parameters.number("accelerometer.range_m_s2", default.range_m_s2),
         bandwidth_hz=parameters.number("accelerometer.bandwidth_hz", default.bandwidth_hz),
         polarity=np.array([parameters.number(f"accelerometer.polarity.{axis}", 1.0) for axis in _AXES]),
+        gain=np.array([parameters.number(f"accelerometer.gain.{axis}", 1.0) for axis in _AXES]),
     )

@@ -28,6 +28,8 @@ class Accelerometer:
         -3 dB point of a second-order Butterworth low-pass.
     polarity : (3,) float
         +1 or -1 per axis.
+    gain : (3,) float
+        What each axis reads of a true acceleration: sensitivities differ within their sheet.
     """
 
     position: np.ndarray = field(default_factory=lambda: np.array([-0.2, 0.0, 0.0]))
@@ -36,6 +38,7 @@ class Accelerometer:
     range_m_s2: float = 1.7 * 9.8
     bandwidth_hz: float = 80.0
     polarity: np.ndarray = field(default_factory=lambda: np.ones(3))
+    gain: np.ndarray = field(default_factory=lambda: np.ones(3))
 
     def to_volts(self, acceleration: np.ndarray, axis: int) -> np.ndarray:
         """Volts of one axis for a specific force, clipped at the range; (n,) [m/s^2] to (n,) [V]."""

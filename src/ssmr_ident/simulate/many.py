@@ -92,6 +92,9 @@ def simulate_many(
             kept,
             out,
         )
+    for result, body in zip(out, bodies, strict=True):
+        if body is not None and np.any(body.robot.accelerometer.gain != 1.0):
+            result *= np.append(body.robot.accelerometer.gain, np.ones(_OUTPUTS - 3))[kept]
     time = np.arange(samples) / sample_rate
     for result, body in zip(out, bodies, strict=True):
         if body is not None and body.read_otherwise:

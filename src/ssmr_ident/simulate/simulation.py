@@ -142,6 +142,7 @@ def simulate(
             f"tire stiffness {body.robot.stiffness.tolist()} N/m, damping {body.robot.damping.tolist()} N s/m. "
             "Check these values, or take a shorter step"
         )
+    out[:, :3] *= body.robot.accelerometer.gain
     time = np.arange(samples) / sample_rate
     if body.read_otherwise:
         channels = {name: out[:, index] for index, name in enumerate(k.OUTPUTS)}

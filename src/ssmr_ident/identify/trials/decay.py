@@ -15,7 +15,7 @@ from ssmr_ident.identify.decay_record import spread
 from ssmr_ident.identify.free_decays import BodyDecay, body_decay
 from ssmr_ident.identify.noise import AutoregressiveNoise
 from ssmr_ident.identify.output_error import START_SCALES
-from ssmr_ident.identify.robot_map import RobotBuilder
+from ssmr_ident.identify.robot_map import GAINS, RobotBuilder
 from ssmr_ident.identify.trials.pure_rotation import PureRotation, seen_axis
 from ssmr_ident.identify.trials.trial import Array, Asked, Course, Trial, Values
 from ssmr_ident.physics.linear import COORDINATES
@@ -59,6 +59,10 @@ FEWEST = 24
 
 RUNAWAY = 1e30
 """m/s^2 per starting state, beyond which modes of a robot that falls over tell nothing of where a decay began."""
+
+WANDER = 0.02
+"""m/s^2 by which a zero may drift within a recording, evenly or in an arc (standard deviations): 2 mg, chosen as what
+the benchmark's sensors do at most. What drifts further counts as motion; with no limit creep would not."""
 
 LONGEST_QUIET = 0.35
 """Share of a record's end from which the noise is taken."""
@@ -105,9 +109,9 @@ def decay_trial(measurement: Measurement, builder: RobotBuilder, decoupled: bool
     )
     kept = _loud_until(rest, quiet, decay.step)
     model = PureRotation(names[0]) if decoupled else None
-    # a zero drifts within its sheet: that is no slow motion
-    basis = np.column_stack([whole, np.linspace(-1.0, 1.0, len(rest))])
-    facts = _Facts(measurement.name, measurement.entry.motion or "", names, STEP, builder, model, basis)
+    since = np.linspace(-1.0, 1.0, len(rest))
+    drift = WANDER * np.column_stack([since, since**2])
+    facts = _Facts(measurement.name, measurement.entry.motion or "", names, STEP, builder, model, whole, drift)
     return _trial(replace(decay, noises=noises), kept, facts)
 
 
@@ -122,6 +126,7 @@ class _Facts:
     builder: RobotBuilder
     model: PureRotation | None
     basis: Array
+    drift: Array
 
 
 def _trial(whole: BodyDecay, kept: int, facts: _Facts) -> Trial:
@@ -133,15 +138,23 @@ def _trial(whole: BodyDecay, kept: int, facts: _Facts) -> Trial:
     counts = np.all(np.abs(raw) < 0.999 * builder.nominal.accelerometer.range_m_s2, axis=1)
 
     def simulated(asked: Sequence[Asked], samples: int, step: float) -> Array:
-        releases = []
-        last, robot = None, builder.nominal
+        releases: dict[tuple[int, int, bytes], Release] = {}
+        own, gains = [], []
+        last, robot, gain = None, builder.nominal, np.ones(len(decay.axes))
         for values, effects, nuisance in asked:
             if values is not last:  # most columns of a slope differ by the state at the release alone
-                last, robot = values, builder(values)
+                # what axes read of a motion does not change it: three columns of a slope are one simulation
+                last, robot = values, builder({name: value for name, value in values.items() if name not in GAINS})
+                gain = (builder.gains(values) / robot.accelerometer.gain)[list(decay.axes)]
             state = nuisance * SCALES
-            releases.append(Release(robot, effects, state[_OFFSETS], state[_VELOCITIES]))
+            own.append((id(robot), id(effects), state.tobytes()))
+            gains.append(gain)
+            releases.setdefault(own[-1], Release(robot, effects, state[_OFFSETS], state[_VELOCITIES]))
         seconds = decay.record.step
-        return simulate_many(releases, samples * seconds, 1.0 / seconds, step, [AXES[axis] for axis in decay.axes])
+        names = [AXES[axis] for axis in decay.axes]
+        found = simulate_many(list(releases.values()), samples * seconds, 1.0 / seconds, step, names)
+        places = {key: place for place, key in enumerate(releases)}
+        return found[[places[key] for key in own]] * np.array(gains)[:, None, :]
 
     def rotated(values: Values, effects: Effects, nuisance: Array, samples: int, step: float) -> Array:
         assert model is not None
@@ -207,6 +220,7 @@ def _trial(whole: BodyDecay, kept: int, facts: _Facts) -> Trial:
         idle={**dict.fromkeys(SWAYING, ("flexible_mast",)), **dict.fromkeys(BRACE, ("wheel_lift",)), **OWN},
         even=BRACE,
         lined=bool(whole.record.lines),
+        drift=facts.drift[:kept],
         shorten=lambda seconds: _trial(
             whole, min(kept, max(FEWEST, round(seconds / whole.step))), replace(facts, step=ROUGH_STEP)
         ),
@@ -240,7 +254,8 @@ def _columns(robot: Robot, decay: BodyDecay) -> Array:
     with np.errstate(over="ignore", invalid="ignore"):  # a robot that falls over has no start
         waves = response.waves(times)
         weights = response.weights(np.broadcast_to(gains, (len(decay.axes), len(gains))), decay.axes)
-        return np.stack([waves @ weight for weight in weights], axis=1) * START_SCALES
+        seen = np.stack([waves @ weight for weight in weights], axis=1) * START_SCALES
+    return seen * robot.accelerometer.gain[list(decay.axes), None]
 
 
 def _linear_start(trial: Trial, columns: Array) -> Array:

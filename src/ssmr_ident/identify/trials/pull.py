@@ -101,7 +101,8 @@ def pull_trial(measurement: Measurement, parameters: ParameterSet) -> Trial:
 
     teeth = find_teeth(measured, travel, block)
     rising = slice(None) if teeth is None else slice(teeth.rise)
-    tightened = start + step * tightening(measured, block)
+    tight_at = tightening(measured, block)
+    tightened = start + step * tight_at
     times = start + step * (block * np.arange(count) + 0.5 * (block - 1))
     since = times - tightened
     share = np.where((since > JOLT[0]) & (since < JOLT[1]), SHARE, 1.0)[:, None]
@@ -127,13 +128,18 @@ def pull_trial(measurement: Measurement, parameters: ParameterSet) -> Trial:
 
     def begin(values: Values, effects: Effects) -> Array:
         tight = simulated(values, effects, 0.0)
-        return np.array([find_slack(measured[rising], travel[rising], tight[rising]) / size])
+        found = find_slack(measured[rising], travel[rising], tight[rising]) / size
+        if not measurement.entry.wheel_rate_rad_s:
+            return np.array([found])
+        # wheels that spin all the while have turned further when a slack ends: one simulation does not tell another's
+        around = travel[[min(max(tight_at + k, 0), len(travel) - 1) for k in (-1, 0, 1)]] / size
+        return min((np.array([s]) for s in (found, *around)), key=lambda own: _misfit(trial, values, effects, own))
 
     # a block alone has nothing to swing on
     swings = measurement.entry.experiment == "pull" and "tire.stiffness_y_N_m" in parameters
     noise = spread(averaged(measured)[:, 0] / share[:, 0]) if teeth is None else teeth.noise
     target = averaged(measured)
-    return Trial(
+    trial = Trial(
         measurement.name,
         measurement.entry.experiment,
         measurement.entry.direction or "",
@@ -156,6 +162,13 @@ def pull_trial(measurement: Measurement, parameters: ParameterSet) -> Trial:
         jolt=(tightened + JOLT[0], tightened + JOLT[1]),
         slides_from=float(times[lets_go(target / share)]) if swings and teeth is None else None,
     )
+    return trial
+
+
+def _misfit(trial: Trial, values: Values, effects: Effects, own: Array) -> float:
+    left = trial.white_target - trial.whitened(trial.run(values, effects, own))
+    misfit = float(left @ left)
+    return misfit if np.isfinite(misfit) else np.inf
 
 
 def _blind(entry: Entry) -> tuple[str, ...]:

@@ -11,7 +11,7 @@ from scipy.signal import lfilter
 
 from ssmr_ident.identify.decay_record import spread
 from ssmr_ident.identify.decay_start import nuisance_columns
-from ssmr_ident.identify.mains import MAINS_HZ, mains_lines
+from ssmr_ident.identify.mains import any_mains_lines
 from ssmr_ident.identify.noise import AutoregressiveNoise
 from ssmr_ident.physics.slots import Effects
 
@@ -61,8 +61,7 @@ class Trial:
     noises : tuple of AutoregressiveNoise
         Per channel.
     basis : (n, b) float
-        Columns that each channel may have a share of without saying anything of the physics: its zero and how that
-        drifts, mains lines.
+        Columns that each channel may have a share of without saying anything of the physics: its zero, mains lines.
     run : callable
         ``run(values, effects, nuisance)`` simulates the channels, (n, c).
     begin : callable
@@ -102,6 +101,8 @@ class Trial:
         When a robot that is pulled begins to slide as a whole; None where nothing slides, or in teeth.
     lined : bool
         The basis has the mains lines already.
+    drift : (n, d) float or None
+        How a channel's zero may drift, in its unit: columns of which it has a share of unit standard deviation.
     """
 
     name: str
@@ -131,6 +132,7 @@ class Trial:
     many: Callable[[Sequence[Asked]], Array] | None = None
     slides_from: float | None = None
     lined: bool = False
+    drift: Array | None = None
 
     @property
     def step(self) -> float:
@@ -146,6 +148,20 @@ class Trial:
         """Orthonormal columns of the whitened basis, per channel."""
         return tuple(np.linalg.qr(self._white(self.basis, index))[0] for index in range(len(self.channels)))
 
+    @cached_property
+    def _drifts(self) -> tuple[tuple[Array, Array], ...]:
+        """What makes white again what drifts of uncertain size add to white noise, I − U (1 − (1 + S²)^−½) U', per
+        channel: U (N, d) and the rest of the product (d, N)."""
+        drift = self.drift
+        if drift is None:
+            return tuple((projector[:, :0], projector[:, :0].T) for projector in self._projectors)
+        found = []
+        for index, projector in enumerate(self._projectors):
+            columns = self._white(drift, index)
+            u, size, _ = np.linalg.svd(columns - projector @ (projector.T @ columns), full_matrices=False)
+            found.append((u, (1.0 - (1.0 + size**2) ** -0.5)[:, None] * u.T))
+        return tuple(found)
+
     def _white(self, columns: Array, index: int) -> Array:
         noise = self.noises[index]
         white = noise.whiten(columns)[self.lost - noise.order :]
@@ -158,7 +174,9 @@ class Trial:
         parts = []
         for index, projector in enumerate(self._projectors):
             white = self._white(signal[:, index], index)
-            parts.append(white - projector @ (projector.T @ white))
+            white = white - projector @ (projector.T @ white)
+            across, along = self._drifts[index]
+            parts.append(white - across @ (along @ white))
         return np.concatenate(parts)
 
     @cached_property
@@ -208,11 +226,7 @@ class Trial:
 
     def with_lines(self, residual: Array) -> Trial:
         """The same with the mains lines that stand out of a residual, (n, c), added to the basis."""
-        lines = (
-            ()
-            if self.lined
-            else tuple(line for hz in MAINS_HZ for line in mains_lines(residual, self.step, hz, folds=True))
-        )
+        lines = () if self.lined else any_mains_lines(residual, self.step, folds=True)
         if not lines:
             return self
         since = self.times - self.times[0]
