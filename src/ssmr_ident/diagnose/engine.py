@@ -24,7 +24,7 @@ from ssmr_ident.diagnose.accept import (
 from ssmr_ident.diagnose.coupling import coupled
 from ssmr_ident.diagnose.explain import without
 from ssmr_ident.diagnose.explore import LAST, Search, best_baseline, prepared, search, unsteady
-from ssmr_ident.diagnose.polish import calmed, polish, turned
+from ssmr_ident.diagnose.polish import calmed, loud, polish, turned
 from ssmr_ident.diagnose.race import Progress
 from ssmr_ident.diagnose.rotate import shown_in_turn
 from ssmr_ident.diagnose.setup import Setup
@@ -86,7 +86,7 @@ def examine(setup: Setup, parameters: ParameterSet, progress: Progress | None = 
             result = Search(fit, (), tuple(e.fit for e in new), lengths)
         else:
             result = search(chosen.fit, setup.campaign.session.baseline, lengths, chosen is not baseline, progress)
-            new = _all_explained(kept, result.tried, chosen.kept)
+            new = _all_explained(kept, [calmed(f) if unsteady(f) else f for f in result.tried], chosen.kept)
         searches.append(result)
         if not new:
             break
@@ -112,6 +112,13 @@ def examine(setup: Setup, parameters: ParameterSet, progress: Progress | None = 
             found_fit = differentiate(leader.fit)
             good = _good(leader, chosen, first)
         tried = _with(tried, new)
+        if first and not good and certain(leader, chosen) and loud(chosen.fit):
+            together = _with_a_second(leader, chosen, kept, setup.campaign.session.baseline, lengths, progress)
+            tried = _with(tried, together)
+            if together and _good(together[0], chosen, first) and significant(together[0].fit):
+                singles.append(leader)
+                chosen = together[0]
+                break
         if not good or not significant(found_fit) or within_file(found_fit, parameters):
             break
         further = [name for name in leader.fit.model.ids if name not in chosen.fit.model.ids]
@@ -202,6 +209,26 @@ def _at_its_best(
     if _followable(further) and further.fit.cost(further.fit.counted) < leader.fit.cost(further.fit.counted):
         new[new.index(leader)], leader = further, further
     return leader
+
+
+def _with_a_second(
+    leader: Explanation,
+    before: Explanation,
+    kept: Sequence[Trial],
+    baseline: str,
+    lengths: tuple[float, ...],
+    progress: Progress | None,
+) -> list[Explanation]:
+    """Pairs of a leader that predicts no better alone, the best one first; none where that does not mend it.
+
+    Of two effects that recordings show in turn neither need.
+    """
+    new = _all_explained(kept, search(leader.fit, baseline, lengths, True, progress).tried, leader.kept)
+    if not new:
+        return []
+    pair = _at_its_best(leading(before, new), new, kept, lengths)
+    others = [e for e in new if e is not pair]
+    return [replace(pair, fit=differentiate(pair.fit)), *others] if mends(pair, leader) else []
 
 
 def _partners(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -10,6 +11,7 @@ from ssmr_ident.compare.recorded import follow
 from ssmr_ident.diagnose.scan import Suspect
 from ssmr_ident.identify.coordinates import Model
 from ssmr_ident.identify.descent import descend
+from ssmr_ident.identify.horizons import led
 from ssmr_ident.identify.joint import JointFit, Slopes, evaluate
 from ssmr_ident.physics.effect import Site
 from ssmr_ident.physics.effects import CATALOGUE
@@ -46,11 +48,28 @@ def beside(fit: JointFit, suspect: Suspect) -> JointFit:
             break
     if not CATALOGUE[suspect.effect].sudden or not np.isfinite(begun.rss):
         return begun
-    frozen = replace(fit.model, held={**fit.model.held, suspect.effect: model.split(point)[1][suspect.effect]})
+    frozen = _held(fit, suspect, model, point)
     moves = Site.OUTPUT not in CATALOGUE[suspect.effect].acts
     begun_anew = (follow if moves else evaluate)(fit.trials, frozen, fit.point, fit.nuisances)
     settled = descend(begun_anew, SETTLING)
     return evaluate(fit.trials, model, np.concatenate([settled.point, point[len(fit.point) :]]), settled.nuisances)
+
+
+def from_what_is_known(fit: JointFit, suspect: Suspect, lengths: Sequence[float]) -> JointFit:
+    """A suspect beside all else as it is known, held at its probe until that has been led over whole recordings.
+
+    Beside a baseline that has left what is known to do without it, an effect finds little to do.
+    """
+    model, point = with_suspect(fit, suspect)
+    physics, count = len(fit.model.physics), len(fit.point)
+    known = np.concatenate([np.zeros(physics), fit.point[physics:]])
+    begun = led(fit.trials, _held(fit, suspect, model, point), known, lengths, SETTLING)
+    return evaluate(fit.trials, model, np.concatenate([begun.point, point[count:]]), begun.nuisances)
+
+
+def _held(fit: JointFit, suspect: Suspect, model: Model, point: Array) -> Model:
+    """The model with a suspect's effect as it is at a point, and nothing of that to be fitted."""
+    return replace(fit.model, held={**fit.model.held, suspect.effect: model.split(point)[1][suspect.effect]})
 
 
 def without(fit: JointFit, effect_id: str) -> JointFit:

@@ -12,7 +12,8 @@ from scipy.stats import chi2
 from ssmr_ident.compare.recorded import follow, radian
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.accept import CHANCE
-from ssmr_ident.diagnose.race import Progress, raced, ranked, run_on, screened, started, variants
+from ssmr_ident.diagnose.explain import from_what_is_known
+from ssmr_ident.diagnose.race import FAR, Progress, raced, ranked, run_on, screened, started, variants
 from ssmr_ident.diagnose.scan import Suspect, candidates, scan
 from ssmr_ident.diagnose.setup import Setup
 from ssmr_ident.diagnose.start import begin
@@ -22,6 +23,8 @@ from ssmr_ident.identify.horizons import horizons, led
 from ssmr_ident.identify.joint import JointFit, differentiate, evaluate
 from ssmr_ident.identify.swings import led_through_slides
 from ssmr_ident.identify.trials import Trial
+from ssmr_ident.physics.effect import Site
+from ssmr_ident.physics.effects import CATALOGUE
 
 PROMISING = 6.0
 """Fall of n ln(RSS), beyond one for each parameter, from which a suspect is refitted. Noise alone passes it in
@@ -95,7 +98,26 @@ def best_baseline(
     if float(np.max(fit.parts / [t.size for t in fit.trials])) > LOUD and len(lengths) > 1:
         other = differentiate(led(fit.trials, fit.model, fit.point, lengths, LAST // 2))
         fit = min((fit, other), key=lambda f: f.cost(fit.counted))
-    return led_out(fit) if chatters(fit) or unsteady(fit) else fit, lengths
+    return led_out(fit) if chatters(fit) or unsteady(fit) else called_back(fit), lengths
+
+
+def called_back(fit: JointFit) -> JointFit:
+    """A fit that leaves little and has left what is known for it, begun again with one such parameter as known.
+
+    Gains, a centre of mass and inertias stand in for each other in pairs, far from the truth as well; of a hollow
+    seven deviations off one parameter alone shows the way out.
+    """
+    left = fit.parts / [t.size for t in fit.trials]
+    far = np.flatnonzero(np.abs(fit.point[: len(fit.model.physics)]) > FAR)
+    if not len(far) or not float(np.median(left)) < WIDE or any(t.searched for t in fit.trials):
+        return fit
+    ends = [fit]
+    for column in far:
+        point = fit.point.copy()
+        point[column] = 0.0
+        ends.append(descend(follow(fit.trials, fit.model, point, fit.nuisances), LAST))
+    best = min(ends, key=lambda f: f.cost(fit.counted))
+    return differentiate(best)
 
 
 def led_out(fit: JointFit) -> JointFit:
@@ -169,7 +191,10 @@ def search(
         rough = raced(base, groups, progress)
     else:
         chosen = [g for g in groups if g[0].gain > PROMISING + len(g[0].at)][: REFITTED if further else SCREENED]
-        rough = run_on([started(base, suspect) for group in chosen for suspect in variants(group)])
+        alone = bent(base) and not further and len(lengths) > 1
+        hidden = [g for g in groups if alone and _moves_beyond(g[0].effect)]
+        field = [started(base, s) for group in _each_group(chosen, hidden) for s in variants(group)]
+        rough = run_on(field + [from_what_is_known(base, s, lengths) for group in hidden for s in variants(group)])
     tried: list[JointFit] = []
     rough = _finalists([fit for fit in rough if _close(rough, fit)], starts=2 if chatters(base) else 1)
     for index, fit in enumerate(rough):
@@ -183,6 +208,21 @@ def search(
     if progress:
         progress("refitting explanations", 1, 1)
     return Search(base, tuple(tuple(g) for g in groups), tuple(_each_once(tried)), tuple(lengths))
+
+
+def _each_group(*lists: Sequence[Sequence[Suspect]]) -> list[Sequence[Suspect]]:
+    return list({group[0].effect: group for groups in lists for group in groups}.values())
+
+
+def _moves_beyond(effect_id: str) -> bool:
+    """Whether an effect changes motions, and that only beyond some value."""
+    effect = CATALOGUE[effect_id]
+    return effect.sudden and Site.OUTPUT not in effect.acts
+
+
+def bent(fit: JointFit) -> bool:
+    """Whether a baseline has left what is known of it, as it does to follow recordings without what is missing."""
+    return float(np.max(np.abs(fit.point[: len(fit.model.physics)]), initial=0.0)) > FAR
 
 
 def mended(fit: JointFit) -> JointFit:

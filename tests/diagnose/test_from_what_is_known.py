@@ -1,0 +1,34 @@
+"""A baseline that has left what is known of it to follow recordings without what is missing."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from bank import draw
+
+from ssmr_ident.compare.recorded import follow
+from ssmr_ident.diagnose import explore
+from ssmr_ident.diagnose.explore import PROMISING, bent, best_baseline, search
+from ssmr_ident.diagnose.setup import set_up
+from ssmr_ident.identify.joint import JointFit
+
+
+def test_a_belt_that_no_straight_line_promises_is_tried_beside_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn = draw("decays", "one", 2, "motor_belt", 0.8, short=True)
+    setup = set_up(drawn.campaign, drawn.campaign.parameters)
+    base, lengths = best_baseline(setup.fitted, setup, drawn.campaign.parameters)
+    assert bent(base)
+    fields: list[list[JointFit]] = []
+    monkeypatch.setattr(explore, "run_on", lambda field: fields.append(field) or field[:1])
+    found = search(base, "rigid6", lengths)
+    (belt,) = [group for group in found.suspects if group[0].effect == "motor_belt"]
+    assert belt[0].gain < PROMISING + len(belt[0].at)
+    tried = [fit for fit in fields[0] if fit.model.ids == ("motor_belt",)]
+    assert len(tried) == 2 * len({s.at["K_b_N_m"] for s in belt})  # from the baseline, and from what is known
+    probes = {s.at["K_b_N_m"] for s in belt}
+    led = [fit for fit in tried if fit.model.split(fit.point)[1]["motor_belt"]["K_b_N_m"] in probes]
+    assert len(led) == len(probes)  # held there until now
+    for fit in led:
+        known = np.concatenate([np.zeros(len(base.model.physics)), fit.point[len(base.point) :]])
+        assert fit.cost(base.counted) < follow(base.trials, fit.model, known).cost(base.counted)
+    assert not [fit for fit in fields[0] if fit.model.ids == ("sensor_saturation",)]
