@@ -24,7 +24,13 @@ def test_what_another_file_was_compiled_into_is_forgotten_when_that_file_changes
     assert not index.exists()
 
 
-def test_a_package_that_keeps_nothing_is_left_alone(tmp_path: Path) -> None:
-    (tmp_path / "law.py").write_text("x = 1\n")
-    assert not forget_other_sources(tmp_path)
-    assert list(tmp_path.iterdir()) == [tmp_path / "law.py"]
+def test_an_interpreter_that_keeps_no_bytecode_forgets_as_well(tmp_path: Path) -> None:
+    """numba makes folders where it keeps loops; of the package's own only an interpreter does."""
+    law, index = tmp_path / "law.py", tmp_path / "simulate" / "__pycache__" / "loop.nbi"
+    index.parent.mkdir(parents=True)
+    law.write_text("x = 1\n")
+    assert forget_other_sources(tmp_path)
+    index.write_text("compiled")
+    os.utime(law, ns=(1, 1))
+    assert forget_other_sources(tmp_path)
+    assert not index.exists()

@@ -32,9 +32,12 @@ def forget_other_sources(package: Path) -> bool:
     bool
         Whether sources were other ones, or not known.
     """
-    kept = package / "__pycache__"
-    if not (kept.is_dir() and os.access(kept, os.W_OK)):
+    kept = (
+        package / "__pycache__"
+    )  # which an interpreter that keeps no bytecode does not make; numba does, in each folder
+    if not os.access(kept if kept.is_dir() else package, os.W_OK):
         return False
+    kept.mkdir(exist_ok=True)
     digest = hashlib.sha256()
     for file in sorted(package.rglob("*.py")):
         facts = file.stat()
