@@ -95,7 +95,7 @@ def best_baseline(
     more than noise."""
     fit = fit_baseline(trials, setup, parameters)
     lengths = tuple(horizons(fit.trials, radian(fit.trials)))
-    if float(np.max(fit.parts / [t.size for t in fit.trials])) > LOUD and len(lengths) > 1:
+    if _leaves_much(fit) and len(lengths) > 1:
         other = differentiate(led(fit.trials, fit.model, fit.point, lengths, LAST // 2))
         fit = min((fit, other), key=lambda f: f.cost(fit.counted))
     return led_out(fit) if chatters(fit) or unsteady(fit) else called_back(fit), lengths
@@ -195,6 +195,23 @@ def search(
         hidden = [g for g in groups if alone and _moves_beyond(g[0].effect)]
         field = [started(base, s) for group in _each_group(chosen, hidden) for s in variants(group)]
         rough = run_on(field + [from_what_is_known(base, s, lengths) for group in hidden for s in variants(group)])
+    tried = _to_the_end(base, rough, rest, lengths, progress)
+    if loud and baseline == "sdof" and len(lengths) > 1 and tried and _leaves_much(ranked(tried)[0]):
+        # what a first horizon tells of two recordings had put something else in front; rigs are simulated in no time
+        tried += _to_the_end(base, raced(base, groups, progress), [np.inf], lengths, progress)
+    if progress:
+        progress("refitting explanations", 1, 1)
+    return Search(base, tuple(tuple(g) for g in groups), tuple(_each_once(tried)), tuple(lengths))
+
+
+def _to_the_end(
+    base: JointFit,
+    rough: Sequence[JointFit],
+    rest: Sequence[float],
+    lengths: Sequence[float],
+    progress: Progress | None,
+) -> list[JointFit]:
+    """The first few of what was tried, refitted to all recordings at their full length."""
     tried: list[JointFit] = []
     rough = _finalists([fit for fit in rough if _close(rough, fit)], starts=2 if chatters(base) else 1)
     for index, fit in enumerate(rough):
@@ -205,9 +222,11 @@ def search(
         begun = led(base.trials, fit.model, fit.point, rest, LAST // 2, _all_nuisances(base, fit, lengths))
         # what is as far behind as this halfway does not win, and where exactly it ends decides nothing
         tried.append(mended(descend(begun, LAST - LAST // 2)) if _close(ranked([begun, *tried]), begun) else begun)
-    if progress:
-        progress("refitting explanations", 1, 1)
-    return Search(base, tuple(tuple(g) for g in groups), tuple(_each_once(tried)), tuple(lengths))
+    return tried
+
+
+def _leaves_much(fit: JointFit) -> bool:
+    return float(np.max(fit.parts / [t.size for t in fit.trials])) > LOUD
 
 
 def _each_group(*lists: Sequence[Sequence[Suspect]]) -> list[Sequence[Suspect]]:

@@ -64,7 +64,10 @@ def raced(base: JointFit, groups: Sequence[Sequence[Suspect]], progress: Progres
             field += [descend(fit, HEATS[1][1], plain=True) for fit in combined(base, group[0])]
     if progress:
         progress("trying effects", 1, 1)
-    return order([descend(f, 2, plain=plain) for f in _few_unlisted(order(field))[: HEATS[2][0]]])
+    ordered, kept = _few_unlisted(order(field)), HEATS[2][0]
+    # after two steps the first few may all be of one effect
+    once = [] if plain else _each_form(ordered)[:kept]
+    return order([descend(f, 2, plain=plain) for f in (*once, *(f for f in ordered[:kept] if f not in once))])
 
 
 def run_on(started: Sequence[JointFit]) -> list[JointFit]:
