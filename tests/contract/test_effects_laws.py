@@ -112,6 +112,22 @@ def test_friction_takes_four_times_force_and_way_per_cycle(slider: float) -> Non
 
 
 @law("dry_friction")
+def test_friction_without_travel_is_a_damper_far_below_its_rounding_and_coulombs_far_above() -> None:
+    """ln(A0/A_n) = n pi 2 xi/√(1 - xi²) of a damper F/v_r; 4 F/K a cycle of Coulomb's; between, tanh by exponentials."""
+    friction, amplitude = 2.0, 5e-3
+    slow = _extremes(_swing({"dry_friction": {"F_c_N": friction, "rounding_m_s": 40.0 * OMEGA * amplitude}}, amplitude))
+    xi = friction / (40.0 * OMEGA * amplitude) / (2.0 * math.sqrt(STIFFNESS * MASS))
+    assert math.log(slow[1] / slow[21]) == pytest.approx(20.0 * math.pi * xi / math.sqrt(1.0 - xi**2), rel=2e-3)
+    fast = _extremes(_swing({"dry_friction": {"F_c_N": friction, "rounding_m_s": 2e-3 * OMEGA * amplitude}}, amplitude))
+    assert (fast[1] - fast[11]) / 5.0 == pytest.approx(4.0 * friction / STIFFNESS, rel=2e-3)
+    e = effect_vector(checked({"dry_friction": {"F_c_N": friction, "rounding_m_s": 0.1}}))
+    rates = 0.2 * np.cos(np.linspace(0.0, 2.0 * np.pi, 2001))
+    found = [element_force(0.0, rate, np.zeros(STATES), STIFFNESS, 1.0, 1.0, True, e) for rate in rates]
+    grown = np.exp(2.0 * rates / 0.1)
+    assert found == pytest.approx(friction * (grown - 1.0) / (grown + 1.0), abs=1e-12)
+
+
+@law("dry_friction")
 def test_a_push_leaves_what_its_own_laws_leave() -> None:
     """Dahl from rest: z = F/k (1 - exp(-s k/F)); Bouc and Wen with n = 2: y tanh(s/y); a dashpot has not moved."""
     push, reach, y = 4e-4, 5e-4, 3e-4
@@ -189,18 +205,31 @@ def test_the_smooth_force_moves_a_shaken_mass_as_an_adaptive_solver_has_it(seed:
     s, v = 5e-3, 0.2
     sizes = [v, s, s**2, v**2, s * v, s**2 * v, v**3, s * v, v**0.5, s, v, s, s]
     a, b, c, d, e, f, g, h, i, j, k, m, n = random.uniform(-5.0, 5.0, 13) / sizes
+    place = float(random.uniform(-3e-3, 3e-3))
     push = lambda t: 60.0 * np.sin(2 * np.pi * 5.0 * t) * np.sin(2 * np.pi * 0.9 * t)  # noqa: E731
 
     def rate(t: float, state: np.ndarray) -> tuple[float, float]:
         x, u = state
-        extra = a * abs(u) + b * abs(x) + c * x**2 + d * u**2 + e * x * u + f * x**2 * u + g * u**3 + h * x * abs(u)
+        extra = (
+            a * abs(u)
+            + b * (abs(x - place) - abs(place))
+            + c * x**2
+            + d * u**2
+            + e * x * u
+            + f * x**2 * u
+            + g * u**3
+            + h * x * abs(u)
+        )
         extra += i * u / (u**2 + 1e-6) ** 0.25
         extra += t * (j * x + k * u) + x * (m * np.sin(2 * np.pi * 1.7 * t) + n * np.cos(2 * np.pi * 1.7 * t))
         return u, (push(t) - 120.0 * u - STIFFNESS * x - extra) / MASS
 
     time = np.arange(2000) / 2000.0
     exact = solve_ivp(rate, (0.0, 1.0), (2e-3, 0.0), t_eval=time, rtol=1e-9, atol=1e-12, max_step=1e-3).y
-    values = dict(zip(names, (a, b, c, d, e, f, g, h, i, j, k, m, n), strict=True)) | {"pulse_Hz": 1.7}
+    values = dict(zip(names, (a, b, c, d, e, f, g, h, i, j, k, m, n), strict=True)) | {
+        "pulse_Hz": 1.7,
+        "place_m": place,
+    }
     rig = Rig(MASS, 120.0, STIFFNESS)
     found, plain = (simulate_rig(rig, push(time), 2000.0, 2e-3, effects=x) for x in ({"unlisted": values}, {}))
     for column in (0, 1):
@@ -244,13 +273,15 @@ def test_a_tire_has_the_same_smooth_force_along_both_axes(robot: Robot) -> None:
     ahead = [robot.contact_points[:, 0].mean(), 0.0, 0.0]
     low = robot.with_changes(contact_points=(robot.contact_points - ahead) * [1.0, 1.0, 1e-6], **HELD)
     c, cubic = -60.0, 2e4
-    values = {"c_abs_v_N_s_m": c, "c_v3_N_s3_m3": cubic}
+    stop, place = 900.0, 3e-4
+    values = {"c_abs_v_N_s_m": c, "c_v3_N_s3_m3": cubic, "c_abs_s_N_m": stop, "place_m": place}
     for axis, name in enumerate(("x", "y")):
         k, d = low.stiffness[axis], low.damping[axis]
 
         def rate(t: float, state: np.ndarray, k: float = k, d: float = d) -> tuple[float, float]:
             s, v = state
-            return v, -4.0 / low.mass * (k * s + d * v + c * abs(v) + cubic * v**3)
+            extra = c * abs(v) + cubic * v**3 + stop * (abs(s - place) - place)
+            return v, -4.0 / low.mass * (k * s + d * v + extra)
 
         time = np.arange(500) / 1000.0
         exact = solve_ivp(rate, (0.0, 0.5), (1e-3, 0.0), t_eval=time, rtol=1e-9, atol=1e-13, max_step=1e-3).y[0]

@@ -19,6 +19,7 @@ from ssmr_ident.physics.slots import (
     ALPHA,
     CUBIC,
     FRICTION_FORCE,
+    FRICTION_ROUNDING,
     FRICTION_STIFFNESS,
     GAP,
     GAP_ROUNDING,
@@ -78,7 +79,7 @@ def element_force(s, v, z, stiffness, ratio, gap_share, tangential, e):
         if e[QUADRATIC] != 0.0:
             f += _quadratic(v, e[QUADRATIC])
         if e[FRICTION_FORCE] != 0.0:
-            f += _friction(z[0], e[FRICTION_STIFFNESS])
+            f += _friction(z[0], v, e[FRICTION_FORCE], e[FRICTION_STIFFNESS], e[FRICTION_ROUNDING])
         if e[ALPHA] != 1.0:
             f += _loop(s, z[1], stiffness, e[ALPHA])
         if e[GAP] != 0.0 and gap_share > 0.0:
@@ -126,4 +127,5 @@ def inner_slots(e):
     return (
         e[0], e[1], e[2], e[3], e[4], e[5], e[6], e[7], e[8], e[9],
         e[10], e[11], e[12], e[13], e[14], e[15], e[16], e[17], e[18], e[19], e[20], e[21], e[22], e[23], e[24],
+        e[25],
     )  # fmt: skip

@@ -18,6 +18,7 @@ SLOTS = (
     "dry_friction.F_c_N",
     "dry_friction.element_stiffness_N_m",
     "dry_friction.slider",
+    "dry_friction.rounding_m_s",
     "hysteresis.alpha",
     "hysteresis.yield_m",
     "hysteresis.exponent",
@@ -48,13 +49,13 @@ SLOTS = (
     "motor_belt.rim_mass_kg",
     *(f"unlisted.{parameter.name}" for parameter in unlisted.EFFECT.parameters),
 )
-CUBIC, KNEE_SHARE, KNEE, QUADRATIC, FRICTION_FORCE, FRICTION_STIFFNESS, SLIDER = range(7)
-ALPHA, YIELD, LOOP_EXPONENT, LOOP_SHAPE = range(7, 11)
-RELAXATION_STIFFNESS, RELAXATION_TIME, GAP, GAP_ROUNDING, GAP_SHARE_X = range(11, 16)
-KINETIC_SHARE, STRIBECK_SPEED, STRIBECK_EXPONENT, LOAD_EXPONENT, ROLLING = range(16, 21)
-JOINT_DEPTH, JOINT_PITCH, JOINT_WIDTH, ECCENTRICITY, ROUGHNESS = range(21, 26)
-LIFT, CORIOLIS, MAST_HZ, MAST_MASS, MAST_HEIGHT, MAST_DAMPING = range(26, 32)
-BELT_STIFFNESS, BELT_DAMPING, RIM_MASS, UNLISTED = range(32, 36)
+CUBIC, KNEE_SHARE, KNEE, QUADRATIC, FRICTION_FORCE, FRICTION_STIFFNESS, SLIDER, FRICTION_ROUNDING = range(8)
+ALPHA, YIELD, LOOP_EXPONENT, LOOP_SHAPE = range(8, 12)
+RELAXATION_STIFFNESS, RELAXATION_TIME, GAP, GAP_ROUNDING, GAP_SHARE_X = range(12, 17)
+KINETIC_SHARE, STRIBECK_SPEED, STRIBECK_EXPONENT, LOAD_EXPONENT, ROLLING = range(17, 22)
+JOINT_DEPTH, JOINT_PITCH, JOINT_WIDTH, ECCENTRICITY, ROUGHNESS = range(22, 27)
+LIFT, CORIOLIS, MAST_HZ, MAST_MASS, MAST_HEIGHT, MAST_DAMPING = range(27, 33)
+BELT_STIFFNESS, BELT_DAMPING, RIM_MASS, UNLISTED = range(33, 37)
 """First of what no list holds; these are the last slots."""
 
 Effects = Mapping[str, Mapping[str, float]]

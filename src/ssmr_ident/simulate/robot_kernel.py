@@ -175,7 +175,7 @@ def run(
     f = _FREE
     free = (
         e[f], e[f + 1], e[f + 2], e[f + 3], e[f + 4], e[f + 5], e[f + 6], e[f + 7], e[f + 8], e[f + 9], e[f + 10],
-        e[f + 11], e[f + 12], e[f + 13],
+        e[f + 11], e[f + 12], e[f + 13], 0.0, 0.0, 0.0, e[f + 17],
     )  # fmt: skip
     if beside and start[LOADED] != 0.0:
         for i in range(12):

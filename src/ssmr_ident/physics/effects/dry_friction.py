@@ -10,8 +10,13 @@ from ssmr_ident.physics.effect import Effect, Site, Sized
 
 
 @kernel
-def force(z, stiffness):
-    """k·z [N] of the elastic-plastic element; z : float [m], k : float [N/m]."""
+def force(z, v, friction, stiffness, rounding):
+    """k·z [N] of the elastic-plastic element, or F_c tanh(v/v_r) of one without travel where v_r is not 0.
+
+    z : float [m], v : float [m/s], friction : float [N], stiffness : float [N/m], rounding : float [m/s].
+    """
+    if rounding != 0.0:
+        return friction * math.tanh(v / rounding)
     return stiffness * z
 
 
@@ -34,7 +39,7 @@ def advance(z, v, step, friction, stiffness, slider):
 EFFECT = Effect(
     id="dry_friction",
     sentence="Dry friction opposes every motion with the same force, however slow it is.",
-    equation=r"F = k z,\quad \dot z = v - |v|\,k z/F_c",
+    equation=r"F = k z,\quad \dot z = v - |v|\,k z/F_c \quad\text{or}\quad F = F_c\tanh(v/v_r)",
     source="P. R. Dahl, A solid friction model, Aerospace Corp. TOR-0158, 1968; "
     "Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30(7), 1994",
     signature="a decay falls along a straight line and stops dead; damping ratio grows as the amplitude falls",
@@ -42,6 +47,7 @@ EFFECT = Effect(
         Parameter("F_c_N", "N", 1.0, 0.0, 200.0, "friction of one tire and axis, or of the rig", off=0.0),
         Parameter("element_stiffness_N_m", "N/m", 3e5, 1e2, 1e8, "elastic travel before it slides"),
         Parameter("slider", "1", 0.0, 0.0, 1.0, "1: a spring in series with a slider, 0: Dahl's law"),
+        Parameter("rounding_m_s", "m/s", 0.0, 0.0, 10.0, "v_r: not 0: no elastic travel, F = F_c tanh(v/v_r)"),
     ),
     experiments=("free_response", "forced"),
     acts={Site.ELEMENT: force, Site.STATE: advance},
@@ -51,5 +57,6 @@ EFFECT = Effect(
         {"F_c_N": Sized(0.005, "force"), "element_stiffness_N_m": Sized(10.0, "stiffness")},
         {"F_c_N": Sized(0.03, "force"), "element_stiffness_N_m": Sized(10.0, "stiffness")},
         {"F_c_N": Sized(0.15, "force"), "element_stiffness_N_m": Sized(10.0, "stiffness")},
+        {"F_c_N": Sized(0.03, "force"), "rounding_m_s": Sized(0.1, "speed")},
     ),
 )

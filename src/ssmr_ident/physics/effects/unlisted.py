@@ -13,7 +13,7 @@ from ssmr_ident.physics.effect import Effect, Site, Sized
 
 TERMS = {
     "c_abs_v_N_s_m": "|v|",
-    "c_abs_s_N_m": "|s|",
+    "c_abs_s_N_m": "|s - place|",
     "c_s2_N_m2": "s^2",
     "c_v2_N_s2_m2": "v^2",
     "c_sv_N_s_m2": "s v",
@@ -27,10 +27,11 @@ TERMS = {
     "c_cos_s_N_m": "s cos(2 pi pulse_Hz t)",
 }
 """Terms by parameter, t from where a recording begins. What is odd in s alone or |v| v is hardening or quadratic
-damping, which are listed."""
+damping, which are listed. |s - place| is a spring that touches on one side: what it has of a straight line and of a
+constant is in K and in where the spring is at rest."""
 
 PULSE_HZ = len(TERMS)
-RIDER_SHARE, RIDER_HZ, RIDER_RATIO = range(PULSE_HZ + 1, PULSE_HZ + 4)
+RIDER_SHARE, RIDER_HZ, RIDER_RATIO, PLACE = range(PULSE_HZ + 1, PULSE_HZ + 5)
 """Places behind the terms' coefficients."""
 
 _SLOW = 1e-3
@@ -44,7 +45,7 @@ def force(s, v, t, c):
     """Σ c_i f_i(s, v, t) [N]; s : float [m], v : float [m/s], t : float [s]; c : (n,) float in the order of the
     parameters."""
     total = (
-        c[0] * abs(v) + c[1] * abs(s) + c[2] * s * s + c[3] * v * v
+        c[0] * abs(v) + c[1] * (abs(s - c[PLACE]) - abs(c[PLACE])) + c[2] * s * s + c[3] * v * v
         + c[4] * s * v + c[5] * s * s * v + c[6] * v * v * v + c[7] * s * abs(v)
         + (c[8] * v * (v * v + _SLOW * _SLOW) ** -0.25 if c[8] != 0.0 else 0.0)
         + t * (c[9] * s + c[10] * v)
@@ -59,6 +60,8 @@ def law(values: Mapping[str, float]) -> str:
     """The terms that are there, as plain text."""
     parts = [f"{name.split('_N')[0]} {term}" for name, term in TERMS.items() if values.get(name, 0.0) != 0.0]
     text = "F = K s + D v" + "".join(f" + {part}" for part in parts)
+    if values.get("c_abs_s_N_m", 0.0) != 0.0:
+        text += f"; place = {values.get('place_m', 0.0):.3g} m"
     if values.get("rider_share", 0.0) != 0.0:
         text += "; rider_share of the mass rides on a spring of its own, at rider_Hz with the damping rider_ratio"
     return text
@@ -87,6 +90,10 @@ _RIDERS: tuple[Mapping[str, float | Sized], ...] = tuple(
 """A ninth between one and the next: the descent finds what is left of that. So small a share, because a straight line
 must tell which frequency it is. Where noise is fast, a recording's motion seems faster than it is: down to a tenth."""
 
+_TOUCHES: tuple[Mapping[str, float | Sized], ...] = tuple(
+    {"c_abs_s_N_m": Sized(0.05, "stiffness"), "place_m": Sized(share, "deflection")} for share in (-0.6, -0.3, 0.3, 0.6)
+)
+
 EFFECT = Effect(
     id="unlisted",
     sentence="A force acts beside spring and damper that none of the listed effects makes.",
@@ -109,10 +116,11 @@ EFFECT = Effect(
             0.1,
             "its damping ratio; with more it is as relaxation",
         ),
+        Parameter("place_m", "m", 0.0, -1.0, 1.0, "where |s - place| bends"),
     ),
     experiments=("free_response", "forced"),
     acts={Site.ELEMENT: force},
     rig=True,
     probes=tuple({name: Sized(0.05, size)} for name, size in list(zip(TERMS, _SIZES, strict=True))[: PULSE_HZ - 2]),
-    rig_probes=(*_PULSES, *_RIDERS),
+    rig_probes=(*_PULSES, *_RIDERS, *_TOUCHES),
 )
