@@ -113,7 +113,7 @@ def test_friction_takes_four_times_force_and_way_per_cycle(slider: float) -> Non
 
 @law("dry_friction")
 def test_friction_without_travel_is_a_damper_far_below_its_rounding_and_coulombs_far_above() -> None:
-    """ln(A0/A_n) = n pi 2 xi/√(1 - xi²) of a damper F/v_r; 4 F/K a cycle of Coulomb's; between, tanh by exponentials."""
+    """ln(A0/A_n) = n pi 2 xi/√(1 - xi²) of a damper F/v_r; 4 F/K a cycle of Coulomb's; between, tanh."""
     friction, amplitude = 2.0, 5e-3
     slow = _extremes(_swing({"dry_friction": {"F_c_N": friction, "rounding_m_s": 40.0 * OMEGA * amplitude}}, amplitude))
     xi = friction / (40.0 * OMEGA * amplitude) / (2.0 * math.sqrt(STIFFNESS * MASS))
@@ -268,7 +268,7 @@ def test_no_mass_rides_along_on_a_robot(robot: Robot) -> None:
 
 
 @law("unlisted")
-def test_a_tire_has_the_same_smooth_force_along_both_axes(robot: Robot) -> None:
+def test_a_tire_has_the_same_smooth_force_along_both_axes_and_springs_in_proportion(robot: Robot) -> None:
     """With its contacts about the CoM and at its height, a robot that slides nowhere is one mass on four springs."""
     ahead = [robot.contact_points[:, 0].mean(), 0.0, 0.0]
     low = robot.with_changes(contact_points=(robot.contact_points - ahead) * [1.0, 1.0, 1e-6], **HELD)
@@ -280,7 +280,7 @@ def test_a_tire_has_the_same_smooth_force_along_both_axes(robot: Robot) -> None:
 
         def rate(t: float, state: np.ndarray, k: float = k, d: float = d) -> tuple[float, float]:
             s, v = state
-            extra = c * abs(v) + cubic * v**3 + stop * (abs(s - place) - place)
+            extra = c * abs(v) + cubic * v**3 + stop * k / low.stiffness[1] * (abs(s - place) - place)
             return v, -4.0 / low.mass * (k * s + d * v + extra)
 
         time = np.arange(500) / 1000.0

@@ -156,7 +156,7 @@ def _drag(stiffness, damping, mass, breakaway, grip, load, cable, e, head, step,
         for m in range(substeps):
             slip = rate - velocity
             beside = element_force(deflection, slip, hidden, stiffness, 1.0, 1.0, True, e)
-            beside += _unlisted(deflection, slip, n * step + m * h, free)
+            beside += _unlisted(deflection, slip, n * step + m * h, 1.0, free)
             hub = rate
             if series:  # the hub is light: cable and tire carry the same force, taken implicitly
                 target = head[n] + rate * (m + 1) * h

@@ -143,7 +143,9 @@ def _run(
     share = free[RIDER_SHARE] if riding else 0.0
     body, turning = mass * (1.0 - share), 2.0 * math.pi * free[RIDER_HZ]
     pull_y, pull_w = mass * share * turning * turning, 2.0 * mass * share * free[RIDER_RATIO] * turning
-    extra = element_force(x, v, hidden, stiffness, 1.0, 1.0, True, e) + _unlisted(x, v, 0.0, free) if beside else 0.0
+    extra = (
+        element_force(x, v, hidden, stiffness, 1.0, 1.0, True, e) + _unlisted(x, v, 0.0, 1.0, free) if beside else 0.0
+    )
     first = (force[0] - damping * v - stiffness * x - extra) / body
     history = np.full(4, first)
     steps = (out.shape[0] - 1) * every
@@ -178,6 +180,6 @@ def _run(
                 kicked = v
                 for _ in range(3):
                     extra = element_force(x, kicked, hidden, stiffness, 1.0, 1.0, True, e)
-                    extra += _unlisted(x, kicked, (n + 1) * step, free)
+                    extra += _unlisted(x, kicked, (n + 1) * step, 1.0, free)
                     kicked = v - 0.5 * step / body * extra
                 v, w = kicked, w + v - kicked

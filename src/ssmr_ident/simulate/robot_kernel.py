@@ -278,8 +278,8 @@ def run(
                 kept = hidden[3 * i + 1, 0], hidden[3 * i + 1, 1], hidden[3 * i + 1, 2]
                 beside_y = element_force(deflection[i, 1], rate_y, kept, ky, 1.0, 1.0, True, law)
             if smooth:
-                beside_x += _unlisted(deflection[i, 0], slip[i, 0] - contact[i, 0], t, free)
-                beside_y += _unlisted(deflection[i, 1], hub_y - contact[i, 1], t, free)
+                beside_x += _unlisted(deflection[i, 0], slip[i, 0] - contact[i, 0], t, kx / ky, free)
+                beside_y += _unlisted(deflection[i, 1], hub_y - contact[i, 1], t, 1.0, free)
             if together:
                 slides, contact_x, contact_y, force_x, force_y = sliding_force(
                     (deflection[i, 0], deflection[i, 1]), (contact[i, 0], contact[i, 1]), (slip[i, 0], hub_y),

@@ -41,19 +41,21 @@ _TURN = 2.0 * math.pi
 
 
 @kernel
-def force(s, v, t, c):
-    """Σ c_i f_i(s, v, t) [N]; s : float [m], v : float [m/s], t : float [s]; c : (n,) float in the order of the
-    parameters."""
-    total = (
-        c[0] * abs(v) + c[1] * (abs(s - c[PLACE]) - abs(c[PLACE])) + c[2] * s * s + c[3] * v * v
-        + c[4] * s * v + c[5] * s * s * v + c[6] * v * v * v + c[7] * s * abs(v)
-        + (c[8] * v * (v * v + _SLOW * _SLOW) ** -0.25 if c[8] != 0.0 else 0.0)
-        + t * (c[9] * s + c[10] * v)
-    )  # fmt: skip
+def force(s, v, t, ratio, c):
+    """Σ c_i f_i(s, v, t) [N], what is in proportion to s alone times ``ratio``.
+
+    s : float [m], v : float [m/s], t : float [s]; ratio : float, stiffness of this axis over the reference axis's,
+    since a spring is uneven by a share of its stiffness; c : (n,) float in the order of the parameters.
+    """
+    spring = c[1] * (abs(s - c[PLACE]) - abs(c[PLACE])) + c[2] * s * s + t * c[9] * s
     if c[11] != 0.0 or c[12] != 0.0:
         phase = _TURN * c[PULSE_HZ] * t
-        total += s * (c[11] * math.sin(phase) + c[12] * math.cos(phase))
-    return total
+        spring += s * (c[11] * math.sin(phase) + c[12] * math.cos(phase))
+    return (
+        ratio * spring
+        + c[0] * abs(v) + c[3] * v * v + c[4] * s * v + c[5] * s * s * v + c[6] * v * v * v + c[7] * s * abs(v)
+        + (c[8] * v * (v * v + _SLOW * _SLOW) ** -0.25 if c[8] != 0.0 else 0.0) + t * c[10] * v
+    )  # fmt: skip
 
 
 def law(values: Mapping[str, float]) -> str:
@@ -90,8 +92,10 @@ _RIDERS: tuple[Mapping[str, float | Sized], ...] = tuple(
 """A ninth between one and the next: the descent finds what is left of that. So small a share, because a straight line
 must tell which frequency it is. Where noise is fast, a recording's motion seems faster than it is: down to a tenth."""
 
+_ALMOST_AT_REST = Sized(0.02, "deflection")
+
 _TOUCHES: tuple[Mapping[str, float | Sized], ...] = tuple(
-    {"c_abs_s_N_m": Sized(0.05, "stiffness"), "place_m": Sized(share, "deflection")} for share in (-0.6, -0.3, 0.3, 0.6)
+    {"c_abs_s_N_m": Sized(0.05, "stiffness"), "place_m": Sized(share, "deflection")} for share in (-0.4, 0.4)
 )
 
 EFFECT = Effect(
@@ -121,6 +125,9 @@ EFFECT = Effect(
     experiments=("free_response", "forced"),
     acts={Site.ELEMENT: force},
     rig=True,
-    probes=tuple({name: Sized(0.05, size)} for name, size in list(zip(TERMS, _SIZES, strict=True))[: PULSE_HZ - 2]),
+    probes=tuple(
+        {name: Sized(0.05, size), **({"place_m": _ALMOST_AT_REST} if name == "c_abs_s_N_m" else {})}
+        for name, size in list(zip(TERMS, _SIZES, strict=True))[: PULSE_HZ - 2]
+    ),
     rig_probes=(*_PULSES, *_RIDERS, *_TOUCHES),
 )
