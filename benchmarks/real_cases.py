@@ -61,9 +61,11 @@ def inverse_dynamics(campaign: Campaign, parameters: ParameterSet) -> float:
     law += parameters.number("stiffness_N_m", 0.0) * position
     friction = parameters.effects.get("dry_friction")
     if friction:
-        force = float(friction["F_c_N"].value)
-        travel = force / float(friction["element_stiffness_N_m"].value)
-        law += force * dahl(position, travel)
+        force, rounding = (float(friction[name].value) for name in ("F_c_N", "rounding_m_s"))
+        if rounding:
+            law += force * np.tanh(velocity / rounding)
+        else:
+            law += force * dahl(position, force / float(friction["element_stiffness_N_m"].value))
     measured = low_pass(record["force"], rate, 20.0)
     rest = measured - low_pass(law, rate, 20.0)
     inner = slice(200, -200)  # derivatives at the ends are the filter's

@@ -8,6 +8,7 @@ import numpy as np
 
 from ssmr_ident.compare.recorded import follow
 from ssmr_ident.diagnose.explore import LAST, mended, unsteady
+from ssmr_ident.diagnose.formulas import other_formulas
 from ssmr_ident.diagnose.race import FAR, ranked
 from ssmr_ident.diagnose.scan import combinations
 from ssmr_ident.identify.clouds import settled
@@ -19,17 +20,20 @@ from ssmr_ident.physics.effects import CATALOGUE
 
 
 def turned(fit: JointFit, lengths: tuple[float, ...]) -> JointFit:
-    """The better of a fit and its like with other values of what is tried of its last effect and not fitted."""
+    """The best of a fit and its like: with other values of what is tried of its last effect and not fitted, and with
+    its effects in other formulas."""
+    if not loud(fit):
+        return fit
     effect_id = fit.model.ids[-1]
     own = fit.model.held[effect_id]
-    best = fit
-    effect = CATALOGUE[effect_id]
-    for tried in combinations({**effect.holds, **effect.forms}):
-        if tried == {name: own[name] for name in tried} or not loud(fit):
-            continue
-        model = replace(fit.model, held={**fit.model.held, effect_id: {**own, **tried}})
-        other = led(fit.trials, model, fit.point, lengths[1:] or lengths, LAST, fit.nuisances)
-        best = min((best, other), key=lambda f: f.cost(best.counted))
+    best, rest = fit, lengths[1:] or lengths
+    for tried in combinations(CATALOGUE[effect_id].holds):
+        if tried != {name: own[name] for name in tried}:
+            model = replace(fit.model, held={**fit.model.held, effect_id: {**own, **tried}})
+            best = ranked((best, led(fit.trials, model, fit.point, rest, LAST, fit.nuisances)))[0]
+    for name in fit.model.ids:
+        others = [led(fit.trials, *other, rest, LAST, fit.nuisances) for other in other_formulas(best, name)]
+        best = ranked((best, *others))[0]
     return best
 
 

@@ -34,8 +34,8 @@ LAWS = {
 
 FORMS = {
     ("nonlinear_stiffness", "knee_share"): "F = K s + knee_share K sign(s) max(|s| - knee, 0)",
-    ("dry_friction", "slider"): "F = k z, z follows s and slides at |z| = F_c/k",
     ("dry_friction", "rounding_m_s"): "F = F_c tanh(v/rounding)",
+    ("dry_friction", "slider"): "F = k z, z follows s and slides at |z| = F_c/k",
 }
 """The same where a parameter that is not 0 chooses another formula."""
 

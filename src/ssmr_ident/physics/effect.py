@@ -97,8 +97,9 @@ class Effect(Shown):
         Further ones on a rig, whose recordings are long and simulated in no time.
     holds : mapping of parameter to tuple of float
         Parameters that are not fitted but tried at each of these values.
-    forms : mapping of parameter to tuple of float
-        Parameters that choose between formulas: tried at each of these values once the effect leads.
+    forms : tuple of mapping of parameter to float or Sized
+        Formulas, each by what is fitted in it beside the amplitudes (where that begins) and what is held (plain
+        numbers): tried once the effect leads.
     grows : tuple of str
         Parameters that a small effect is proportional to, where these are not the ones that switch it off.
     sudden : bool
@@ -122,7 +123,7 @@ class Effect(Shown):
     probes: tuple[Mapping[str, float | Sized], ...] = ()
     rig_probes: tuple[Mapping[str, float | Sized], ...] = ()
     holds: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
-    forms: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
+    forms: tuple[Mapping[str, float | Sized], ...] = ()
     grows: tuple[str, ...] = ()
     sudden: bool = False
     loosens: bool = False

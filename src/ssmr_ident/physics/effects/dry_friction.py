@@ -52,7 +52,11 @@ EFFECT = Effect(
     experiments=("free_response", "forced"),
     acts={Site.ELEMENT: force, Site.STATE: advance},
     rig=True,
-    forms={"slider": (0.0, 1.0)},
+    forms=(
+        {"element_stiffness_N_m": Sized(10.0, "stiffness"), "slider": 0.0},
+        {"element_stiffness_N_m": Sized(10.0, "stiffness"), "slider": 1.0},
+        {"rounding_m_s": Sized(0.1, "speed")},
+    ),
     probes=(
         {"F_c_N": Sized(0.005, "force"), "element_stiffness_N_m": Sized(10.0, "stiffness")},
         {"F_c_N": Sized(0.03, "force"), "element_stiffness_N_m": Sized(10.0, "stiffness")},
