@@ -8,7 +8,8 @@ from bank import draw
 
 from ssmr_ident.compare.recorded import follow
 from ssmr_ident.diagnose import explore
-from ssmr_ident.diagnose.explore import PROMISING, bent, best_baseline, search
+from ssmr_ident.diagnose.baseline import bent, best_baseline
+from ssmr_ident.diagnose.explore import PROMISING, search
 from ssmr_ident.diagnose.setup import set_up
 from ssmr_ident.identify.joint import JointFit
 

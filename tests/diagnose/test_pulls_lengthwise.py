@@ -7,7 +7,8 @@ import pytest
 from made_pulls import made_pulls
 
 from ssmr_ident.core.parameter import ParameterSet
-from ssmr_ident.diagnose.explore import best_baseline, search
+from ssmr_ident.diagnose.baseline import best_baseline
+from ssmr_ident.diagnose.explore import search
 from ssmr_ident.diagnose.scan import Suspect, both_ways
 from ssmr_ident.diagnose.setup import Setup
 from ssmr_ident.diagnose.sizes import sizes_of

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from made_pulls import made_pulls
 
-from ssmr_ident.diagnose.explore import fit_baseline
+from ssmr_ident.diagnose.baseline import fit_baseline
 from ssmr_ident.diagnose.race import combined
 from ssmr_ident.diagnose.scan import Suspect
 

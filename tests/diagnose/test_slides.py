@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ssmr_ident.diagnose.explore import unsteady
+from ssmr_ident.diagnose.baseline import unsteady
 from ssmr_ident.diagnose.sliding import crossed
 from ssmr_ident.identify.coordinates import Model, Unknown
 from ssmr_ident.identify.descent import chatters, descend

@@ -7,7 +7,7 @@ from dataclasses import replace
 from ssmr_ident.campaign import Measurement
 from ssmr_ident.compare.recorded import follow
 from ssmr_ident.core.parameter import ParameterSet
-from ssmr_ident.diagnose.explore import LAST, best_baseline, prepared
+from ssmr_ident.diagnose.baseline import LAST, best_baseline, prepared
 from ssmr_ident.diagnose.setup import COUPLING, Setup
 from ssmr_ident.diagnose.weigh import Explanation
 from ssmr_ident.identify.descent import descend

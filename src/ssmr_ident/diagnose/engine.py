@@ -21,9 +21,10 @@ from ssmr_ident.diagnose.accept import (
     touches,
     within_file,
 )
+from ssmr_ident.diagnose.baseline import LAST, best_baseline, prepared, unsteady
 from ssmr_ident.diagnose.coupling import coupled
 from ssmr_ident.diagnose.explain import without
-from ssmr_ident.diagnose.explore import LAST, Search, best_baseline, prepared, search, unsteady
+from ssmr_ident.diagnose.explore import Search, search
 from ssmr_ident.diagnose.polish import calmed, loud, polish, turned
 from ssmr_ident.diagnose.race import Progress
 from ssmr_ident.diagnose.rotate import shown_in_turn

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from ssmr_ident.compare.recorded import follow
-from ssmr_ident.diagnose.scan import Suspect
+from ssmr_ident.diagnose.scan import Suspect, smaller
 from ssmr_ident.identify.coordinates import Model
 from ssmr_ident.identify.descent import descend
 from ssmr_ident.identify.horizons import led
@@ -20,6 +20,9 @@ Array = np.ndarray
 
 SHRINKING = (1.0, 0.3, 0.1)
 """Shares of a suspect's start that are tried."""
+
+GROWING = tuple(float(share) for share in np.geomspace(0.3, 300.0, 16))
+"""Shares of a start from a straight line that are tried where that line hardly reaches."""
 
 SETTLING = 3
 """Gauss-Newton steps of all else beside an effect that is held."""
@@ -65,6 +68,24 @@ def from_what_is_known(fit: JointFit, suspect: Suspect, lengths: Sequence[float]
     known = np.concatenate([np.zeros(physics), fit.point[physics:]])
     begun = led(fit.trials, _held(fit, suspect, model, point), known, lengths, SETTLING)
     return evaluate(fit.trials, model, np.concatenate([begun.point, point[count:]]), begun.nuisances)
+
+
+def in_its_place(fit: JointFit, suspect: Suspect, far: Array) -> JointFit:
+    """A suspect as large as it explains most in place of what a baseline had left the file for.
+
+    Along the valley between two that do the same, a descent hardly moves.
+
+    Parameters
+    ----------
+    far : (p,) bool
+        Coordinates of the physics that have left what is known.
+    """
+    point = fit.point.copy()
+    point[: len(far)][far] = 0.0
+    nearest = replace(fit, point=point)
+    tried = [replace(suspect, at=smaller(CATALOGUE[suspect.effect], suspect.at, share)) for share in GROWING]
+    begun = [evaluate(fit.trials, *with_suspect(nearest, one), fit.nuisances) for one in tried]
+    return min(begun, key=lambda f: f.cost(fit.counted) if np.isfinite(f.rss) else np.inf)
 
 
 def _held(fit: JointFit, suspect: Suspect, model: Model, point: Array) -> Model:

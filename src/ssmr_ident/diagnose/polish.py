@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from ssmr_ident.compare.recorded import follow
-from ssmr_ident.diagnose.explore import LAST, mended, unsteady
+from ssmr_ident.diagnose.baseline import LAST, unsteady
+from ssmr_ident.diagnose.explore import mended
 from ssmr_ident.diagnose.formulas import other_formulas
 from ssmr_ident.diagnose.race import FAR, ranked
 from ssmr_ident.diagnose.scan import combinations

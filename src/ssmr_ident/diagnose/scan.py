@@ -57,6 +57,8 @@ class Suspect:
         Whitened change, cleared of the baseline's own directions.
     grown : tuple of str
         Parameters that the effect is proportional to while it is small.
+    own : float
+        Share of the change's square that nothing else in the model makes as well.
     """
 
     effect: str
@@ -66,6 +68,7 @@ class Suspect:
     gain: float
     direction: Array
     grown: tuple[str, ...] = ()
+    own: float = 1.0
 
 
 def both_ways(suspect: Suspect) -> list[Suspect]:
@@ -159,7 +162,7 @@ def _suspect(
         rms = float(np.sqrt(change @ change / len(change)))
         if small and rms > 1.0 and not effect.sudden:
             size = max(1.0 / rms, LEAST)
-            change = _change(fit, effect.id, {**_smaller(effect, point, size), **held})
+            change = _change(fit, effect.id, {**smaller(effect, point, size), **held})
             if change is None:
                 return None
         columns.append(change / size)
@@ -176,7 +179,7 @@ def _suspect(
     gain = -fit.independent * float(np.log(max(1.0 - fall / fit.independent, 1e-12)))
     start = dict(at)
     if small and not signed and not effect.sudden:
-        start = _smaller(effect, at, float(np.clip(shares[0], LEAST, 1.0)))
+        start = smaller(effect, at, float(np.clip(shares[0], LEAST, 1.0)))
     grown = [p for p in effect.parameters if p.name in at and _grows(effect, p)]
     if signed:
         start |= {
@@ -185,20 +188,21 @@ def _suspect(
         }
     names = tuple(p.name for p in (*grown, *signed))
     natural = {p.name: abs(at[p.name]) for p in signed}
-    return Suspect(effect.id, start, held, natural, gain, cleared @ shares, names)
+    own = float(np.max(np.diag(gram) / clear.size_of(raw)))
+    return Suspect(effect.id, start, held, natural, gain, cleared @ shares, names, own)
 
 
-def _smaller(effect: Effect, at: Mapping[str, float], share: float) -> dict[str, float]:
+def smaller(effect: Effect, at: Mapping[str, float], share: float) -> dict[str, float]:
     """The same effect at a share of its size: what switches it off moves there, an infinity by the reciprocal."""
-    smaller = dict(at)
+    found = dict(at)
     for parameter in effect.parameters:
         name, off = parameter.name, parameter.off
         if name not in at or (name not in effect.grows if effect.grows else off is None):
             continue
         off = 0.0 if off is None else off
         value = off + share * (at[name] - off) if np.isfinite(off) else at[name] / share
-        smaller[name] = float(np.clip(value, parameter.lower, parameter.upper))
-    return smaller
+        found[name] = float(np.clip(value, parameter.lower, parameter.upper))
+    return found
 
 
 def _grows(effect: Effect, parameter: Parameter) -> bool:
@@ -247,6 +251,11 @@ class Cleared:
             right += w * (a.T @ residual) - cross.T @ gram @ side
             shared.append(a)
         self._shared, self._matrix, self._right = shared, matrix, right
+
+    def size_of(self, columns: Array) -> Array:
+        """Squares of changes, (k,), every recording as it counts."""
+        parts = np.split(columns, self._cuts)
+        return np.sum([w * np.sum(part**2, axis=0) for w, part in zip(self.weights, parts, strict=True)], axis=0)
 
     def __call__(self, columns: Array) -> tuple[Array, Array, Array]:
         """Curvature and slope of the log posterior (times two) along new coordinates, and their cleared columns."""

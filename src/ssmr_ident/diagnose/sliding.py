@@ -9,7 +9,7 @@ import numpy as np
 
 from ssmr_ident.campaign import Campaign
 from ssmr_ident.core.parameter import Estimate, ParameterSet
-from ssmr_ident.diagnose.explore import best_baseline, unsteady
+from ssmr_ident.diagnose.baseline import best_baseline, unsteady
 from ssmr_ident.diagnose.polish import calmed
 from ssmr_ident.diagnose.race import Progress
 from ssmr_ident.diagnose.setup import Setup, set_up

@@ -1,0 +1,133 @@
+"""The baseline at its best: over whole recordings, led from their beginnings, led out of hollows."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.stats import chi2
+
+from ssmr_ident.compare.recorded import follow, radian
+from ssmr_ident.core.parameter import ParameterSet
+from ssmr_ident.diagnose.accept import CHANCE
+from ssmr_ident.diagnose.race import FAR
+from ssmr_ident.diagnose.setup import Setup
+from ssmr_ident.diagnose.start import begin
+from ssmr_ident.identify.clouds import settled
+from ssmr_ident.identify.descent import LOUD, chatters, descend
+from ssmr_ident.identify.horizons import horizons, led
+from ssmr_ident.identify.joint import JointFit, differentiate, evaluate
+from ssmr_ident.identify.swings import led_through_slides
+from ssmr_ident.identify.trials import Trial
+
+WIDE = 4.0
+"""Variance over the noise's that the median recording may be left with when an effect has been found already, or where
+what pulls leave may be swings out of step: of sessions without missing physics it was left with up to 3.5."""
+
+ASIDE = 1.5
+"""Standard deviations of what is known of the centre of mass, where pulls are begun again."""
+
+LAST = 8
+"""Gauss-Newton steps on whole recordings."""
+
+
+def fit_baseline(trials: Sequence[Trial], setup: Setup, parameters: ParameterSet) -> JointFit:
+    """Maximum a posteriori of the baseline, mains lines and noise taken from what it leaves."""
+    fit = begin(trials, setup, parameters)
+    fit = descend(fit, 2)
+    fit = evaluate(prepared(fit), fit.model, fit.point, fit.nuisances, fit.slopes)
+    return differentiate(descend(fit, LAST))
+
+
+def prepared(fit: JointFit) -> list[Trial]:
+    """A fit's trials with the mains lines that stand out of its residual.
+
+    Where no quiet tail tells the noise, it is what the fit leaves at its fastest.
+    """
+    found = []
+    for trial, simulated in zip(fit.trials, fit.simulated, strict=True):
+        clean = trial.with_lines(trial.colour(simulated))
+        found.append(clean if trial.quiet else clean.renoised(simulated))
+    return found
+
+
+def best_baseline(
+    trials: Sequence[Trial], setup: Setup, parameters: ParameterSet
+) -> tuple[JointFit, tuple[float, ...]]:
+    """The baseline from two roads: straight over whole recordings, and led from their beginnings where that leaves
+    more than noise."""
+    fit = fit_baseline(trials, setup, parameters)
+    lengths = tuple(horizons(fit.trials, radian(fit.trials)))
+    if leaves_much(fit) and len(lengths) > 1:
+        other = differentiate(led(fit.trials, fit.model, fit.point, lengths, LAST // 2))
+        fit = min((fit, other), key=lambda f: f.cost(fit.counted))
+    return led_out(fit) if chatters(fit) or unsteady(fit) else called_back(fit), lengths
+
+
+def called_back(fit: JointFit) -> JointFit:
+    """A fit that leaves little and has left what is known for it, begun again with one such parameter as known.
+
+    Gains, a centre of mass and inertias stand in for each other in pairs, far from the truth as well; of a hollow
+    seven deviations off one parameter alone shows the way out.
+    """
+    left = fit.parts / [t.size for t in fit.trials]
+    far = np.flatnonzero(far_off(fit))
+    if not len(far) or not float(np.median(left)) < WIDE or any(t.searched for t in fit.trials):
+        return fit
+    ends = [fit]
+    for column in far:
+        point = fit.point.copy()
+        point[column] = 0.0
+        ends.append(descend(follow(fit.trials, fit.model, point, fit.nuisances), LAST))
+    best = min(ends, key=lambda f: f.cost(fit.counted))
+    return differentiate(best)
+
+
+def led_out(fit: JointFit) -> JointFit:
+    """Pulls led out of the hollow in which a descent has left them: from all sides, through their slides, by clouds."""
+    begun = (fit, *from_all_sides(fit))
+    best = min((*begun, *(led_through_slides(f) for f in begun if unsteady(f))), key=lambda f: f.cost(fit.counted))
+    best = min((best, descend(best, LAST), descend(settled(best), LAST)), key=lambda f: f.cost(fit.counted))
+    return differentiate(best)
+
+
+def unsteady(fit: JointFit) -> bool:
+    """Whether pulls leave more than noise does by chance, and no more than swings that are out of step.
+
+    Far less than what is large: from a hollow of the baseline any effect is a way out. Where most recordings are left
+    with much more, it is no swing that is missed.
+    """
+    by_chance = [chi2.isf(CHANCE, t.size) if t.slides_from is not None else np.inf for t in fit.trials]
+    near = float(np.median(fit.parts / [t.size for t in fit.trials])) < WIDE
+    return near and bool(np.any(fit.parts > by_chance))
+
+
+def from_all_sides(fit: JointFit) -> list[JointFit]:
+    """Pulls fitted from a centre of mass off to either side, front or back.
+
+    It decides which wheel lets go first, and a descent does not change that order: a wrong one is a hollow.
+    """
+    names = [unknown.name for unknown in fit.model.physics]
+    own = [names.index(name) for name in ("contact_shift_x_m", "contact_shift_y_m") if name in names]
+    begun = []
+    for signs in itertools.product((-ASIDE, ASIDE), repeat=len(own)):
+        point = fit.point.copy()
+        point[own] = signs
+        begun.append(descend(evaluate(fit.trials, fit.model, point, fit.nuisances), 3, plain=True))
+    nearest = sorted(begun, key=lambda f: f.rss + f.penalty if np.isfinite(f.rss) else np.inf)
+    return [descend(f, LAST) for f in nearest[:1] if np.isfinite(f.rss)]
+
+
+def leaves_much(fit: JointFit) -> bool:
+    return float(np.max(fit.parts / [t.size for t in fit.trials])) > LOUD
+
+
+def far_off(fit: JointFit) -> np.ndarray:
+    """Which coordinates of the physics have left what is known, (p,) bool."""
+    return np.abs(fit.point[: len(fit.model.physics)]) > FAR
+
+
+def bent(fit: JointFit) -> bool:
+    """Whether a baseline has left what is known of it, as it does to follow recordings without what is missing."""
+    return bool(np.any(far_off(fit)))
