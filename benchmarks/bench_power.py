@@ -45,10 +45,11 @@ def logistic(x: np.ndarray, hit: np.ndarray) -> tuple[float, float]:
 
 
 def needed(x: np.ndarray, hit: np.ndarray) -> float:
-    """Where the curve reaches 95 %; infinite beyond what was drawn, by half of its range and more."""
+    """Where the curve reaches 95 %: the least that was drawn where all of it was named, infinite beyond what was drawn,
+    by half of its range and more."""
     place, slope = logistic(x, hit)
     at = float(brentq(lambda v: expit(slope * (v - place)) - WANTED, -1e3, 1e3))
-    return at if at <= x.max() + 0.5 * np.ptp(x) else float("inf")
+    return max(at, float(x.min())) if at <= x.max() + 0.5 * np.ptp(x) else float("inf")
 
 
 def main() -> None:
