@@ -43,7 +43,8 @@ def section(effect: Effect) -> list[str]:
 
 def _row(p: Parameter) -> str:
     off = "–" if p.off is None else f"{p.off:g}"
-    return f"| `{p.name}` | {p.unit} | {p.nominal:g} | {p.lower:g} … {p.upper:g} | {off} | {p.meaning} |"
+    meaning = p.meaning.replace("|", r"\|")  # |v| would end the cell
+    return f"| `{p.name}` | {p.unit} | {p.nominal:g} | {p.lower:g} … {p.upper:g} | {off} | {meaning} |"
 
 
 if __name__ == "__main__":

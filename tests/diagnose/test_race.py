@@ -8,9 +8,10 @@ from small_rigs import Run, campaign, fitted, prepared
 
 from ssmr_ident.diagnose import race
 from ssmr_ident.diagnose.explain import beside
-from ssmr_ident.diagnose.scan import Suspect
+from ssmr_ident.diagnose.scan import Suspect, scan
 from ssmr_ident.identify.descent import descend
 from ssmr_ident.identify.joint import JointFit, evaluate
+from ssmr_ident.physics.effects import CATALOGUE
 
 PLAY = {"gap_m": 2e-3, "rounding": 0.2}
 
@@ -53,3 +54,16 @@ def test_a_baseline_that_has_left_what_is_known_is_begun_from_there_as_well() ->
     assert found is not None
     assert np.max(np.abs(found.point)) < 1.0
     assert found.rss < 1.5 * fit.rss < 0.1 * bent.rss
+
+
+def test_of_a_race_over_whole_recordings_each_effects_best_goes_on() -> None:
+    """However many starts of the leader are ahead of it: two steps say little of where an effect ends."""
+    law = {"alpha": 0.85, "yield_m": 1e-3}
+    fit = fitted(prepared(campaign({"hysteresis": law}, [Run(force=60.0), Run(force=30.0)], seed=6, duration=3.0)))
+    effects = [CATALOGUE[name] for name in ("nonlinear_stiffness", "hysteresis", "quadratic_damping", "free_play")]
+    groups = scan(fit, effects)
+    found = race.raced(fit, groups, None)
+    assert {f.model.ids[-1] for f in found} == {group[0].effect for group in groups}
+    assert len(groups) > 2
+    kept = race.HEATS[-1][0]
+    assert len(found) <= 2 * kept

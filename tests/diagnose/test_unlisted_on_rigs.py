@@ -7,12 +7,15 @@ import math
 import pytest
 from small_rigs import Run, campaign, fitted, prepared
 
+from ssmr_ident.diagnose import explore
+from ssmr_ident.diagnose.race import ranked, started
 from ssmr_ident.diagnose.scan import PLACES, scan
 from ssmr_ident.physics.effects import CATALOGUE
 from ssmr_ident.pipeline.diagnose import diagnose
 
 RUNS = [Run(force=20.0), Run(force=40.0), Run(force=10.0)]
 RIDER = {"rider_share": 0.08, "rider_Hz": 6.0, "rider_ratio": 0.04}
+STOP = {"c_abs_s_N_m": 2500.0, "place_m": 6e-4}
 PULSE = {"c_sin_s_N_m": 900.0, "c_cos_s_N_m": -500.0, "pulse_Hz": 1.3}
 
 
@@ -34,3 +37,28 @@ def test_it_is_named_with_its_sizes(law: dict[str, float]) -> None:
     assert {name: estimate.value for name, estimate in effect.parameters.items()} == pytest.approx(law, rel=0.05)
     heldout = found.heldout
     assert heldout.after < 1.1 * heldout.noise_floor < 0.5 * heldout.before
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_a_spring_that_touches_on_one_side_is_named_with_its_place(side: float) -> None:
+    law = {**STOP, "place_m": side * STOP["place_m"]}
+    (effect,) = diagnose(campaign({"unlisted": law}, RUNS, seed=3, duration=6.0)).effects
+    assert effect.id == "unlisted"
+    assert not effect.indistinguishable_from
+    found = effect.parameters["place_m"]
+    assert effect.parameters["c_abs_s_N_m"].value == pytest.approx(STOP["c_abs_s_N_m"], rel=0.01)
+    assert found.std is not None
+    assert abs(found.value - law["place_m"]) < 3.0 * found.std < side * found.value
+
+
+def test_where_the_first_horizons_mislead_whole_recordings_are_asked(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A spring on one side looks like hardening for a while, and hardening leaves much of it."""
+    fit = fitted(prepared(campaign({"unlisted": STOP}, RUNS, seed=3, duration=6.0)))
+
+    def misled(base, groups, lengths, progress):  # type: ignore[no-untyped-def]
+        return [started(base, group[0]) for group in groups if group[0].effect == "nonlinear_stiffness"]
+
+    monkeypatch.setattr(explore, "screened", misled)
+    tried = explore.search(fit, "sdof", (1.0, math.inf)).tried
+    assert [f.model.ids for f in ranked(tried)[:1]] == [("unlisted",)]
+    assert ("nonlinear_stiffness",) in [f.model.ids for f in tried]

@@ -32,9 +32,8 @@ def forget_other_sources(package: Path) -> bool:
     bool
         Whether sources were other ones, or not known.
     """
-    kept = (
-        package / "__pycache__"
-    )  # which an interpreter that keeps no bytecode does not make; numba does, in each folder
+    # an interpreter that keeps no bytecode does not make the package's own; numba makes one wherever it keeps loops
+    kept = package / "__pycache__"
     if not os.access(kept if kept.is_dir() else package, os.W_OK):
         return False
     kept.mkdir(exist_ok=True)

@@ -13,7 +13,7 @@ from ssmr_ident.physics.effect import Effect, Site, Sized
 
 TERMS = {
     "c_abs_v_N_s_m": "|v|",
-    "c_abs_s_N_m": "|s - place|",
+    "c_abs_s_N_m": "(|s - place| - |place|)",
     "c_s2_N_m2": "s^2",
     "c_v2_N_s2_m2": "v^2",
     "c_sv_N_s_m2": "s v",
@@ -27,8 +27,7 @@ TERMS = {
     "c_cos_s_N_m": "s cos(2 pi pulse_Hz t)",
 }
 """Terms by parameter, t from where a recording begins. What is odd in s alone or |v| v is hardening or quadratic
-damping, which are listed. |s - place| is a spring that touches on one side: what it has of a straight line and of a
-constant is in K and in where the spring is at rest."""
+damping, which are listed. |s - place| less a straight line, which is in K, is a spring that touches on one side."""
 
 PULSE_HZ = len(TERMS)
 RIDER_SHARE, RIDER_HZ, RIDER_RATIO, PLACE = range(PULSE_HZ + 1, PULSE_HZ + 5)
@@ -93,6 +92,7 @@ _RIDERS: tuple[Mapping[str, float | Sized], ...] = tuple(
 must tell which frequency it is. Where noise is fast, a recording's motion seems faster than it is: down to a tenth."""
 
 _ALMOST_AT_REST = Sized(0.02, "deflection")
+"""Where a place begins that is fitted: nothing, but for the size that a fit's steps have."""
 
 _TOUCHES: tuple[Mapping[str, float | Sized], ...] = tuple(
     {"c_abs_s_N_m": Sized(0.05, "stiffness"), "place_m": Sized(share, "deflection")} for share in (-0.4, 0.4)
