@@ -8,8 +8,11 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 import pytest
+
+from ssmr_ident.core.atomic import write_text
 
 ENDS = {".png": b"IEND\xaeB`\x82", ".csv": b"\r\n"}
 
@@ -41,6 +44,19 @@ def test_a_killed_run_leaves_no_half_file(root: Path, tmp_path: Path, enough: in
         assert path.read_bytes().endswith(ENDS[path.suffix]), path
     if how == "SIGTERM":
         assert not [path for path in folder.iterdir() if path.name.startswith(".")]
+
+
+def test_a_run_stopped_as_its_file_is_made_leaves_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    opened = Path.open
+
+    def stopped(path: Path, *args: Any, **named: Any) -> None:
+        opened(path, *args, **named).close()
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(Path, "open", stopped)
+    with pytest.raises(KeyboardInterrupt):
+        write_text(tmp_path / "new.txt", "text")
+    assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")

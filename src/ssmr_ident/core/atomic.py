@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import os
-import tempfile
+import secrets
 from pathlib import Path
+from typing import BinaryIO
 
 from ssmr_ident.core.errors import InputError
 
@@ -18,21 +18,25 @@ def write_bytes(path: str | Path, data: bytes) -> Path:
         When the folder is missing or may not be written to.
     """
     path = Path(path)
+    # Named before it is made: a signal between its making and its name would leave it lying.
+    temporary = path.with_name(f".{path.name}.{secrets.token_hex(4)}")
     try:
-        handle, temporary = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
-    except OSError as error:
-        raise InputError(str(path), f"cannot be written ({error.strerror})", "Make the folder first.") from error
-    try:
-        with os.fdopen(handle, "wb") as stream:
+        with _made(temporary, path) as stream:
             stream.write(data)
-        umask = os.umask(0)
-        os.umask(umask)
-        Path(temporary).chmod(0o666 & ~umask)  # mkstemp makes files that only their owner reads
-        Path(temporary).replace(path)
+        temporary.replace(path)
+    except InputError:
+        raise
     except BaseException:
-        Path(temporary).unlink(missing_ok=True)
+        temporary.unlink(missing_ok=True)
         raise
     return path
+
+
+def _made(temporary: Path, path: Path) -> BinaryIO:
+    try:
+        return temporary.open("xb")
+    except OSError as error:
+        raise InputError(str(path), f"cannot be written ({error.strerror})", "Make the folder first.") from error
 
 
 def write_text(path: str | Path, text: str) -> Path:
