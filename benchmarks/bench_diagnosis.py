@@ -13,7 +13,7 @@ import argparse
 from pathlib import Path
 
 from bank import FAMILIES, BankSession, draw, mixed
-from scoring import Row, append, engine, read, row_of, summary, table, write
+from scoring import UNNAMED, Row, append, engine, read, row_of, summary, table, write
 from visible import true_evidence
 
 from ssmr_ident.pipeline.diagnose import diagnose
@@ -62,7 +62,7 @@ def main() -> None:
                 flush=True,
             )
     rows = read(arguments.out)
-    if any("true_evidence" not in row for row in rows if row["outcome"] == "missed"):
+    if any("true_evidence" not in row for row in rows if row["outcome"] in UNNAMED):
         rows = [_judged(row, arguments, families) for row in rows]
         write(arguments.out, rows)
     if arguments.table:
@@ -78,8 +78,8 @@ def _drawn(seed: int, arguments: argparse.Namespace, families: tuple[str, ...]) 
 
 
 def _judged(row: Row, arguments: argparse.Namespace, families: tuple[str, ...]) -> Row:
-    """A row that says, where an effect was missed, whether its session shows it."""
-    if row["outcome"] != "missed" or "true_evidence" in row:
+    """A row that says, where an effect was missed, or one of two, whether its session shows it."""
+    if row["outcome"] not in UNNAMED or "true_evidence" in row:
         return row
     return {**row, "true_evidence": true_evidence(_drawn(row["seed"], arguments, families))}
 

@@ -24,6 +24,7 @@ UNSEEN = 1.02
 """Held-out error of the baseline over the noise floor up to which nothing could be gained by naming anything."""
 
 GOOD = ("right", "tie", "clean")
+UNNAMED = ("missed", "part")
 Row = dict[str, Any]
 
 
@@ -161,15 +162,16 @@ def share(good: int, of: int) -> str:
 
 
 def is_unseen(row: Row) -> bool:
-    """Missed where the session does not show it.
+    """Missed, or named in part, where the session does not show what was not named.
 
     The baseline explains even recordings that were never fitted down to their noise, or the truth itself, refitted from
-    the true values, has no more evidence than noise alone gives some effect (``visible.true_evidence``).
+    the true values, has no more evidence with that effect than noise alone gives some (``visible.true_evidence``).
     """
-    if row["outcome"] != "missed":
+    if row["outcome"] not in UNNAMED:
         return False
-    evidence = row.get("true_evidence")
-    return bool(row["before"] <= UNSEEN * row["floor"] or (evidence is not None and evidence < CERTAIN))
+    evidence = row.get("true_evidence") or {}
+    hidden = [evidence.get(name, float("inf")) < CERTAIN for name in row["truth"] if name not in row["named"]]
+    return all(hidden) or (row["outcome"] == "missed" and bool(row["before"] <= UNSEEN * row["floor"]))
 
 
 def summary(rows: Sequence[Row], by: str = "family") -> str:

@@ -1,27 +1,31 @@
-"""Whether a session shows at all what was left out of it: the true effect, refitted from the truth, against none."""
+"""Whether a session shows at all what was left out of it: the true effects, refitted from the truth, against fewer."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 import numpy as np
 from bank.truth import BankSession
 
 from ssmr_ident.compare.recorded import follow
 from ssmr_ident.diagnose.baseline import LAST, best_baseline, prepared
+from ssmr_ident.diagnose.explain import with_suspect, without
 from ssmr_ident.diagnose.engine import explained
-from ssmr_ident.diagnose.explain import with_suspect
 from ssmr_ident.diagnose.polish import polish
 from ssmr_ident.diagnose.scan import Suspect
 from ssmr_ident.diagnose.sliding import with_law_of_sliding
-from ssmr_ident.diagnose.weigh import surplus
+from ssmr_ident.diagnose.weigh import Explanation, surplus
 from ssmr_ident.identify.descent import descend
-from ssmr_ident.identify.joint import evaluate
+from ssmr_ident.identify.joint import JointFit, evaluate
+from ssmr_ident.identify.trials import Trial
 
 
-def true_evidence(drawn: BankSession) -> float | None:
-    """Log evidence of the true effects over the baseline, both at their best; None where the catalogue has no values.
+def true_evidence(drawn: BankSession) -> dict[str, float] | None:
+    """Log evidence of each true effect beside the others, all at their best; None where the catalogue has no values.
 
     The fit with the effects begins where they and the plant really are, and where the baseline ended with the effects
-    as they are beside it; the better of both counts.
+    as they are beside it; the better of both counts. What is without one of them begins where that ended, the baseline
+    also where it ended by itself: an effect that has only shown the way to a better fit has shown nothing.
     """
     truth, known = drawn.truth, drawn.campaign.parameters
     if not truth.effects or not all(truth.effects.values()):
@@ -37,9 +41,21 @@ def true_evidence(drawn: BankSession) -> float | None:
     true = begun.point.copy()
     for k, unknown in enumerate(begun.model.physics):
         true[k] = unknown.scaled(truth.parameters[unknown.name]) if unknown.name in truth.parameters else 0.0
-    found = []
-    for start in (begun, follow(fit.trials, begun.model, true)):
-        if np.isfinite(start.rss):
-            found.append(explained(kept, polish(descend(start, LAST), lengths), baseline.kept))
-    gains = [surplus(one, baseline) for one in found if np.all(np.isfinite(one.kept.parts))]
-    return max(gains, default=None)
+    whole = _best([begun, follow(fit.trials, begun.model, true)], kept, lengths, baseline)
+    if whole is None:
+        return None
+    found = {}
+    for effect_id in truth.effects:
+        fewer = _best([without(whole.fit, effect_id)], kept, lengths, whole)
+        before = [e for e in (fewer, baseline if len(truth.effects) == 1 else None) if e is not None]
+        found[effect_id] = min((surplus(whole, one) for one in before), default=float("inf"))
+    return found
+
+
+def _best(
+    starts: Sequence[JointFit], kept: Sequence[Trial], lengths: tuple[float, ...], near: Explanation
+) -> Explanation | None:
+    """The best that a model comes to from some starts; None where it makes no robot."""
+    ends = [polish(descend(start, LAST), lengths) for start in starts if np.isfinite(start.rss)]
+    found = [one for one in (explained(kept, end, near.kept) for end in ends) if np.all(np.isfinite(one.kept.parts))]
+    return max(found, key=lambda one: surplus(one, near), default=None)

@@ -50,9 +50,10 @@ spinning pull holds what it would do), and nulls of the baseline `decoupled`, wh
 
 **Outcomes.** *right*: verdict and every name; *tie*: every true name is named or in the reported tie of a name, three
 at most; *clean*: nothing missing, nothing named; *unseen*: missed where the baseline explains even recordings it never
-saw to within 2 % of what the true signals leave, or the truth itself, refitted from the true values, has no more log
-evidence than the 6.9 that an effect needs, so that nobody could gain by knowing (`visible.py`); *part* and *extra*:
-some of the right names, or right names and more; the rest speaks for itself. The noise floor is that of the true
+saw to within 2 % of what the true signals leave, or missed, or named in part, where the truth itself, refitted from the
+true values, has no more log evidence over the truth without what was not named than the 6.9 that an effect needs, so
+that nobody could gain by knowing (`visible.py`); *part* and *extra*: some of the right names, or right names and more;
+the rest speaks for itself. The noise floor is that of the true
 signals, not the one that the diagnosis states.
 """
 

@@ -69,7 +69,17 @@ def test_the_summary_counts() -> None:
     assert right["floor"] == 3.0
     assert not is_unseen(missed)
     assert is_unseen(small)
+    assert is_unseen({**missed, "true_evidence": {"stribeck": 3.0}})
+    assert not is_unseen({**missed, "true_evidence": {"stribeck": 300.0}})
     text = summary([right, missed, small])
     assert "something missing: right or tie  1/3" in text
     assert "without what nobody could see  1/2" in text
     assert share(0, 1000).endswith("(0.0 … 0.4)")
+
+
+def test_of_two_the_one_that_was_not_named_must_show() -> None:
+    part = {"outcome": "part", "truth": ["free_play", "viscoelastic_relaxation"], "named": ["free_play"]}
+    assert is_unseen({**part, "true_evidence": {"free_play": 1800.0, "viscoelastic_relaxation": 5.2}})
+    assert not is_unseen({**part, "true_evidence": {"free_play": 1800.0, "viscoelastic_relaxation": 250.0}})
+    assert not is_unseen(part)
+    assert not is_unseen({**part, "outcome": "wrong", "true_evidence": {"viscoelastic_relaxation": 5.2}})
