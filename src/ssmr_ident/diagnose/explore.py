@@ -78,8 +78,9 @@ def search(
     # one recording that stands out may be the only one in which a wheel lifts; beside an effect that explains the
     # others it is more likely the effect's own formula
     loud = float(np.median(misfit)) > WIDE if further else float(np.max(misfit)) > LOUD
-    # pulls along one axis alone may show what tires do that go far
-    loud = loud or (chatters(base) and float(np.max(misfit)) > WIDE)
+    # pulls along one axis alone may show what tires do that go far; a small share of friction that falls, which a
+    # straight line tells from less friction by nothing, is no saw-tooth yet
+    loud = loud or (chatters(base) and float(np.max(misfit)) > (LOUD if further else WIDE))
     groups = scan(base, candidates(base, baseline), small=not loud)
     rest = [np.inf]
     if loud and len(lengths) > 1:

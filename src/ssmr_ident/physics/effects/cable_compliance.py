@@ -27,5 +27,6 @@ EFFECT = Effect(
     probes=(
         {"K_cable_N_m": Sized(2.0, "stiffness")},
         {"K_cable_N_m": Sized(10.0, "stiffness")},
+        {"K_cable_N_m": Sized(60.0, "stiffness")},
     ),
 )

@@ -37,9 +37,9 @@ EFFECT = Effect(
         {"kinetic_share": 0.8, "stribeck_velocity_m_s": 0.002, "exponent": 6.0},
     ),
     spans={
-        "kinetic_share": (0.6, 0.7, 0.8, 0.9),
+        "kinetic_share": (0.6, 0.7, 0.8, 0.9, 0.95),
         "stribeck_velocity_m_s": (0.001, 0.003, 0.01),
         # a constant friction goes through the middle of saw-teeth: their tops are up to 2/(1 + r) above it
-        "baseline.mu_static": (1.0, 1.06, 1.12, 1.2),
+        "baseline.mu_static": (1.0, 1.03, 1.06, 1.12, 1.2),
     },
 )
