@@ -10,7 +10,7 @@ from bank.truth import BankSession
 from ssmr_ident.compare.recorded import follow
 from ssmr_ident.diagnose.baseline import LAST, best_baseline, prepared
 from ssmr_ident.diagnose.explain import with_suspect, without
-from ssmr_ident.diagnose.engine import explained
+from ssmr_ident.diagnose.followed import explained
 from ssmr_ident.diagnose.polish import polish
 from ssmr_ident.diagnose.scan import Suspect
 from ssmr_ident.diagnose.sliding import with_law_of_sliding

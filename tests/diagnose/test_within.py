@@ -9,7 +9,7 @@ import pytest
 from small_rigs import ROUGH, Run, campaign, prepared
 
 from ssmr_ident.core.parameter import Estimate
-from ssmr_ident.diagnose.engine import explained
+from ssmr_ident.diagnose.followed import explained
 from ssmr_ident.diagnose.weigh import Explanation
 from ssmr_ident.diagnose.within import REACH, measure_of
 from ssmr_ident.identify.descent import descend

@@ -11,7 +11,8 @@ from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.coloured import told_by
 from ssmr_ident.diagnose.setup import BANDWIDTH, SHEET
 from ssmr_ident.diagnose.weigh import CERTAIN, Explanation, asked, evidences, surplus
-from ssmr_ident.identify.descent import LOUD
+from ssmr_ident.diagnose.worth import BY_CHANCE, grows_with_motion, predictions, reddest, worth
+from ssmr_ident.identify.descent import LOUD, chatters
 from ssmr_ident.identify.joint import JointFit
 
 SECOND = 0.7
@@ -135,14 +136,28 @@ def left_over(chosen: Explanation, baseline: Explanation) -> float:
     return float(np.exp(0.5 * _above_noise(chosen, baseline).mean()))
 
 
-def as_near(rival: Explanation, chosen: Explanation) -> bool:
-    """Whether neither of two laws is the world's, and one is about as near to it as the other.
+def leaves_structure(chosen: Explanation) -> bool:
+    """Whether an explanation errs by more than noise of any colour.
 
-    Where the best law leaves more than the noise, its formula is wrong by that much; a rival whose error is no more
-    than that again cannot be told from it by how well it fits.
+    What it leaves is more than such noise can read, or larger where more moves. Sliding contacts chatter by themselves,
+    whatever moves.
     """
     left = chosen.kept.parts / [t.size for t in chosen.kept.trials]
-    if float(np.median(left)) < LOUD or len(rival.fit.model.ids) != len(chosen.fit.model.ids):
+    if float(np.median(left)) < LOUD:
+        return False
+    found = predictions(chosen.fit) + predictions(chosen.kept)
+    read = worth(found, found, ())
+    beyond = read.before > reddest(found) * read.noise_floor
+    return chatters(chosen.fit) or beyond or grows_with_motion(found) < BY_CHANCE
+
+
+def as_near(rival: Explanation, chosen: Explanation) -> bool:
+    """Whether of two laws, neither of which is the world's, one is about as near to it as the other.
+
+    Where the best law leaves structure, its formula is wrong by that much; a rival whose error is no more than that
+    again cannot be told from it by how well it fits.
+    """
+    if len(rival.fit.model.ids) != len(chosen.fit.model.ids):
         return False
     return float(np.exp(np.mean(np.log(rival.kept.parts / chosen.kept.parts)))) < ALIKE
 

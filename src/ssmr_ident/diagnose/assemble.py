@@ -17,7 +17,7 @@ from ssmr_ident.diagnose.surface import surfaces
 from ssmr_ident.diagnose.weigh import Explanation, shares
 from ssmr_ident.diagnose.within import REACH, measure_of
 from ssmr_ident.diagnose.words import law, missing, nothing, readable, told, undetermined
-from ssmr_ident.diagnose.worth import grows_with_motion, overlays, predictions, reddest, without_jolts, worth
+from ssmr_ident.diagnose.worth import BY_CHANCE, grows_with_motion, overlays, predictions, reddest, without_jolts, worth
 from ssmr_ident.identify.joint import JointFit, differentiate
 
 METRIC = "nrmse_percent"
@@ -28,9 +28,9 @@ CONFLICT = 2.0
 MOST_RIVALS = 2
 """Explanations beside the best with which an answer is still one."""
 
-UNEXPLAINED, BY_CHANCE = 1.6, 1e-3
-"""Error over the noise floor from which something is missing even if nothing names it, and the probability by chance up
-to which what is left must follow the motion: the floor takes the noise for white, and coloured noise lies above it."""
+UNEXPLAINED = 1.6
+"""Error over the noise floor from which something is missing even if nothing names it, where what is left follows the
+motion: the floor takes the noise for white, and coloured noise lies above it."""
 
 JOLTS = "what is left on unseen recordings is the jolt of the tightening cable: without it {:.1f} times the noise"
 

@@ -33,6 +33,9 @@ wherever it sits: what is left of a sliding pull follows no motion."""
 WINDOW_S, FEWEST = 0.5, 12
 """Length of the windows in which what is left is held against the motion, and how many are needed."""
 
+BY_CHANCE = 1e-3
+"""Probability by chance up to which what is left follows the motion."""
+
 LONGEST = 3000
 """Points of an overlay."""
 

@@ -1,0 +1,55 @@
+"""Fits beside what they predict of the recordings that were kept back."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ssmr_ident.compare.recorded import follow
+from ssmr_ident.diagnose.polish import polish, turned
+from ssmr_ident.diagnose.weigh import Explanation, evidences
+from ssmr_ident.identify.joint import JointFit
+from ssmr_ident.identify.trials import Trial
+
+
+def explained(kept: Sequence[Trial], fit: JointFit, near: JointFit | None = None) -> Explanation:
+    """A fit beside what it predicts of the recordings that were kept back.
+
+    ``near`` is another model's prediction of them, whose nuisances are a start as well.
+    """
+    return Explanation(fit, follow(kept, fit.model, fit.point, None if near is None else near.nuisances, fit))
+
+
+def all_explained(kept: Sequence[Trial], fits: Sequence[JointFit], near: JointFit) -> list[Explanation]:
+    """Fits as explanations, but for those that make no robot of the recordings kept back."""
+    return [e for e in (explained(kept, fit, near) for fit in fits) if _followable(e)]
+
+
+def _followable(explanation: Explanation) -> bool:
+    return bool(np.all(np.isfinite(explanation.kept.parts)))
+
+
+def joined(tried: Sequence[Explanation], new: Sequence[Explanation]) -> list[Explanation]:
+    """Each model once, as last fitted: beside a better baseline all are tried again."""
+    ids = {e.id for e in new}
+    return [*(e for e in tried if e.id not in ids), *new]
+
+
+def each_set_once(explanations: Sequence[Explanation]) -> list[Explanation]:
+    """Of one pair reached from either side the better."""
+    found = evidences(explanations)
+    best: dict[frozenset[str], Explanation] = {}
+    for explanation in sorted(explanations, key=lambda e: -found[e.id]):
+        best.setdefault(frozenset(explanation.fit.model.ids), explanation)
+    return list(best.values())
+
+
+def at_its_best(
+    leader: Explanation, new: list[Explanation], kept: Sequence[Trial], lengths: tuple[float, ...]
+) -> Explanation:
+    """The leader led on, which takes its place where that is better."""
+    further = explained(kept, turned(polish(leader.fit, lengths), lengths), leader.kept)
+    if _followable(further) and further.fit.cost(further.fit.counted) < leader.fit.cost(further.fit.counted):
+        new[new.index(leader)], leader = further, further
+    return leader
