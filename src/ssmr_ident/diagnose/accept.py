@@ -14,6 +14,7 @@ from ssmr_ident.diagnose.weigh import CERTAIN, Explanation, asked, evidences, su
 from ssmr_ident.diagnose.worth import BY_CHANCE, grows_with_motion, predictions, reddest, worth
 from ssmr_ident.identify.descent import LOUD, chatters
 from ssmr_ident.identify.joint import JointFit
+from ssmr_ident.identify.scatter import covariance
 
 SECOND = 0.7
 """Share of the first effect's unexplained variance, mean over all recordings, that may be left when a second one is
@@ -187,13 +188,13 @@ def within_file(fit: JointFit, parameters: ParameterSet) -> bool:
 def significant(fit: JointFit) -> bool:
     """Whether every effect's own amplitudes are away from off by more than their uncertainty allows (Wald's test)."""
     first = len(fit.model.physics)
-    covariance, point = fit.covariance()[first:, first:], fit.point[first:]
+    scatter, point = covariance(fit)[first:, first:], fit.point[first:]
     for effect_id in {c.effect for c in fit.model.free}:
         own = [k for k, c in enumerate(fit.model.free) if c.effect == effect_id and c.parameter.off is not None]
         away = np.array(
             # off is infinitely far in a logarithm; one that is known to a third is three deviations from nothing
             [1.0 / fit.model.free[k].unknown.spread if fit.model.free[k].unknown.logarithmic else point[k] for k in own]
         )
-        if own and float(away @ np.linalg.solve(covariance[np.ix_(own, own)], away)) < chi2.isf(CHANCE, len(own)):
+        if own and float(away @ np.linalg.solve(scatter[np.ix_(own, own)], away)) < chi2.isf(CHANCE, len(own)):
             return False
     return True

@@ -16,6 +16,7 @@ from scipy.stats import norm
 from ssmr_ident.diagnose.experiments import Experiment, experiments
 from ssmr_ident.diagnose.setup import Setup
 from ssmr_ident.identify.joint import JointFit, differentiate, evaluate
+from ssmr_ident.identify.scatter import covariance
 
 Array = np.ndarray
 
@@ -93,7 +94,7 @@ def _apart(chosen: Sequence[Experiment], best: JointFit, rival: JointFit) -> lis
     weight = best.independent / best.rss
     nuisances = [one.growth * rival.nuisances[one.index] for one in chosen]
     ahead = differentiate(evaluate([one.trial for one in chosen], rival.model, rival.point, nuisances))
-    known = np.linalg.inv(rival.covariance())
+    known = np.linalg.inv(covariance(rival))
     found = []
     for experiment, slopes in zip(chosen, ahead.slopes, strict=True):
         difference = _difference(experiment, best, rival)

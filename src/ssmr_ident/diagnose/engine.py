@@ -34,6 +34,7 @@ from ssmr_ident.diagnose.setup import Setup
 from ssmr_ident.diagnose.weigh import TIE, Explanation, evidences
 from ssmr_ident.identify.descent import descend
 from ssmr_ident.identify.joint import differentiate
+from ssmr_ident.identify.scatter import covariance
 
 MOST_EFFECTS = 2
 """Effects that are looked for together."""
@@ -161,7 +162,7 @@ def informed(setup: Setup, parameters: ParameterSet) -> Setup:
     if not setup.calibration:
         return setup
     fit, _ = best_baseline(setup.calibration, setup, parameters)
-    stds = np.sqrt(np.diag(fit.covariance()))
+    stds = np.sqrt(np.diag(covariance(fit)))
     physics = tuple(
         replace(u, prior=u.value(float(p)), prior_std=max(u.std(float(p), float(s)), 1e-12))
         for u, p, s in zip(setup.model.physics, fit.point, stds, strict=True)

@@ -10,6 +10,7 @@ from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.diagnose.setup import twin
 from ssmr_ident.identify.joint import JointFit
 from ssmr_ident.identify.robot_map import HEIGHT, SENSOR, SHIFTS
+from ssmr_ident.identify.scatter import covariance
 from ssmr_ident.physics.effects import CATALOGUE
 
 SOURCE = "fit of the recordings"
@@ -29,7 +30,7 @@ def exported(fit: JointFit, before: ParameterSet) -> ParameterSet:
         Whose keys, units and fixed values are kept.
     """
     model, point = fit.model, fit.point
-    stds = np.sqrt(np.maximum(np.diag(fit.covariance()), 0.0))
+    stds = np.sqrt(np.maximum(np.diag(covariance(fit)), 0.0))
     values, effects = model.split(point)
     changes: dict[str, Estimate] = {}
     contacts = np.array(before["contact_points_m"].value, float) if "contact_points_m" in before else None

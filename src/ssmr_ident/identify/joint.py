@@ -139,11 +139,6 @@ class JointFit:
         sizes = np.array([trial.size for trial in self.trials])
         return float(counted @ np.log(self.parts / sizes)) + self.penalty
 
-    def covariance(self) -> Array:
-        """Of the scaled coordinates, nuisances integrated out; (p, p)."""
-        matrix, _ = normal_equations(self, self.weights)
-        return np.linalg.inv(matrix)
-
 
 def worth(residual: Array) -> float:
     """Number of independent samples in a residual, n/(1 + 2 Σ ρ²) (Bartlett 1946)."""

@@ -1,0 +1,104 @@
+"""How far estimates scatter: slopes fine enough to show what recordings cannot tell, and noise that is not white.
+
+A fit is led by one-sided differences with steps a descent can use. What they err by, the square of a step, makes
+recordings seem to know what they do not: a mass on a spring that is let go moves alike whatever it weighs, and its mass
+was given to 0.5 % of what the file left open. So the slopes of an answer are symmetric differences with finer steps.
+
+Least squares in coloured noise: the covariance is H⁻¹ G H⁻¹, where H is the curvature that the fit supposes and G the
+scatter of its slope, Σ |J(f)|² S(f) with the power spectrum S of what the fit leaves (Huber, Proc. 5th Berkeley
+Symposium, 1967; White, Econometrica 48, 1980). What a formula errs by sits where the motion is, and counts there.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ssmr_ident.identify.joint import NUISANCE_STEP, JointFit, Slopes, acting, normal_equations, over
+from ssmr_ident.identify.trials.trial import Asked, Trial
+
+Array = np.ndarray
+
+FINE = 1e-2
+"""Share of a descent's steps: symmetric differences then err by 10⁻⁴ of what they did, rounding by 10⁻⁹."""
+
+SMOOTHED = 15
+"""Bins of a periodogram over which its mean is taken: S is known to a quarter then."""
+
+
+def covariance(fit: JointFit) -> Array:
+    """Of the scaled coordinates, nuisances integrated out.
+
+    Parameters
+    ----------
+    fit : JointFit
+        With slopes.
+
+    Returns
+    -------
+    (p, p) float
+    """
+    fit = sharpened(fit)
+    matrix, _ = normal_equations(fit, fit.weights)
+    scatter = np.eye(len(fit.point))
+    for weight, trial, slopes, residual in zip(fit.weights, fit.trials, fit.slopes, fit.residuals, strict=True):
+        a, b = slopes.shared, slopes.own
+        own = weight * (b.T @ b) + np.eye(b.shape[1])
+        cleared = a - b @ np.linalg.solve(own, weight * (b.T @ a))
+        left = trial.by_channel(residual)
+        columns = [trial.by_channel(column) for column in cleared.T]
+        for c in range(left.shape[1] if columns else 0):
+            power = smoothed(np.abs(np.fft.fft(left[:, c])) ** 2) / len(left)
+            lines = np.fft.fft(np.column_stack([column[:, c] for column in columns]), axis=0)
+            scatter += weight**2 * np.real((lines.conj().T * power) @ lines) / len(left)
+    inverse = np.linalg.inv(matrix)
+    return inverse @ scatter @ inverse
+
+
+def sharpened(fit: JointFit) -> JointFit:
+    """The same fit with symmetric differences of fine steps.
+
+    Recordings that ask for coarse steps, as pulls do whose contacts chatter, keep their slopes.
+    """
+    split, steps = fit.model.split(fit.point), FINE * np.array(fit.model.steps())
+    names = [unknown.name for unknown in fit.model.unknowns]
+
+    def moved(column: int, by: float) -> Array:
+        point = fit.point.copy()
+        point[column] += by
+        return point
+
+    def one(index: int) -> Slopes:
+        trial, nuisance, before = fit.trials[index], fit.nuisances[index], fit.slopes[index]
+        if trial.coarse != 1.0:
+            return before
+        shared, own = before.shared.copy(), before.own.copy()
+        for column in (k for k, name in enumerate(names) if trial.sees(name)):
+            ends = [fit.model.split(moved(column, sign * steps[column])) for sign in (1.0, -1.0)]
+            _put(shared, column, [_run(trial, (*end, nuisance)) for end in ends], steps[column])
+        width = FINE * NUISANCE_STEP
+        for column in acting(trial, fit.model):
+            aside = width * np.eye(len(nuisance))[column]
+            _put(own, column, [_run(trial, (*split, nuisance + side)) for side in (aside, -aside)], width)
+        return Slopes(shared, own)
+
+    return replace(fit, slopes=tuple(over(fit.trials, one)))
+
+
+def _run(trial: Trial, asked: Asked) -> Array:
+    return trial.whitened(trial.run(*asked))
+
+
+def _put(columns: Array, column: int, ends: list[Array], step: float) -> None:
+    """A symmetric difference in its column; where a step leaves what can be simulated, what stood there stays."""
+    slope = (ends[0] - ends[1]) / (2.0 * step)
+    if np.all(np.isfinite(slope)):
+        columns[:, column] = slope
+
+
+def smoothed(power: Array) -> Array:
+    """Mean of (n,) bins of a periodogram over their neighbours, round the circle."""
+    width = min(SMOOTHED, len(power))
+    around = np.concatenate([power[len(power) - width // 2 :], power, power[: width - 1 - width // 2]])
+    return np.convolve(around, np.full(width, 1.0 / width), "valid")
