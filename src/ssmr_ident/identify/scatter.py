@@ -16,12 +16,14 @@ from dataclasses import replace
 import numpy as np
 
 from ssmr_ident.identify.joint import NUISANCE_STEP, JointFit, Slopes, acting, normal_equations, over
-from ssmr_ident.identify.trials.trial import Asked, Trial
+from ssmr_ident.identify.trials.trial import Asked
 
 Array = np.ndarray
 
 FINE = 1e-2
 """Share of a descent's steps: symmetric differences then err by 10⁻⁴ of what they did, rounding by 10⁻⁹."""
+
+SIDES = (1.0, -1.0)
 
 SMOOTHED = 15
 """Bins of a periodogram over which its mean is taken: S is known to a quarter then."""
@@ -61,40 +63,34 @@ def sharpened(fit: JointFit) -> JointFit:
 
     Recordings that ask for coarse steps, as pulls do whose contacts chatter, keep their slopes.
     """
-    split, steps = fit.model.split(fit.point), FINE * np.array(fit.model.steps())
-    names = [unknown.name for unknown in fit.model.unknowns]
-
-    def moved(column: int, by: float) -> Array:
-        point = fit.point.copy()
-        point[column] += by
-        return point
+    here, steps = fit.model.split(fit.point), FINE * np.array(fit.model.steps())
+    names, width = [unknown.name for unknown in fit.model.unknowns], FINE * NUISANCE_STEP
+    # a robot that has been split once is built once for all trials
+    ends = [
+        [fit.model.with_one(here, k, float(fit.point[k] + side * steps[k])) for side in SIDES]
+        for k in range(len(names))
+    ]
 
     def one(index: int) -> Slopes:
         trial, nuisance, before = fit.trials[index], fit.nuisances[index], fit.slopes[index]
         if trial.coarse != 1.0:
             return before
-        shared, own = before.shared.copy(), before.own.copy()
-        for column in (k for k, name in enumerate(names) if trial.sees(name)):
-            ends = [fit.model.split(moved(column, sign * steps[column])) for sign in (1.0, -1.0)]
-            _put(shared, column, [_run(trial, (*end, nuisance)) for end in ends], steps[column])
-        width = FINE * NUISANCE_STEP
-        for column in acting(trial, fit.model):
-            aside = width * np.eye(len(nuisance))[column]
-            _put(own, column, [_run(trial, (*split, nuisance + side)) for side in (aside, -aside)], width)
-        return Slopes(shared, own)
+        seen, own = [k for k, name in enumerate(names) if trial.sees(name)], acting(trial, fit.model)
+        asked: list[Asked] = [(*end, nuisance) for k in seen for end in ends[k]]
+        asked += [(*here, nuisance + side * width * np.eye(len(nuisance))[k]) for k in own for side in SIDES]
+        if not asked:
+            return before
+        found = trial.whitened(trial.runs(asked))
+        across = 0.5 * (found[:, ::2] - found[:, 1::2]) / np.array([*steps[seen], *[width] * len(own)])
+        # where a step leaves what can be simulated, what stood there stays
+        fine = np.where(
+            np.all(np.isfinite(across), axis=0), across, np.hstack([before.shared[:, seen], before.own[:, own]])
+        )
+        slopes = Slopes(before.shared.copy(), before.own.copy())
+        slopes.shared[:, seen], slopes.own[:, own] = fine[:, : len(seen)], fine[:, len(seen) :]
+        return slopes
 
     return replace(fit, slopes=tuple(over(fit.trials, one)))
-
-
-def _run(trial: Trial, asked: Asked) -> Array:
-    return trial.whitened(trial.run(*asked))
-
-
-def _put(columns: Array, column: int, ends: list[Array], step: float) -> None:
-    """A symmetric difference in its column; where a step leaves what can be simulated, what stood there stays."""
-    slope = (ends[0] - ends[1]) / (2.0 * step)
-    if np.all(np.isfinite(slope)):
-        columns[:, column] = slope
 
 
 def smoothed(power: Array) -> Array:
