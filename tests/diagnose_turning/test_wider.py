@@ -10,16 +10,50 @@ import pytest
 
 from ssmr_ident.diagnose.turning import wider as stage
 from ssmr_ident.diagnose.turning.candidates import candidates
-from ssmr_ident.diagnose.turning.ensemble import ALIKE, ROUNDS, _everywhere
+from ssmr_ident.diagnose.turning.counter import Counter
+from ssmr_ident.diagnose.turning.ensemble import ALIKE, ROUGH, ROUNDS, _everywhere
 from ssmr_ident.diagnose.turning.likelihood import Score
 from ssmr_ident.diagnose.turning.search import Explained
-from ssmr_ident.diagnose.turning.wider import FAR_DB, LED, TIMES, TRIED, wider
+from ssmr_ident.diagnose.turning.wider import FAR_DB, LED, TIMES, TRIED, WORK, wider
 
 EVERY = {c.id: c for c in candidates((0.03, 0.1), (10.0,), 3e-5)}
 
 
 def _one(name: str, evidence: float, tau: float) -> Explained:
-    return Explained(EVERY[name], {}, SimpleNamespace(calibration=()), Score(0.0, tau, tau), 0.0, evidence)  # type: ignore[arg-type]
+    anchor = SimpleNamespace(calibration=(), bench=SimpleNamespace(work=0.0))
+    return Explained(EVERY[name], {}, anchor, Score(0.0, tau, tau), 0.0, evidence)  # type: ignore[arg-type]
+
+
+class Runner:
+    """An ensemble from all starts: the third explanation was begun on the wrong side, and gains by it."""
+
+    def __init__(self, one: Explained, asked: list[tuple[str, bool]]) -> None:
+        asked.append((one.id, True))
+        self.one, self.level, self.rounds = one, one.evidence, 0
+
+    def advance(self) -> None:
+        self.rounds += 1
+
+    def best(self) -> Explained:
+        return replace(self.one, evidence=self.one.evidence + {"com_offset": 90.0}.get(self.one.id, 1.0))
+
+
+def test_what_falls_out_of_reach_is_not_run_to_its_end(monkeypatch: pytest.MonkeyPatch) -> None:
+    runners = [Runner(_one(name, evidence, 3.0), []) for name, evidence in (("stribeck", 0.0), ("com_offset", -160.0))]
+    shown: list[int] = []
+    count = Counter(lambda _, done, total: shown.append(done), "race", 2 * ROUNDS)
+    found = stage._raced(runners, count)  # type: ignore[arg-type]
+    assert [one.id for one in found] == ["stribeck"]
+    assert [runner.rounds for runner in runners] == [ROUNDS, ROUGH + 1]
+    assert shown[-1] == 2 * ROUNDS
+
+
+def test_nothing_is_led_on_beyond_what_anyone_waits_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(stage, "settled", lambda *_, **__: pytest.fail("led on"))
+    monkeypatch.setattr(stage, "Ensemble", lambda one, *_, everywhere: Runner(one, []))
+    tired = _one("stribeck", 50.0, 2.0 * FAR_DB)
+    tired.anchor.bench.work = 1.01 * WORK
+    assert wider([tired], (), 0, (1,), lambda *_: None)[0].evidence == 51.0
 
 
 def test_nothing_more_is_simulated_where_the_best_comes_near(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -32,15 +66,14 @@ def test_those_in_front_and_what_is_unlisted_are_searched_and_the_first_led_on(m
     asked: list[tuple[str, bool]] = []
     shown: list[tuple[int, int]] = []
 
-    def settled(one, targets, seed, final, advance, everywhere=False):
-        asked.append((one.id, everywhere))
+    def settled(one, targets, seed, final, advance):
+        asked.append((one.id, False))
         for _ in range(ROUNDS):
             advance()
-        # the third was begun on the wrong side; led on, it gains once
-        gain = {"com_offset": 90.0}.get(one.id, 1.0) if everywhere else 2.0 * ALIKE * (one.evidence < 100.0)
-        return replace(one, evidence=one.evidence + gain)
+        return replace(one, evidence=one.evidence + 2.0 * ALIKE * (one.evidence < 100.0))
 
     monkeypatch.setattr(stage, "settled", settled)
+    monkeypatch.setattr(stage, "Ensemble", lambda one, *_, everywhere: Runner(one, asked))
     names = ["wheel_lift", "flexible_mast", "stribeck", "com_offset", "motor_belt", "unlisted"]
     best = [_one(name, 50.0 - 10.0 * place, 2.0 * FAR_DB) for place, name in enumerate(names)]
     found = wider(best, (), 0, (1,), lambda _, done, total: shown.append((done, total)))

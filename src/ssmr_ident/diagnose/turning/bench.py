@@ -35,10 +35,11 @@ class Run:
 
 @dataclass(eq=False)
 class Bench:
-    """Simulates conditions with changed parameters; ``count`` is how often it did."""
+    """Simulates conditions with changed parameters; ``count`` is how often it did, ``work`` how many steps it took."""
 
     parameters: ParameterSet
     count: int = 0
+    work: float = 0.0
     memory: dict[tuple, Run | None] = field(default_factory=dict)
 
     def run(
@@ -78,12 +79,14 @@ class Bench:
         fresh = {key: job for key, job in keyed.items() if key not in self.memory}
         if fresh:
             with ThreadPoolExecutor(WORKERS) as pool:
+                self.work += sum((job[0].settling + job[0].duration) / step for job in fresh.values())
                 runs = pool.map(self._simulate, *zip(*fresh.values(), strict=True), [step] * len(fresh))
                 self.memory.update(zip(fresh, runs, strict=True))
 
     def _one(self, condition: Condition, baseline: Values, effects: Effects, seed: int, step: float) -> Run | None:
         key = self._key(condition, baseline, effects, seed, step)
         if key not in self.memory:
+            self.work += (condition.settling + condition.duration) / step
             self.memory[key] = self._simulate(condition, baseline, effects, seed, step)
         return self.memory[key]
 

@@ -113,8 +113,9 @@ def candidates(pitches: tuple[float, ...], ceilings: tuple[float, ...], grain: f
         ),
         Candidate(
             "flexible_mast",
-            (Free("f_mast_Hz", 2.0, 40.0, unsure=0.04), Free("mass_kg", 0.1, 8.0)),
-            _grid(f_mast_Hz=(4.0, 5.5, 7.0, 8.5, 10.0, 13.0, 17.0), mass_kg=(1.0, 2.5)),
+            (Free("f_mast_Hz", 2.0, 40.0, unsure=0.07), Free("mass_kg", 0.1, 8.0)),
+            # a sway is a few per cent wide: starts further apart than this are no starts
+            _grid(f_mast_Hz=tuple(3.5 * 1.16**i for i in range(12)), mass_kg=(1.0, 2.5, 4.5)),
             {"height_above_com_m": 0.33, "damping_ratio": 0.03},
         ),
         Candidate(

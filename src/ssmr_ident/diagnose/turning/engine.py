@@ -10,6 +10,7 @@ import numpy as np
 from ssmr_ident.campaign import Campaign
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import ParameterSet
+from ssmr_ident.diagnose.turning.alone import searched_again, without
 from ssmr_ident.diagnose.turning.anchor import SEEDS, Anchor, scale_of
 from ssmr_ident.diagnose.turning.baseline import ROUNDS, anchored
 from ssmr_ident.diagnose.turning.bench import STEP, Bench
@@ -18,6 +19,9 @@ from ssmr_ident.diagnose.turning.conditions import Condition, conditions_of, hel
 from ssmr_ident.diagnose.turning.counter import Counter, Progress
 from ssmr_ident.diagnose.turning.ensemble import ROUNDS as ENSEMBLE_ROUNDS
 from ssmr_ident.diagnose.turning.ensemble import settled, settled_at_distances
+from ssmr_ident.diagnose.turning.firm import STAGES as FIRM_ROUNDS
+from ssmr_ident.diagnose.turning.firm import firm
+from ssmr_ident.diagnose.turning.giving import screened_giving, slopes_alone
 from ssmr_ident.diagnose.turning.grip import PATH, TRIED, GripProfile, grip_profile
 from ssmr_ident.diagnose.turning.likelihood import Score
 from ssmr_ident.diagnose.turning.regimes import widened
@@ -34,6 +38,8 @@ HALVINGS = ((4, 4),)  # how many of the best get how many more steps, as long as
 ALONE = FIRST_STEPS + sum(more for _, more in HALVINGS)  # of the baseline by itself, without calibration
 SETTLED = 2  # that an ensemble fits to the end
 FINAL_SEEDS = (1, 2, 3, 4)
+GAIN_LOOSE = 12.0
+"""Evidence over the baseline that an explanation needs where no calibration holds the baseline."""
 LEFT = 20.0
 """What the model's own error may add to the baseline's log likelihood where nothing is missing (docs/theory)."""
 REFINE_FAR = 100.0
@@ -124,6 +130,11 @@ def examine(
     quiet = again is not None and again.left <= LEFT
     anchor = anchored(bench, fitted_on, bool(calibration), scale, count.advance, seeds=seeds)
     count.finish()
+    several = tuple(1000 * seed + s for s in FINAL_SEEDS)
+    if calibration:
+        count = Counter(show, "baseline fitted to the end", FIRM_ROUNDS)
+        anchor = firm(anchor, calibration, seed, several, count.advance)
+        count.finish()
     count = Counter(show, "lambda_max", len(TRIED))
     grip = grip_profile(anchor, fitted_on, count.advance)
     # on the targets themselves a larger lambda_max may be the very effect that is looked for
@@ -139,7 +150,6 @@ def examine(
     baseline = explained(anchor, None, {}, targets)
     assert baseline is not None
     distorted = not calibration and baseline.target.tau_db > DISTORTED_DB
-    several = tuple(1000 * seed + s for s in FINAL_SEEDS)
     if not calibration:
         # as far as explanations are fitted later: what the parameters can bring about by themselves needs no effect
         count = Counter(show, "baseline fitted to the end", ALONE + ENSEMBLE_ROUNDS)
@@ -189,8 +199,11 @@ def examine(
     best += wider(rough, targets, seed, several, show, [one.id for one in straight])
     finals = [_final(one, targets, seed) for one in [baseline, *_one_each(best)]]
     # a baseline that fits better, found beside an effect, is no merit of the effect's
-    alone = max(one.evidence for one in (finals[0], *_without(finals[1:], targets)))
-    finals[0] = replace(finals[0], evidence=alone)
+    alone = max((finals[0], *without(finals[1:], targets)), key=lambda one: one.evidence)
+    if not calibration:
+        ahead_of_all = max((one.evidence for one in finals[1:]), default=-np.inf)
+        alone = searched_again(alone, ahead_of_all, GAIN_LOOSE, targets, seed, several, show)
+    finals[0] = replace(finals[0], evidence=max(alone.evidence, finals[0].evidence))
     rest = [one for one in _one_each([pair[0] for pair in pairs]) if one.id not in {other.id for other in finals}]
     ranked = sorted(finals[1:], key=lambda one: one.evidence, reverse=True)
     seconds["baseline beside explanations"] = time.perf_counter() - clock - sum(seconds.values())
@@ -208,7 +221,12 @@ def _tried(
     Without calibration the baseline gives way together with the effect instead.
     """
     count = Counter(show, "explanations tried", 2 * len(every))
-    pairs = [pair for pair in (screened(anchor, c, targets, count.advance) for c in every) if pair]
+    slopes = None if anchor.calibration else slopes_alone(anchor, targets)
+    if slopes is None:
+        found = (screened(anchor, c, targets, count.advance) for c in every)
+    else:
+        found = (screened_giving(anchor, c, targets, slopes, count.advance) for c in every)
+    pairs = [pair for pair in found if pair]
     count.finish()
     pairs.sort(key=lambda pair: pair[0].evidence, reverse=True)
     if not anchor.calibration:
@@ -232,12 +250,6 @@ def _ahead(ranked: list[Explained], baseline: Explained) -> list[int]:
     """Which are to be fitted to the end: near the first, or the baseline where that is ahead."""
     reach = max([baseline.evidence, *(one.evidence for one in ranked)]) - CLOSE
     return [i for i, one in enumerate(ranked) if one.evidence > reach]
-
-
-def _without(explanations: list[Explained], targets: tuple[Condition, ...]) -> list[Explained]:
-    """The baselines that go with explanations, each by itself."""
-    every = [explained(one.anchor, None, {}, targets) for one in explanations]
-    return [one for one in every if one is not None]
 
 
 def _one_each(explanations: list[Explained]) -> list[Explained]:

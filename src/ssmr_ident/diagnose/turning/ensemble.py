@@ -51,35 +51,67 @@ def settled(
     advance : callable
         Called once per round.
     everywhere : bool
-        The effect's own parameters begin spread over all of the candidate's starts, by twice as many members.
+        The effect's own parameters begin spread over all of the candidate's starts, the baseline's own, where there is
+        no effect, over what is known of them; by twice as many members.
     """
-    random = np.random.default_rng(seed)
-    candidate, size = start.candidate, len(start.anchor.priors)
-    conditions = len(start.anchor.calibration) + len(targets)
-    own = np.zeros(0) if candidate is None else candidate.position(start.values)
-    about = np.concatenate([SHRUNK * start.anchor.z, own])
-    spread = np.concatenate([np.full(size, SPREAD), [] if candidate is None else [f.spread for f in candidate.free]])
-    count = int(np.clip(RUNS // conditions, FEWEST, MOST)) * (2 if everywhere else 1)
-    members = about + spread * random.standard_normal((count, len(about)))
-    if everywhere and candidate is not None and candidate.free:
-        members[:, size:] = _everywhere(candidate, count, random)
-    seen: list[tuple[float, np.ndarray]] = []
-    for done in range(ROUNDS):
-        step = COARSE if done < ROUGH else start.anchor.step
-        anchor = replace(start.anchor, seeds=(max(final) + 1 + done,), step=step)
-        seen, members = _moved(start, anchor, members, targets, random, WEIGHTS[min(done, len(WEIGHTS) - 1)])
+    ensemble = Ensemble(start, targets, seed, final, everywhere)
+    for _ in range(ROUNDS):
+        ensemble.advance()
         advance()
-        if not len(members):
+    return ensemble.best()
+
+
+class Ensemble:
+    """An ensemble about an explanation, round by round, so that several may race; see ``settled``.
+
+    ``level`` is the best evidence in the last round: those of one round, on the same floor, can be compared.
+    """
+
+    def __init__(
+        self, start: Explained, targets: tuple[Condition, ...], seed: int, final: tuple[int, ...], everywhere: bool
+    ) -> None:
+        self.start, self.targets, self.final = start, targets, final
+        self.random = np.random.default_rng(seed)
+        self.done, self.level = 0, -np.inf
+        self.seen: list[tuple[float, np.ndarray]] = []
+        candidate, size = start.candidate, len(start.anchor.priors)
+        conditions = len(start.anchor.calibration) + len(targets)
+        self.own = np.zeros(0) if candidate is None else candidate.position(start.values)
+        about = np.concatenate([SHRUNK * start.anchor.z, self.own])
+        # a baseline has no starts of its own to be spread over: its ensemble begins as wide as the priors
+        wide = SPREAD if not everywhere or candidate is not None else 1.0
+        spread = np.concatenate([np.full(size, wide), [] if candidate is None else [f.spread for f in candidate.free]])
+        count = int(np.clip(RUNS // conditions, FEWEST, MOST)) * (2 if everywhere else 1)
+        self.members = about + spread * self.random.standard_normal((count, len(about)))
+        if everywhere and candidate is not None and candidate.free:
+            self.members[:, size:] = _everywhere(candidate, count, self.random)
+
+    def advance(self) -> None:
+        """One round; nothing where no members are left that can be simulated."""
+        if not len(self.members):
+            return
+        step = COARSE if self.done < ROUGH else self.start.anchor.step
+        anchor = replace(self.start.anchor, seeds=(max(self.final) + 1 + self.done,), step=step)
+        weight = WEIGHTS[min(self.done, len(WEIGHTS) - 1)]
+        self.seen, self.members = _moved(self.start, anchor, self.members, self.targets, self.random, weight)
+        self.level = max((evidence for evidence, _ in self.seen), default=-np.inf)
+        self.done += 1
+
+    def best(self) -> Explained:
+        """The best of start, mean and the best members, on floors that the ensemble has not seen."""
+        start, candidate, size = self.start, self.start.candidate, len(self.start.anchor.priors)
+        if not len(self.members):
             return start
-    several = replace(start.anchor, seeds=final)
-    seen.sort(key=lambda pair: pair[0], reverse=True)
-    places = [np.concatenate([start.anchor.z, own]), members.mean(axis=0), *(at for _, at in seen[:KEPT])]
-    _prefetch(start, several, places, targets)
-    found = [one for at in places if (one := _at(start, several, at, targets)) is not None]
-    best = max(found, key=lambda one: one.evidence, default=start)
-    left = None if candidate is None else members[:, size:].std(axis=0)
-    known = left if start.spread is None or left is None else np.maximum(start.spread, left)
-    return replace(best, anchor=replace(best.anchor, seeds=start.anchor.seeds), spread=known)
+        several = replace(start.anchor, seeds=self.final)
+        self.seen.sort(key=lambda pair: pair[0], reverse=True)
+        began = np.concatenate([start.anchor.z, self.own])
+        places = [began, self.members.mean(axis=0), *(at for _, at in self.seen[:KEPT])]
+        _prefetch(start, several, places, self.targets)
+        found = [one for at in places if (one := _at(start, several, at, self.targets)) is not None]
+        best = max(found, key=lambda one: one.evidence, default=start)
+        left = None if candidate is None else self.members[:, size:].std(axis=0)
+        known = left if start.spread is None or left is None else np.maximum(start.spread, left)
+        return replace(best, anchor=replace(best.anchor, seeds=start.anchor.seeds), spread=known)
 
 
 def _everywhere(candidate: Candidate, count: int, random: np.random.Generator) -> np.ndarray:

@@ -9,10 +9,10 @@ import numpy as np
 
 from ssmr_ident.diagnose.diagnosis import MISSING, NOTHING, UNDETERMINED
 from ssmr_ident.diagnose.turning.candidates import UNLISTED
-from ssmr_ident.diagnose.turning.engine import LEFT, Outcome
+from ssmr_ident.diagnose.turning.engine import GAIN_LOOSE, LEFT, Outcome
 from ssmr_ident.diagnose.turning.grip import FOREIGN_DB
 
-GAIN = (6.0, 12.0)
+GAIN = (6.0, GAIN_LOOSE)
 """Evidence over the baseline that an explanation needs, with and without calibration recordings."""
 TIE, TIE_SHARE = 6.0, 0.05
 """Evidence within which explanations fit alike, and the share of the best one's: how many values of a spectrum are

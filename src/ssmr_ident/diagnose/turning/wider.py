@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from ssmr_ident.diagnose.turning.candidates import UNLISTED
 from ssmr_ident.diagnose.turning.conditions import Condition
 from ssmr_ident.diagnose.turning.counter import Counter, Progress
-from ssmr_ident.diagnose.turning.ensemble import ALIKE, ROUNDS, settled
+from ssmr_ident.diagnose.turning.ensemble import ALIKE, ROUGH, ROUNDS, Ensemble, settled
 from ssmr_ident.diagnose.turning.search import Explained
 
 FAR_DB = 1.5
@@ -23,6 +23,8 @@ TRIED, FEWER, MANY = 3, 2, 6
 REACH = 150.0
 """Of evidence: an ensemble from all starts and what followed it was seen to add 140 at most."""
 LED, TIMES = 2, 2  # how many of them an ensemble takes on, and how often at most
+WORK = 2.2e8
+"""Steps simulated in a diagnosis from which on nothing is led on any further: about 150 s of processor time."""
 
 
 def wider(
@@ -60,16 +62,31 @@ def wider(
     chosen = ahead[: FEWER if conditions > MANY else TRIED]
     chosen += [one for one in best if one.id == UNLISTED]
     count = Counter(show, "best explanations from all starts", (len(chosen) + LED * TIMES) * ROUNDS)
-    found = [settled(one, targets, seed, final, count.advance, everywhere=True) for one in chosen]
+    found = _raced([Ensemble(one, targets, seed, final, everywhere=True) for one in chosen], count)
     found.sort(key=lambda one: one.evidence, reverse=True)
+    bench = best[0].anchor.bench
     for place, one in enumerate(found[:LED]):
         for time in range(TIMES):
             count.reach((len(chosen) + place * TIMES + time) * ROUNDS)
-            if one.target.tau_db < FAR_DB or one.evidence < found[0].evidence - REACH:
-                break  # found, or out of reach
+            if one.target.tau_db < FAR_DB or one.evidence < found[0].evidence - REACH or bench.work > WORK:
+                break  # found, or out of reach, or as long as anyone waits
             found[place] = settled(one, targets, seed + 1 + time, final, count.advance)
             if found[place].evidence < one.evidence + ALIKE:
                 break
             one = found[place]
     count.finish()
     return found
+
+
+def _raced(ensembles: list[Ensemble], count: Counter) -> list[Explained]:
+    """Where the ensembles end that are still in reach of the best once they run with fine steps."""
+    alive = list(ensembles)
+    for done in range(ROUNDS):
+        for ensemble in alive:
+            ensemble.advance()
+            count.advance()
+        if done >= ROUGH:
+            level = max(ensemble.level for ensemble in alive)
+            alive = [ensemble for ensemble in alive if ensemble.level > level - REACH]
+    count.reach(len(ensembles) * ROUNDS)
+    return [ensemble.best() for ensemble in alive]
