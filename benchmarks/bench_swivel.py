@@ -4,11 +4,12 @@
     python benchmarks/bench_swivel.py null 20 --seed 2 -o null.jsonl
     python benchmarks/bench_swivel.py repeat 200 --seed 3 -o repeat.jsonl
     python benchmarks/bench_swivel.py loose 20 --seed 4 -o loose.jsonl
+    python benchmarks/bench_swivel.py ten 4 --seed 5 -o ten.jsonl
     python benchmarks/bench_swivel.py report effects.jsonl repeat.jsonl loose.jsonl
 
 ``null`` are sessions with nothing missing, two of three with calibration; ``repeat`` have calibration, and only those
 whose targets do not repeat it within chance are diagnosed further, since a diagnosis of the others ends there;
-``loose`` have none.
+``loose`` have none; ``ten`` are sessions of ten recordings, for what they take.
 
 Every session has a robot of its own, drawn about the bundled one; its file knows the robot as well as a lab does. The
 recordings are simulated with shorter steps than a diagnosis takes, over floors that it does not know, and go through
@@ -168,12 +169,16 @@ class Lab:
         return float(np.mean(moved)), float(np.mean(same))
 
 
-def session(seed: int, effect: str | None, calibrated: bool) -> tuple[Campaign, dict]:
-    """A campaign in memory and its truth; ``effect`` None is a null session."""
+def session(seed: int, effect: str | None, calibrated: bool, count: int | None = None) -> tuple[Campaign, dict]:
+    """A campaign in memory and its truth; ``effect`` None is a null session.
+
+    ``count`` is how many speeds are recorded as targets, two with calibration and four without where it is None.
+    """
     random = np.random.default_rng(seed)
     lab = Lab(random)
     pool = np.array(SPEEDS if effect != "wheel_lift" else (54, 60, 72, 84, 96))
-    speeds = [int(s) for s in sorted(random.choice(pool, 2 if calibrated else 4, replace=False))]
+    wanted = count or (2 if calibrated else 4)
+    speeds = [int(s) for s in sorted(random.choice(pool, min(wanted, len(pool) - 1), replace=False))]
     effects, name, seen = {}, effect, (0.0, 0.0)
     if effect is not None:
         for _ in range(TRIES):
@@ -196,7 +201,8 @@ def session(seed: int, effect: str | None, calibrated: bool) -> tuple[Campaign, 
             runs.append(lab.measurement(speed, "calibration", {}, number))
         runs.append(lab.measurement(speed, "target", effects, number))
     other = int(random.choice([s for s in pool if s not in speeds]))
-    runs.append(lab.measurement(other, "heldout", effects, 9))
+    for number in (9,) if count is None else (9, 10):
+        runs.append(lab.measurement(other, "heldout", effects, number))
     entries = tuple(m.entry for m in runs)
     plain = Session(f"drawn-{seed}", Path(), "p3at-extended", "rigid6", entries)
     truth = {
@@ -269,6 +275,27 @@ def repeats(count: int, seed: int, output: Path) -> None:
                   f"false alarms {_interval(alarms, len(rows))}", flush=True)  # fmt: skip
 
 
+def ten(count: int, seed: int, output: Path) -> None:
+    """How long ten recordings take: five speeds before and after, in turn with eight targets and two kept back."""
+    names = [name for name in DRAWS if name not in ("wheel_lift", "coriolis")]
+    for i in range(count):
+        campaign, truth = session(1000 * seed + i, names[i % len(names)], i % 2 == 0, 5 if i % 2 == 0 else 8)
+        if campaign is None:
+            continue
+        kept = campaign.measurements
+        if truth["calibrated"]:  # five speeds twice are ten: the middle one is kept back by the diagnosis
+            kept = tuple(m for m in kept if m.entry.role != "heldout")
+        entries = tuple(m.entry for m in kept)
+        campaign = Campaign(replace(campaign.session, entries=entries), campaign.parameters, kept)
+        begun, busy = time.perf_counter(), time.process_time()
+        row = row_of(examine(campaign), truth, begun)
+        row["processor_seconds"] = round(time.process_time() - busy, 1)
+        with output.open("a") as file:
+            file.write(json.dumps(row) + "\n")
+        print(len(kept), truth["effect"], truth["calibrated"], row["seconds"], row["processor_seconds"], row["named"],
+              np.round(row["heldout_db"], 1).tolist(), flush=True)  # fmt: skip
+
+
 def report(paths: list[Path]) -> None:
     """Rates with exact intervals, and the confusion matrix, of what was stored."""
     rows = [json.loads(line) for path in paths for line in path.read_text().splitlines()]
@@ -334,7 +361,7 @@ def _inside(row: dict, width: float) -> list[bool]:
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("kind", choices=("effects", "null", "loose", "repeat", "report"))
+    parser.add_argument("kind", choices=("effects", "null", "loose", "repeat", "ten", "report"))
     parser.add_argument("arguments", nargs="+")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("-o", "--output", type=Path, default=Path("swivel.jsonl"))
@@ -343,5 +370,7 @@ if __name__ == "__main__":
         report([Path(path) for path in given.arguments])
     elif given.kind == "repeat":
         repeats(int(given.arguments[0]), given.seed, given.output)
+    elif given.kind == "ten":
+        ten(int(given.arguments[0]), given.seed, given.output)
     else:
         run_many(given.kind, int(given.arguments[0]), given.seed, given.output)

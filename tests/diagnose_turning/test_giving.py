@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -10,8 +10,9 @@ import pytest
 
 from ssmr_ident.diagnose.turning import alone, firm, giving
 from ssmr_ident.diagnose.turning.candidates import candidates
+from ssmr_ident.diagnose.turning.conditions import BRIEFEST, brief
 from ssmr_ident.diagnose.turning.ensemble import ALIKE, ROUNDS
-from ssmr_ident.diagnose.turning.giving import DIFFERENCE, given_way, screened_giving, slopes_alone
+from ssmr_ident.diagnose.turning.giving import DIFFERENCE, given_way, ranked_on, screened_giving, slopes_alone
 from ssmr_ident.diagnose.turning.likelihood import Block, Score, score
 from ssmr_ident.diagnose.turning.search import Explained
 from ssmr_ident.diagnose.turning.wider import FAR_DB, REACH
@@ -71,7 +72,7 @@ def world(monkeypatch):
     return World()
 
 
-TARGET = SimpleNamespace(mean=SimpleNamespace(cross=np.zeros((50, 3, 3))), names=("ax", "ay", "az"))
+TARGET = SimpleNamespace(turning=0.5, mean=SimpleNamespace(cross=np.zeros((50, 3, 3))), names=("ax", "ay", "az"))
 
 
 def test_slopes_are_those_of_the_baseline_alone(world) -> None:
@@ -87,6 +88,24 @@ def test_the_baseline_gives_back_what_it_took_up(world) -> None:
     assert found[0].values == {"exponent": 0.35}
     np.testing.assert_allclose(found[0].anchor.z, world.true, atol=0.15)
     assert found[0].evidence > found[1].evidence
+
+
+def test_starts_are_ranked_on_speeds_as_far_apart_as_there_are() -> None:
+    targets = tuple(SimpleNamespace(turning=turning) for turning in (0.9, -0.3, 0.5, -0.7, 0.4, 1.2, 0.6))
+    assert [c.turning for c in ranked_on(targets)] == [-0.3, 0.5, -0.7, 1.2]
+    assert len(ranked_on(targets[:2])) == 2
+
+
+def test_a_search_simulates_less_of_each_of_many_steady_courses() -> None:
+    @dataclass(frozen=True)
+    class Course:
+        settling: float
+        duration: float
+
+    steady, changing = Course(2.0, 12.0), Course(0.0, 30.0)
+    assert brief((steady, changing), 4) == (steady, changing)  # type: ignore[arg-type, comparison-overlap]
+    assert [c.duration for c in brief((steady, changing), 8)] == [7.5, 30.0]  # type: ignore[arg-type]
+    assert brief((steady,), 30)[0].duration == BRIEFEST  # type: ignore[arg-type]
 
 
 def test_what_slopes_cannot_take_up_moves_nothing() -> None:

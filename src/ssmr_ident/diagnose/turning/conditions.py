@@ -21,6 +21,8 @@ SHORTEST = 4.0  # s; shorter records are starting and stopping, and hold too few
 LONGEST = 40.0  # s of simulation; a density is known to 16 % by then
 STEADY = 12.0  # s of simulation at constant wheel speeds, for each of several seeds
 SETTLING = 2.0  # s
+AT_LENGTH, BRIEFEST = 5, 6.0
+"""Conditions that a search simulates at their length; of more, each as much less [s]: chance averages over them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,6 +79,12 @@ class Condition:
         """What a simulation of it depends on."""
         return (self.experiment, self.names, self.rates.tobytes(), self.rate_step, self.settling, self.duration,
                 len(self.mean.frequency))  # fmt: skip
+
+
+def brief(conditions: tuple[Condition, ...], among: int) -> tuple[Condition, ...]:
+    """The same conditions for a search over ``among`` of them: what is simulated of each steady course."""
+    seconds = max(BRIEFEST, STEADY * min(1.0, AT_LENGTH / max(among, 1)))
+    return tuple(replace(c, duration=min(c.duration, seconds)) if c.settling else c for c in conditions)
 
 
 HELD_SHARE = 0.35  # of a record's end, kept back where no whole recording can be

@@ -15,7 +15,7 @@ from ssmr_ident.diagnose.turning.anchor import SEEDS, Anchor, scale_of
 from ssmr_ident.diagnose.turning.baseline import ROUNDS, anchored
 from ssmr_ident.diagnose.turning.bench import STEP, Bench
 from ssmr_ident.diagnose.turning.candidates import Candidate, candidates
-from ssmr_ident.diagnose.turning.conditions import Condition, conditions_of, held_back
+from ssmr_ident.diagnose.turning.conditions import Condition, brief, conditions_of, held_back
 from ssmr_ident.diagnose.turning.counter import Counter, Progress
 from ssmr_ident.diagnose.turning.ensemble import ROUNDS as ENSEMBLE_ROUNDS
 from ssmr_ident.diagnose.turning.ensemble import settled, settled_at_distances
@@ -113,9 +113,12 @@ def examine(
     known = campaign.parameters if parameters is None else parameters
     measurements, kept_notes = held_back(campaign)
     conditions, notes = conditions_of(campaign, known, measurements)
-    calibration = tuple(c for c in conditions if c.role == "calibration")
-    targets = tuple(c for c in conditions if c.role == "target")
+    all_calibration = tuple(c for c in conditions if c.role == "calibration")
+    all_targets = tuple(c for c in conditions if c.role == "target")
     heldout = tuple(c for c in conditions if c.role == "heldout")
+    calibration, targets = (
+        brief(part, len(all_calibration) + len(all_targets)) for part in (all_calibration, all_targets)
+    )
     if not targets:
         raise InputError(
             str(campaign.session.folder), "holds no target swivel long enough to diagnose", "Give one role: target"
@@ -157,11 +160,13 @@ def examine(
         anchor = replace(baseline.anchor, fit=baseline.target, slopes=None)
         count.finish()
 
+    # distances to simulated runs are told of conditions at their length
+    whole = _at_length(all_calibration, calibration), _at_length(all_targets, targets)
     if quiet:  # the targets repeat the calibration: nothing is left that an effect could explain
         seconds["explanations"] = 0.0
         final = _final(baseline, targets, seed)
         return Outcome(
-            bench, calibration, targets, heldout, anchor, final, (), (), grip, (*kept_notes, *notes), seconds,
+            bench, *whole, heldout, anchor, final, (), (), grip, (*kept_notes, *notes), seconds,
         )  # fmt: skip
 
     every = candidates(pitches(anchor, targets), ceilings(targets), anchor.values.get("floor.height_m", 3e-5))
@@ -208,8 +213,8 @@ def examine(
     ranked = sorted(finals[1:], key=lambda one: one.evidence, reverse=True)
     seconds["baseline beside explanations"] = time.perf_counter() - clock - sum(seconds.values())
     return Outcome(
-        bench, calibration, targets, heldout, anchor, finals[0], tuple(ranked), tuple(rest), grip,
-        (*kept_notes, *notes), seconds,
+        bench, *whole, heldout, anchor, finals[0], tuple(ranked), tuple(rest), grip, (*kept_notes, *notes),
+        seconds,
     )  # fmt: skip
 
 
@@ -250,6 +255,11 @@ def _ahead(ranked: list[Explained], baseline: Explained) -> list[int]:
     """Which are to be fitted to the end: near the first, or the baseline where that is ahead."""
     reach = max([baseline.evidence, *(one.evidence for one in ranked)]) - CLOSE
     return [i for i, one in enumerate(ranked) if one.evidence > reach]
+
+
+def _at_length(conditions: tuple[Condition, ...], searched: tuple[Condition, ...]) -> tuple[Condition, ...]:
+    """Conditions as long as they are, with the scatter found while searching."""
+    return tuple(replace(c, wander=one.wander) for c, one in zip(conditions, searched, strict=True))
 
 
 def _one_each(explanations: list[Explained]) -> list[Explained]:

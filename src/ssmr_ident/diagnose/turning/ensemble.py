@@ -15,7 +15,7 @@ from dataclasses import replace
 import numpy as np
 
 from ssmr_ident.diagnose.turning.anchor import Anchor
-from ssmr_ident.diagnose.turning.bench import COARSE
+from ssmr_ident.diagnose.turning.bench import COARSE, STEP
 from ssmr_ident.diagnose.turning.candidates import Candidate
 from ssmr_ident.diagnose.turning.conditions import Condition
 from ssmr_ident.diagnose.turning.likelihood import Score, weight_of
@@ -81,7 +81,7 @@ class Ensemble:
         # a baseline has no starts of its own to be spread over: its ensemble begins as wide as the priors
         wide = SPREAD if not everywhere or candidate is not None else 1.0
         spread = np.concatenate([np.full(size, wide), [] if candidate is None else [f.spread for f in candidate.free]])
-        count = int(np.clip(RUNS // conditions, FEWEST, MOST)) * (2 if everywhere else 1)
+        count = _members(conditions) * (2 if everywhere else 1)
         self.members = about + spread * self.random.standard_normal((count, len(about)))
         if everywhere and candidate is not None and candidate.free:
             self.members[:, size:] = _everywhere(candidate, count, self.random)
@@ -112,6 +112,16 @@ class Ensemble:
         left = None if candidate is None else self.members[:, size:].std(axis=0)
         known = left if start.spread is None or left is None else np.maximum(start.spread, left)
         return replace(best, anchor=replace(best.anchor, seeds=start.anchor.seeds), spread=known)
+
+
+def _members(conditions: int) -> int:
+    return int(np.clip(RUNS // max(conditions, 1), FEWEST, MOST))
+
+
+def work_of(conditions: tuple[Condition, ...]) -> float:
+    """Steps that an ensemble from all starts simulates."""
+    seconds = sum(c.settling + c.duration for c in conditions)
+    return 2 * _members(len(conditions)) * seconds * (ROUGH / COARSE + (ROUNDS - ROUGH) / STEP)
 
 
 def _everywhere(candidate: Candidate, count: int, random: np.random.Generator) -> np.ndarray:

@@ -24,11 +24,20 @@ DIFFERENCE = 0.7  # standard deviations of the prior; spectra of chaotic runs ar
 LARGEST = 3.0  # of a residual, natural logarithm: beyond it densities differ by nothing that a slope describes
 TAU_DB = (0.8, 6.0)
 ROUNDS = 3  # of least squares, each with the model's own error that the last one left
+RANKED_ON = 4  # target conditions, the speeds as far apart as there are, by which starts are ranked
 FOLLOWED = 2  # starts of each explanation that are simulated where the baseline goes
 
 
+def ranked_on(targets: tuple[Condition, ...]) -> tuple[Condition, ...]:
+    """Up to four target conditions over the range of speeds."""
+    order = sorted(targets, key=lambda c: abs(c.turning))
+    chosen = np.unique(np.linspace(0, len(order) - 1, min(RANKED_ON, len(order))).round().astype(int))
+    return tuple(order[i] for i in chosen)
+
+
 def slopes_alone(anchor: Anchor, targets: tuple[Condition, ...]) -> np.ndarray | None:
-    """(n, p) float: of the targets' residuals over the baseline's parameters, no effect acting."""
+    """(n, p) float: of the residuals at the speeds ranked on, over the baseline's parameters, no effect acting."""
+    targets = ranked_on(targets)
     coarse = replace(anchor, seeds=anchor.seeds[:1], step=COARSE)
     ahead = [anchor.z + DIFFERENCE * (np.arange(len(anchor.z)) == i) for i in range(len(anchor.z))]
     places = [anchor.at(z) for z in (anchor.z, *ahead)]
@@ -67,14 +76,14 @@ def screened_giving(
     All starts are ranked by what slopes promise; the best of them are simulated where the baseline went, and where it
     was.
     """
-    coarse = replace(anchor, seeds=anchor.seeds[:1], step=COARSE)
+    coarse, few = replace(anchor, seeds=anchor.seeds[:1], step=COARSE), ranked_on(targets)
     anchor.bench.prefetch(
         ((c, anchor.values, candidate.effects(start), seed)
-         for start in candidate.starts for c in targets for seed in coarse.seeds), COARSE,
+         for start in candidate.starts for c in few for seed in coarse.seeds), COARSE,
     )  # fmt: skip
     promised = []
     for i, start in enumerate(candidate.starts):
-        found = _promise(coarse, candidate, start, targets, slopes)
+        found = _promise(coarse, candidate, start, few, slopes)
         if found is not None:
             promised.append((found[0], i, found[1]))
     advance()

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from ssmr_ident.diagnose.turning.candidates import UNLISTED
 from ssmr_ident.diagnose.turning.conditions import Condition
 from ssmr_ident.diagnose.turning.counter import Counter, Progress
-from ssmr_ident.diagnose.turning.ensemble import ALIKE, ROUGH, ROUNDS, Ensemble, settled
+from ssmr_ident.diagnose.turning.ensemble import ALIKE, ROUGH, ROUNDS, Ensemble, settled, work_of
 from ssmr_ident.diagnose.turning.search import Explained
 
 FAR_DB = 1.5
@@ -25,6 +25,8 @@ REACH = 150.0
 LED, TIMES = 2, 2  # how many of them an ensemble takes on, and how often at most
 WORK = 2.2e8
 """Steps simulated in a diagnosis from which on nothing is led on any further: about 150 s of processor time."""
+MOST_WORK = 3.0e8
+"""Steps beyond which no more explanations are searched from all starts, but for the first and what is unlisted."""
 
 
 def wider(
@@ -58,8 +60,9 @@ def wider(
     listed = [one for one in best if one.id != UNLISTED and one.candidate is not None and one.candidate.free]
     ahead = [one for name in straight[: TRIED - 1] for one in listed if one.id == name]
     ahead += [one for one in listed if one not in ahead and one.evidence > level]
-    conditions = len(best[0].anchor.calibration) + len(targets)
-    chosen = ahead[: FEWER if conditions > MANY else TRIED]
+    recorded = (*best[0].anchor.calibration, *targets)
+    room = int((MOST_WORK - best[0].anchor.bench.work) / max(work_of(recorded), 1.0)) - 1
+    chosen = ahead[: min(max(room, 1), FEWER if len(recorded) > MANY else TRIED)]
     chosen += [one for one in best if one.id == UNLISTED]
     count = Counter(show, "best explanations from all starts", (len(chosen) + LED * TIMES) * ROUNDS)
     found = _raced([Ensemble(one, targets, seed, final, everywhere=True) for one in chosen], count)
