@@ -1,8 +1,8 @@
 """How far estimates scatter: slopes fine enough to show what recordings cannot tell, and noise that is not white.
 
-A fit is led by one-sided differences with steps a descent can use. What they err by, the square of a step, makes
-recordings seem to know what they do not: a mass on a spring that is let go moves alike whatever it weighs, and its mass
-was given to 0.5 % of what the file left open. So the slopes of an answer are symmetric differences with finer steps.
+A fit is led by one-sided differences with steps that a descent can use. What these err by counts as information: a
+mass on a spring that is let go moves alike whatever it weighs, and its mass was given to 0.5 % of what the file left
+open. So the slopes of an answer are symmetric differences with finer steps.
 
 Least squares in coloured noise: the covariance is H⁻¹ G H⁻¹, where H is the curvature that the fit supposes and G the
 scatter of its slope, Σ |J(f)|² S(f) with the power spectrum S of what the fit leaves (Huber, Proc. 5th Berkeley

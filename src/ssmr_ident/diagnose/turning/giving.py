@@ -52,8 +52,10 @@ def slopes_alone(anchor: Anchor, targets: tuple[Condition, ...]) -> np.ndarray |
 def given_way(z: np.ndarray, residual: np.ndarray, slopes: np.ndarray) -> np.ndarray:
     """Where the baseline goes to first order from ``z``, (p,) float, to take up what it can of a residual, (n,) float.
 
-    >>> given_way(np.zeros(1), np.array([0.5, -0.5, 0.5, -0.5]), np.array([[-1.0], [1.0], [-1.0], [1.0]])).round(1)
-    array([0.5])
+    Half a unit is asked for, and four densities are little to ask by against what is known beforehand:
+
+    >>> given_way(np.zeros(1), np.array([0.5, -0.5, 0.5, -0.5]), np.array([[-1.0], [1.0], [-1.0], [1.0]])).round(2)
+    array([0.44])
     """
     residual = np.clip(residual, -LARGEST, LARGEST)
     change = np.zeros_like(z)
