@@ -76,6 +76,16 @@ def test_of_a_wrong_one_no_pair_without_it_is_made_where_one_effect_is_enough() 
     assert any(len(e.fit.model.ids) == 2 for e in tried)
 
 
+def test_where_no_other_single_has_a_partner_the_first_one_stays(
+    both: tuple[dict[str, Explanation], tuple[Trial, ...]],
+) -> None:
+    found, kept = both
+    third = found["dry_friction"]
+    chosen, tried = instead(third, [found["baseline"], third], kept, "sdof", (math.inf,), None)
+    assert chosen is third
+    assert len(tried) == 2
+
+
 def test_noise_however_loud_is_no_structure() -> None:
     """Four times the variance that the noise was thought to have, evenly."""
     setup = prepared(campaign({}, RUNS, seed=6, duration=8.0, noise=4e-5), noise=2e-5)

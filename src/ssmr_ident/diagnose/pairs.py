@@ -97,9 +97,10 @@ def instead(
     for single in sorted(singles, key=lambda e: -found[e.id])[:OTHERS]:
         begun = differentiate(polish(single.fit, lengths))
         pairs += all_explained(kept, search(begun, baseline, lengths, True, progress).tried, single.kept)
-    pairs = each_set_once([p for p in pairs if chosen.fit.model.ids[0] not in p.fit.model.ids])
+    pairs = [p for p in pairs if chosen.fit.model.ids[0] not in p.fit.model.ids]
     if not pairs:
         return chosen, tried
+    pairs = each_set_once(pairs)
     leader = at_its_best(leading(chosen, pairs), pairs, kept, lengths)
     tried = joined(tried, pairs)
     if not certain(leader, chosen) or not harmless(leader, chosen):
