@@ -10,8 +10,9 @@ from scipy.linalg import block_diag
 from scipy.signal import lfilter
 
 from ssmr_ident.identify.coordinates import Model
+from ssmr_ident.identify.curvature import Curvature
 from ssmr_ident.identify.descent import descend
-from ssmr_ident.identify.joint import JointFit, differentiate, evaluate, normal_equations, worth
+from ssmr_ident.identify.joint import JointFit, differentiate, evaluate, worth
 from ssmr_ident.identify.noise import AutoregressiveNoise
 from ssmr_ident.identify.objective import Unknown
 from ssmr_ident.identify.scatter import covariance as scatter_of
@@ -109,7 +110,7 @@ def test_one_step_with_nuisances_eliminated_is_the_full_least_squares_solution(
     found = descend(fit, 1)
     solution = np.concatenate([found.point, *found.nuisances])
     assert solution == pytest.approx(expected, rel=1e-6, abs=1e-8)
-    curvature, _ = normal_equations(differentiate(fit), fit.weights)
+    curvature, _ = Curvature.of(differentiate(fit), fit.weights).normal_equations()
     assert np.linalg.inv(curvature) == pytest.approx(covariance[:3, :3], rel=1e-6)
 
 

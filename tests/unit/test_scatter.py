@@ -11,8 +11,9 @@ from small_rigs import Run, campaign, fitted, prepared
 
 from ssmr_ident.core.parameter import Estimate
 from ssmr_ident.identify.coordinates import Model
+from ssmr_ident.identify.curvature import Curvature
 from ssmr_ident.identify.descent import descend
-from ssmr_ident.identify.joint import JointFit, differentiate, evaluate, normal_equations
+from ssmr_ident.identify.joint import JointFit, differentiate, evaluate
 from ssmr_ident.identify.noise import AutoregressiveNoise
 from ssmr_ident.identify.objective import Unknown
 from ssmr_ident.identify.scatter import covariance, sharpened, smoothed
@@ -23,7 +24,7 @@ MODEL = Model((Unknown("a", "1", 0.0, 50.0, positive=False),))
 
 
 def by_curvature(fit: JointFit) -> np.ndarray:
-    return np.sqrt(np.diag(np.linalg.inv(normal_equations(fit, fit.weights)[0])))
+    return np.sqrt(np.diag(np.linalg.inv(Curvature.of(fit, fit.weights).normal_equations()[0])))
 
 
 @pytest.mark.parametrize("effects", [{}, {"free_play": {"gap_m": 4e-5, "rounding": 0.1}}], ids=["linear", "play"])

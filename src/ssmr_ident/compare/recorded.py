@@ -11,6 +11,7 @@ from ssmr_ident.compare.outcome import Prediction
 from ssmr_ident.identify.coordinates import Model
 from ssmr_ident.identify.horizons import STEPS, horizons, led
 from ssmr_ident.identify.joint import JointFit, evaluate
+from ssmr_ident.identify.parallel import side_by_side
 from ssmr_ident.identify.trials.trial import Array, Trial, Values
 from ssmr_ident.physics.slots import Effects
 from ssmr_ident.signals.filters import low_pass
@@ -69,10 +70,11 @@ def follow(
             return _nuisances_only(few, model, point, [own[k] for k in left])
         short = [t.until(lengths[0]) for t in few]
         small = [t.begin(values, effects) for t in short]
-        fits = [
-            led(short, model, point, [np.inf], STEPS, [share * start for start in small], shared=False)
-            for share in SHARES
-        ]
+
+        def shrunk(share: float) -> JointFit:
+            return led(short, model, point, [np.inf], STEPS, [share * start for start in small], shared=False)
+
+        fits = list(side_by_side(shrunk, SHARES))
         parts = np.array([np.where(np.isfinite(f.parts), f.parts, np.inf) for f in fits])
         begun = [fits[f].nuisances[k] for k, f in enumerate(np.argmin(parts, axis=0))]
         return led(few, model, point, lengths[1:], LAST, begun, shared=False)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from ssmr_ident.diagnose.scan import Suspect, candidates, scan
 from ssmr_ident.identify.descent import LOUD, chatters, descend
 from ssmr_ident.identify.horizons import led
 from ssmr_ident.identify.joint import JointFit
+from ssmr_ident.identify.parallel import side_by_side
 from ssmr_ident.physics.effect import Site
 from ssmr_ident.physics.effects import CATALOGUE
 
@@ -93,9 +95,10 @@ def search(
         alone = bent(base) and not further
         beyond = [g for g in groups if alone and _moves_beyond(g[0].effect) and len(lengths) > 1]
         same = [g[0] for g in groups if alone and g[0].own < SAME and not CATALOGUE[g[0].effect].sudden]
-        field = [started(base, s) for group in _each_group(chosen, beyond) for s in variants(group)]
-        field += [from_what_is_known(base, s, lengths) for group in beyond for s in variants(group)]
-        rough = run_on(field + [descend(in_its_place(base, s, far_off(base)), 2) for s in same])
+        field = [partial(started, base, s) for group in _each_group(chosen, beyond) for s in variants(group)]
+        field += [partial(from_what_is_known, base, s, lengths) for group in beyond for s in variants(group)]
+        field += [partial(_instead, base, s) for s in same]
+        rough = run_on(list(side_by_side(lambda begin: begin(), field)))
     tried = _to_the_end(base, rough, rest, lengths, progress)
     if loud and baseline == "sdof" and len(lengths) > 1 and tried and leaves_much(ranked(tried)[0]):
         # what a first horizon tells of two recordings had put something else in front; rigs are simulated in no time
@@ -103,6 +106,10 @@ def search(
     if progress:
         progress("refitting explanations", 1, 1)
     return Search(base, tuple(tuple(g) for g in groups), tuple(_each_once(tried)), tuple(lengths))
+
+
+def _instead(base: JointFit, suspect: Suspect) -> JointFit:
+    return descend(in_its_place(base, suspect, far_off(base)), 2)
 
 
 def _to_the_end(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -14,6 +15,8 @@ from ssmr_ident.diagnose.scan import Suspect, both_ways
 from ssmr_ident.identify.descent import chatters, descend
 from ssmr_ident.identify.horizons import STEPS, led
 from ssmr_ident.identify.joint import JointFit, evaluate
+from ssmr_ident.identify.parallel import side_by_side
+from ssmr_ident.identify.trials.trial import Trial
 from ssmr_ident.physics.effects import CATALOGUE
 
 Progress = Callable[[str, int, int], None]
@@ -54,20 +57,24 @@ def raced(base: JointFit, groups: Sequence[Sequence[Suspect]], progress: Progres
     """
     plain = chatters(base)
     order = _by_squares if plain else ranked
-    field = []
-    for index, group in enumerate(groups):
+    starts = [way for group in groups for suspect in group for way in both_ways(suspect)]
+    field: list[JointFit] = []
+    rounds = len(starts) + (len(groups) if plain else 0)
+    for fit in side_by_side(lambda way: started(base, way, plain), starts):
         if progress:
-            progress("trying effects", index, len(groups))
-        for suspect in group:
-            field += [started(base, way, plain) for way in both_ways(suspect)]
-        if plain:
-            field += [descend(fit, HEATS[1][1], plain=True) for fit in combined(base, group[0])]
+            progress("trying effects", len(field), rounds)
+        field.append(fit)
+    for index, group in enumerate(groups if plain else ()):
+        if progress:
+            progress("trying effects", len(starts) + index, rounds)
+        field += side_by_side(lambda fit: descend(fit, HEATS[1][1], plain=True), combined(base, group[0]))
     if progress:
         progress("trying effects", 1, 1)
     ordered, kept = _few_unlisted(order(field)), HEATS[2][0]
     # after two steps the first few may all be of one effect
     once = [] if plain else _each_form(ordered)[:kept]
-    return order([descend(f, 2, plain=plain) for f in (*once, *(f for f in ordered[:kept] if f not in once))])
+    once += [f for f in ordered[:kept] if f not in once]
+    return order(list(side_by_side(lambda fit: descend(fit, 2, plain=plain), once)))
 
 
 def run_on(started: Sequence[JointFit]) -> list[JointFit]:
@@ -77,7 +84,8 @@ def run_on(started: Sequence[JointFit]) -> list[JointFit]:
     and they ended 940 and 370 ahead.
     """
     kept, steps = HEATS[-1]
-    return ranked([descend(fit, steps) for fit in _few_unlisted(_each_form(ranked(started)))[:kept]])
+    field = _few_unlisted(_each_form(ranked(started)))[:kept]
+    return ranked(list(side_by_side(lambda fit: descend(fit, steps), field)))
 
 
 def combined(base: JointFit, suspect: Suspect) -> list[JointFit]:
@@ -88,17 +96,19 @@ def combined(base: JointFit, suspect: Suspect) -> list[JointFit]:
     """
     spans = CATALOGUE[suspect.effect].spans
     names = [unknown.name.rpartition(".")[2] for unknown in base.model.physics]
-    found = []
-    for values in itertools.product(*spans.values()):
+
+    def at_values(values: tuple[float, ...]) -> JointFit:
         at = dict(zip(spans, values, strict=True))
         own = {name: value for name, value in at.items() if not name.startswith(BASELINE)}
         model, point = with_suspect(base, replace(suspect, at=own))
         for name in at.keys() - own.keys():
             for k in (k for k, other in enumerate(names) if other == name.removeprefix(BASELINE)):
                 point[k] += np.log(at[name]) / model.physics[k].spread
-        found.append(evaluate(base.trials, model, point, base.nuisances))
+        return evaluate(base.trials, model, point, base.nuisances)
+
+    found = side_by_side(at_values, list(itertools.product(*spans.values()))) if spans else ()
     finite = [fit for fit in found if np.isfinite(fit.rss)]
-    if not spans or not finite:
+    if not finite:
         return []
     best = {id(order[0]): order[0] for order in (_by_squares(finite), ranked(finite))}
     return list(best.values())
@@ -120,27 +130,35 @@ def screened(
     few = evaluate([base.trials[k] for k in loud], base.model, base.point, [base.nuisances[k] for k in loud])
     first = led(few.trials, few.model, few.point, lengths[:1], STEPS, few.nuisances)
     known = _from_what_is_known(first)
-    begun = []
-    for index, group in enumerate(groups):
+    starts = [
+        (start, suspect)
+        for group in groups
+        for suspect in group
+        for start in ((first, known) if CATALOGUE[suspect.effect].sudden else (first,))
+        if start is not None
+    ]
+    field: list[JointFit] = []
+    rounds = len(starts) + 3
+    for fit in side_by_side(lambda start: _begun(*start), starts):
         if progress:
-            progress("trying effects", index, len(groups) + 3)
-        for suspect in group:
-            begun.append(_begun(first, suspect))
-            if known is not None and CATALOGUE[suspect.effect].sudden:
-                begun.append(_begun(known, suspect))
-    field = begun
+            progress("trying effects", len(field), rounds)
+        field.append(fit)
     second = lengths[1:2] if len(lengths) > 2 else lengths[:1]
     for heat, (kept, steps) in enumerate(HEATS[1:]):
         ordered = ranked(field)
         # after a step or two the first dozen may all be of two effects
         once = [] if heat else _each_form(ordered)
         field = [*once, *(f for f in _few_unlisted(ordered)[:kept] if f not in once)]
-        field = [led(few.trials, f.model, f.point, second, steps, f.nuisances) for f in field]
+        field = list(side_by_side(partial(_led_on, few.trials, second, steps), field))
         if progress:
-            progress("trying effects", len(groups) + heat, len(groups) + 3)
+            progress("trying effects", len(starts) + heat, rounds)
     if progress:
         progress("trying effects", 1, 1)
     return ranked(field)
+
+
+def _led_on(trials: Sequence[Trial], lengths: Sequence[float], steps: int, fit: JointFit) -> JointFit:
+    return led(trials, fit.model, fit.point, lengths, steps, fit.nuisances)
 
 
 def _from_what_is_known(fit: JointFit) -> JointFit | None:

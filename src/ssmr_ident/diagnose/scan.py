@@ -16,6 +16,7 @@ import numpy as np
 from ssmr_ident.core.parameter import Parameter
 from ssmr_ident.diagnose.sizes import sizes_of
 from ssmr_ident.identify.joint import JointFit, over
+from ssmr_ident.identify.parallel import side_by_side
 from ssmr_ident.physics.effect import Effect, Sized
 from ssmr_ident.physics.effects import CATALOGUE
 from ssmr_ident.physics.rig import RIG_KEYS
@@ -113,20 +114,20 @@ def scan(fit: JointFit, effects: Sequence[Effect], small: bool = False) -> list[
     clear = Cleared(fit)
     sizes = sizes_of(fit)
     on_rig = not {keys[-1] for keys in RIG_KEYS.values()}.isdisjoint(unknown.name for unknown in fit.model.unknowns)
-    found = []
+    asked = []
     for effect in effects:
-        suspects = []
         probes = (*effect.probes, *(effect.rig_probes if on_rig else ()))
         for probe, held in itertools.product(probes, combinations(effect.holds)):
             at = {name: p.value(sizes) if isinstance(p, Sized) else float(p) for name, p in probe.items()}
             at = {p.name: float(np.clip(at[p.name], p.lower, p.upper)) for p in effect.parameters if p.name in at}
             if all(np.isfinite(list(at.values()))):
-                suspect = _suspect(fit, clear, effect, at, held, small)
-                if suspect is not None:
-                    suspects.append(suspect)
-        if suspects:
-            found.append(_few_places(effect, sorted(suspects, key=lambda s: -s.gain)))
-    return sorted(found, key=lambda group: -group[0].gain)
+                asked.append((effect, at, held))
+    found: dict[str, list[Suspect]] = {}
+    for suspect in side_by_side(lambda one: _suspect(fit, clear, *one, small), asked):
+        if suspect is not None:
+            found.setdefault(suspect.effect, []).append(suspect)
+    groups = [_few_places(CATALOGUE[name], sorted(some, key=lambda s: -s.gain)) for name, some in found.items()]
+    return sorted(groups, key=lambda group: -group[0].gain)
 
 
 def _few_places(effect: Effect, suspects: Sequence[Suspect]) -> list[Suspect]:

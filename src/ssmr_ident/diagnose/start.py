@@ -11,9 +11,10 @@ from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.setup import Setup
 from ssmr_ident.identify.coordinates import scaled_at
+from ssmr_ident.identify.curvature import Curvature
 from ssmr_ident.identify.decay import fit_decay
 from ssmr_ident.identify.decay_result import Mode
-from ssmr_ident.identify.descent import newton_step, search_again
+from ssmr_ident.identify.descent import search_again
 from ssmr_ident.identify.joint import JointFit, differentiate, evaluate
 from ssmr_ident.identify.posterior import most_probable
 from ssmr_ident.identify.rig import DERIVATIVES, ForcedRecord, fit_rig
@@ -64,9 +65,9 @@ def pooled(fit: JointFit) -> JointFit:
         def cost(at: JointFit, count: float = count) -> float:
             return count * float(np.log(at.rss)) + at.penalty if np.isfinite(at.rss) else np.inf
 
-        best = fit
+        best, curvature = fit, Curvature.of(fit, np.full(len(fit.trials), count / fit.rss))
         for damping in (0.0, 0.1, 1.0, 10.0, 100.0):
-            move, own = newton_step(fit, np.full(len(fit.trials), count / fit.rss), damping, True)
+            move, own = curvature.step(damping)
             nuisances = [n + o for n, o in zip(fit.nuisances, own, strict=True)]
             best = min(best, evaluate(fit.trials, fit.model, fit.point + move, nuisances, fit.slopes), key=cost)
         gain, fit = cost(fit) - cost(best), best

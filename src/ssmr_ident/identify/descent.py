@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from ssmr_ident.identify.joint import JointFit, Slopes, differentiate, evaluate, normal_equations, over
+from ssmr_ident.identify.curvature import Curvature
+from ssmr_ident.identify.joint import JointFit, Slopes, differentiate, evaluate, over
 
 Array = np.ndarray
 
@@ -69,22 +70,6 @@ def corrected(before: JointFit, after: JointFit) -> JointFit:
     return replace(after, slopes=tuple(found), exact=False)
 
 
-def newton_step(fit: JointFit, weights: Array, damping: float, shared: bool) -> tuple[Array, list[Array]]:
-    move = np.zeros(len(fit.point))
-    if shared and len(move):
-        matrix, right = normal_equations(fit, weights, damping)
-        matrix[np.diag_indices_from(matrix)] *= 1.0 + damping
-        move = np.linalg.solve(matrix, right)
-    own = []
-    for weight, slopes, residual, nuisance in zip(weights, fit.slopes, fit.residuals, fit.nuisances, strict=True):
-        b = slopes.own
-        gram = weight * (b.T @ b) + np.eye(len(nuisance))
-        gram[np.diag_indices_from(gram)] *= 1.0 + damping
-        side = weight * (b.T @ (residual - slopes.shared @ move)) - nuisance
-        own.append(np.linalg.solve(gram, side))
-    return move, own
-
-
 def descend(
     fit: JointFit,
     iterations: int,
@@ -144,11 +129,11 @@ def best_step(fit: JointFit, counted: Array, rung: int, shared: bool, plain: boo
     """
     best, lowest = fit, _cost(fit, counted, plain)
     first = chosen = max(rung - 1, 0)
-    weights = np.ones(len(counted)) if plain else counted / fit.parts
+    curvature = Curvature.of(fit, np.ones(len(counted)) if plain else counted / fit.parts)
 
     def improves(candidate: int) -> bool:
         nonlocal best, chosen, lowest
-        move, own = newton_step(fit, weights, DAMPINGS[candidate], shared)
+        move, own = curvature.step(DAMPINGS[candidate], shared)
         nuisances = [n + o for n, o in zip(fit.nuisances, own, strict=True)]
         trial = evaluate(fit.trials, fit.model, fit.point + move, nuisances, fit.slopes)
         cost = _cost(trial, counted, plain)

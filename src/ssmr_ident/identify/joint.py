@@ -10,9 +10,7 @@ Source: Gelman et al., Bayesian Data Analysis (2013), sections 2.7 and 14.2 (nor
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TypeVar
@@ -20,6 +18,7 @@ from typing import TypeVar
 import numpy as np
 
 from ssmr_ident.identify.coordinates import Model, Split
+from ssmr_ident.identify.parallel import side_by_side
 from ssmr_ident.identify.trials.trial import Asked, Trial
 
 Array = np.ndarray
@@ -32,21 +31,9 @@ BURST = 1e30
 """Simulated number, in its SI unit, beyond which an integration has burst; its square would overflow."""
 
 
-def processors() -> int:
-    """Those that this process may use, which may be fewer than the machine has."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
-
-
-_WORKERS = min(8, processors())
-_POOL = ThreadPoolExecutor(max_workers=_WORKERS)
-
-
 def over(trials: Sequence[Trial], function: Callable[[int], T]) -> list[T]:
-    """``function(index)`` for every trial, several at a time; compiled loops let go of the interpreter."""
-    indices = range(len(trials))
-    return list(_POOL.map(function, indices) if _WORKERS > 1 else map(function, indices))
+    """``function(index)`` for every trial, several at a time."""
+    return list(side_by_side(function, range(len(trials))))
 
 
 @dataclass(frozen=True, eq=False)
@@ -237,20 +224,3 @@ def acting(trial: Trial, model: Model) -> list[int]:
         for column, name in enumerate(trial.nuisances)
         if name not in trial.idle or any(effect_id in model.held for effect_id in trial.idle[name])
     ]
-
-
-def normal_equations(fit: JointFit, weights: Array, damping: float = 0.0) -> tuple[Array, Array]:
-    """Matrix and right side in the shared coordinates, nuisances eliminated."""
-    count = len(fit.point)
-    matrix, right = np.eye(count), -fit.point.copy()
-    for weight, slopes, residual, nuisance in zip(weights, fit.slopes, fit.residuals, fit.nuisances, strict=True):
-        a, b = slopes.shared, slopes.own
-        own = weight * (b.T @ b) + np.eye(len(nuisance))
-        if damping:
-            own[np.diag_indices_from(own)] *= 1.0 + damping
-        side = weight * (b.T @ residual) - nuisance
-        cross = weight * (b.T @ a)
-        solved = np.linalg.solve(own, np.column_stack([cross, side]))
-        matrix += weight * (a.T @ a) - cross.T @ solved[:, :count]
-        right += weight * (a.T @ residual) - cross.T @ solved[:, count]
-    return matrix, right

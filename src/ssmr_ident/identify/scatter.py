@@ -15,7 +15,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from ssmr_ident.identify.joint import NUISANCE_STEP, JointFit, Slopes, acting, normal_equations, over
+from ssmr_ident.identify.curvature import Curvature
+from ssmr_ident.identify.joint import NUISANCE_STEP, JointFit, Slopes, acting, over
 from ssmr_ident.identify.trials.trial import Asked
 
 Array = np.ndarray
@@ -42,7 +43,7 @@ def covariance(fit: JointFit) -> Array:
     (p, p) float
     """
     fit = sharpened(fit)
-    matrix, _ = normal_equations(fit, fit.weights)
+    matrix, _ = Curvature.of(fit, fit.weights).normal_equations()
     scatter = np.eye(len(fit.point))
     for weight, trial, slopes, residual in zip(fit.weights, fit.trials, fit.slopes, fit.residuals, strict=True):
         a, b = slopes.shared, slopes.own
