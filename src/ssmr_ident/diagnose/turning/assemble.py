@@ -20,7 +20,7 @@ from ssmr_ident.diagnose.turning.next_run import next_run
 from ssmr_ident.diagnose.turning.rivals import WITHIN, with_rivals
 from ssmr_ident.diagnose.turning.search import SPREAD_FACTOR, Explained
 from ssmr_ident.diagnose.turning.verdict import Decision, decide, findings_of
-from ssmr_ident.diagnose.turning.words import EQUATIONS
+from ssmr_ident.diagnose.turning.words import EQUATIONS, UNLISTED_EQUATIONS
 from ssmr_ident.diagnose.turning.worth import against_simulation, repeatability_db
 from ssmr_ident.physics.effects import CATALOGUE
 
@@ -126,9 +126,9 @@ def _named(outcome: Outcome, decision: Decision, best: Explained | None) -> tupl
             return (NamedEffect(name, sentence, "", {}, decision.confidence, others),)
         found = parameter_set(outcome, best.anchor, best).effects
         parameters = {key: value for block in found.values() for key, value in block.items()}
-        k3, d2 = best.values["k3_N_m3"], best.values["d2_N_s2_m2"]
-        equation = f"F = K·s + D·v + {k3:.3g}·s³ + {d2:.3g}·v·|v|   (each tire; N, m, s)"
-        return (NamedEffect(name, sentence, equation, parameters, decision.confidence, others, "smooth force"),)
+        form = "loops" if "alpha" in best.values else "smooth force"
+        equation = UNLISTED_EQUATIONS[form].format(**best.values)
+        return (NamedEffect(name, sentence, equation, parameters, decision.confidence, others, form),)
     effect = CATALOGUE[name]
     assert best is not None
     parameters = {
@@ -207,7 +207,8 @@ def _summary(outcome: Outcome, decision: Decision, best: Explained | None, heldo
     if best is None or best.candidate is None:
         return f"Something is missing and it is none of the listed effects: {decision.reason}."
     if best.id == UNLISTED:
-        return f"What is missing is none of the listed effects; a smooth force of the tires comes nearest: {after}."
+        law = "a force of the tires with loops" if "alpha" in best.values else "a smooth force of the tires"
+        return f"What is missing is none of the listed effects; {law} comes nearest: {after}."
     tie = f" (or {' or '.join(decision.named[1:])}, which fits as well)" if len(decision.named) > 1 else ""
     return f"{CATALOGUE[best.id].sentence[:-1]}{tie}: {after}."
 

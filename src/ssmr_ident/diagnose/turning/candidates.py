@@ -9,6 +9,10 @@ import numpy as np
 
 Values = dict[str, float]
 UNLISTED = "unlisted"
+UNLISTED_LAWS = {
+    "k3_N_m3": "nonlinear_stiffness", "d2_N_s2_m2": "quadratic_damping", "alpha": "hysteresis", "yield_m": "hysteresis",
+}  # fmt: skip
+"""Laws of a tire that are on no list for swivels, by the parameters that are searched."""
 
 
 @dataclass(frozen=True)
@@ -52,12 +56,12 @@ class Candidate:
     held: Mapping[str, float]
 
     def effects(self, values: Values) -> dict[str, Values]:
-        """As the simulator takes them; what is unlisted is a smooth force of the tires over deflection and its rate."""
+        """As the simulator takes them; what is unlisted is a law of the tires: a smooth force, or one with loops."""
         if self.id == UNLISTED:
-            return {
-                "nonlinear_stiffness": {"k3_N_m3": values["k3_N_m3"]},
-                "quadratic_damping": {"d2_N_s2_m2": values["d2_N_s2_m2"]},
-            }
+            laws: dict[str, Values] = {}
+            for name, value in values.items():
+                laws.setdefault(UNLISTED_LAWS[name], {})[name] = value
+            return laws
         return {self.id: {**self.held, **values}}
 
     def position(self, values: Values) -> np.ndarray:
@@ -170,6 +174,13 @@ def candidates(pitches: tuple[float, ...], ceilings: tuple[float, ...], grain: f
             UNLISTED,
             (Free("k3_N_m3", 1e6, 2e10), Free("d2_N_s2_m2", 1.0, 5e4)),
             _grid(k3_N_m3=(1e6, 5e8, 3e9), d2_N_s2_m2=(1.0, 1.5e3, 6e3))[1:],
+            {},
+        ),
+        Candidate(
+            UNLISTED,
+            (Free("alpha", 0.05, 0.99), Free("yield_m", 3e-5, 2e-2)),
+            # tires that skid are deflected by a millimetre or two
+            _grid(alpha=(0.45, 0.75), yield_m=(2e-4, 8e-4, 3e-3)),
             {},
         ),
     )

@@ -156,7 +156,8 @@ def examine(
     if not calibration:
         # as far as explanations are fitted later: what the parameters can bring about by themselves needs no effect
         count = Counter(show, "baseline fitted to the end", ALONE + ENSEMBLE_ROUNDS)
-        baseline = settled(freed(baseline, targets, ALONE, count.advance, STEP), targets, seed, several, count.advance)
+        begun = freed(baseline, targets, ALONE, count.advance, STEP)
+        baseline = settled(begun, targets, seed, several, count.advance, everywhere=True)
         anchor = replace(baseline.anchor, fit=baseline.target, slopes=None)
         count.finish()
 

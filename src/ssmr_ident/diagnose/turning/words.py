@@ -19,3 +19,8 @@ EQUATIONS = {
     "sensor_bandwidth": "H(s) = 1/(1 + sqrt(2) s/w + (s/w)^2), w = 2 pi bandwidth",
     "sensor_misalignment": "a_log = (R_z R_y R_x)^T a",
 }
+
+UNLISTED_EQUATIONS = {
+    "smooth force": "F = K·s + D·v + {k3_N_m3:.3g}·s³ + {d2_N_s2_m2:.3g}·v·|v|   (each tire; N, m, s)",
+    "loops": "F = {alpha:.3g}·K·s + (1 - {alpha:.3g})·K·z + D·v, |z| < {yield_m:.3g}   (each tire; N, m, s)",
+}
