@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from ssmr_ident.core.parameter import Estimate
 from ssmr_ident.diagnose.turning import ensemble
@@ -69,3 +70,22 @@ def test_a_distance_is_known_no_better_than_what_fits_alike(monkeypatch) -> None
     assert found.values == values
     assert found.spread is not None
     np.testing.assert_allclose(SPREAD_FACTOR * found.spread, [0.03, 0.5, 0.03])
+
+
+@pytest.mark.parametrize(("calibrated", "centre", "spread"), [(False, 0.0, 1.0), (True, 1.0, 0.5)])
+def test_an_effect_is_searched_from_what_is_known_where_no_calibration_holds_the_baseline(
+    calibrated: bool, centre: float, spread: float
+) -> None:
+    """The baseline had bent by two deviations: half of that is kept where calibration says so, else nothing."""
+    parameters = read_parameters("p3at-extended")
+    target = _target(Bench(parameters), {})
+    priors = priors_of(parameters)
+    anchor = Anchor(
+        Bench(parameters), np.ones(3), priors, np.full(len(priors), 2.0), (target,) if calibrated else (),
+        Score(0.0, 0.0, 0.0), (1,),
+    )  # fmt: skip
+    floor = next(c for c in candidates((0.1,), (10.0,), 3e-5) if c.id == "ground_roughness")
+    start = Explained(floor, dict(floor.starts[0]), anchor, Score(0.0, 5.0, 5.0), 0.0, 0.0)
+    members = ensemble.Ensemble(start, (target,), 0, (1,), everywhere=True).members[:, : len(priors)]
+    assert abs(float(members.mean()) - centre) < 4.0 * spread / np.sqrt(members.size)
+    assert abs(float(members.std()) / spread - 1.0) < 4.0 / np.sqrt(2.0 * members.size)

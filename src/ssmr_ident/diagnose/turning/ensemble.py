@@ -77,9 +77,9 @@ class Ensemble:
         candidate, size = start.candidate, len(start.anchor.priors)
         conditions = len(start.anchor.calibration) + len(targets)
         self.own = np.zeros(0) if candidate is None else candidate.position(start.values)
-        # a baseline that was bent round an effect says little of where it belongs beside it, 2.4 deviations off in three
-        # of thirteen parameters: from half the way there, ensembles about a mast ended 190 and 220 behind its truth,
-        # from what is known 6 and 70. One that calibration holds is where it belongs.
+        # a baseline that was bent round an effect says little of where it belongs beside it: from half the way there,
+        # three ensembles about a mast ended 190 to 220 behind its truth, from what is known 6, 70 and 220. One that
+        # calibration holds is where it belongs.
         loose = everywhere and candidate is not None and not start.anchor.calibration
         about = np.concatenate([(0.0 if loose else SHRUNK) * start.anchor.z, self.own])
         # a baseline has no starts of its own to be spread over: its ensemble begins as wide as the priors
