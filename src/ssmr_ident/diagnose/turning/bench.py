@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -13,6 +12,7 @@ from ssmr_ident.core.errors import InputError, SimulationError
 from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.diagnose.turning.conditions import Condition
 from ssmr_ident.diagnose.turning.spectra import Look, average, levels_of, look
+from ssmr_ident.identify.parallel import side_by_side
 from ssmr_ident.physics.slots import Effects
 from ssmr_ident.simulate.scenarios import Scenario
 from ssmr_ident.simulate.simulation import simulate
@@ -20,7 +20,6 @@ from ssmr_ident.simulate.simulation import simulate
 RATE = 500.0  # Hz; what folds back from above 450 Hz has passed a sensor of 80 Hz
 STEP = 5e-4  # s; frequencies to 2e-4, checked against 1.25e-4 s in the tests
 COARSE = 1e-3  # s; 0.2 to 2.4 dB off, most of it alike with and without an effect: for differences of spectra only
-WORKERS = 2
 Values = Mapping[str, float]
 
 
@@ -74,14 +73,13 @@ class Bench:
         )
 
     def prefetch(self, jobs: Iterable[tuple[Condition, Values, Effects, int]], step: float = STEP) -> None:
-        """Run what is not yet remembered, two at a time (the compiled loop leaves the interpreter free)."""
+        """Run what is not yet remembered, several at a time (the compiled loop leaves the interpreter free)."""
         keyed = {self._key(*job, step): job for job in jobs}
         fresh = {key: job for key, job in keyed.items() if key not in self.memory}
         if fresh:
-            with ThreadPoolExecutor(WORKERS) as pool:
-                self.work += sum((job[0].settling + job[0].duration) / step for job in fresh.values())
-                runs = pool.map(self._simulate, *zip(*fresh.values(), strict=True), [step] * len(fresh))
-                self.memory.update(zip(fresh, runs, strict=True))
+            self.work += sum((job[0].settling + job[0].duration) / step for job in fresh.values())
+            runs = side_by_side(lambda job: self._simulate(*job, step), list(fresh.values()))
+            self.memory.update(zip(fresh, runs, strict=True))
 
     def _one(self, condition: Condition, baseline: Values, effects: Effects, seed: int, step: float) -> Run | None:
         key = self._key(condition, baseline, effects, seed, step)
