@@ -29,7 +29,7 @@ class Runner:
 
     def __init__(self, one: Explained, asked: list[tuple[str, bool]]) -> None:
         asked.append((one.id, True))
-        self.one, self.level, self.rounds = one, one.evidence, 0
+        self.one, self.start, self.level, self.rounds = one, one, one.evidence, 0
 
     def advance(self) -> None:
         self.rounds += 1
@@ -42,7 +42,7 @@ def test_what_falls_out_of_reach_is_not_run_to_its_end(monkeypatch: pytest.Monke
     runners = [Runner(_one(name, evidence, 3.0), []) for name, evidence in (("stribeck", 0.0), ("com_offset", -160.0))]
     shown: list[int] = []
     count = Counter(lambda _, done, total: shown.append(done), "race", 2 * ROUNDS)
-    found = stage._raced(runners, count)  # type: ignore[arg-type]
+    found = stage._raced(runners, 2, count)  # type: ignore[arg-type]
     assert [one.id for one in found] == ["stribeck"]
     assert [runner.rounds for runner in runners] == [ROUNDS, ROUGH + 1]
     assert shown[-1] == 2 * ROUNDS
@@ -73,13 +73,22 @@ def test_those_in_front_and_what_is_unlisted_are_searched_and_the_first_led_on(m
         return replace(one, evidence=one.evidence + 2.0 * ALIKE * (one.evidence < 100.0))
 
     monkeypatch.setattr(stage, "settled", settled)
-    monkeypatch.setattr(stage, "Ensemble", lambda one, *_, everywhere: Runner(one, asked))
+    runners: dict[str, Runner] = {}
+
+    def ensemble(one, *_, everywhere):
+        runners[one.id] = Runner(one, asked)
+        return runners[one.id]
+
+    monkeypatch.setattr(stage, "Ensemble", ensemble)
     names = ["wheel_lift", "flexible_mast", "stribeck", "com_offset", "motor_belt", "unlisted"]
     best = [_one(name, 50.0 - 10.0 * place, 2.0 * FAR_DB) for place, name in enumerate(names)]
     found = wider(best, (), 0, (1,), lambda _, done, total: shown.append((done, total)))
     first = [name for name, everywhere in asked if everywhere]
-    assert first == ["flexible_mast", "stribeck", "com_offset", "unlisted"]  # a wheel that lifts has nothing to search
-    assert len(first) == TRIED + 1
+    # a wheel that lifts has nothing to search
+    assert first == ["flexible_mast", "stribeck", "com_offset", "motor_belt", "unlisted"]
+    to_the_end = [name for name, runner in runners.items() if runner.rounds == ROUNDS]
+    assert to_the_end == [*first[:TRIED], "unlisted"]
+    assert runners["motor_belt"].rounds == ROUGH
     assert found[0].id == "com_offset"
     assert found[0].evidence == 20.0 + 90.0
     led = [name for name, everywhere in asked if not everywhere]

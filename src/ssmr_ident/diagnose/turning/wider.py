@@ -19,7 +19,8 @@ from ssmr_ident.diagnose.turning.search import Explained
 FAR_DB = 1.5
 """Own error of the best explanation from which on it was not found yet, or none of them is it."""
 TRIED, FEWER, MANY = 3, 2, 6
-"""Explanations at most besides what is unlisted, and fewer of them from how many recorded conditions on."""
+"""Explanations that run with fine steps besides what is unlisted, at most, and fewer of them from how many recorded
+conditions on. Twice as many begin: what is fourth by single starts may be first by an ensemble's coarse rounds."""
 REACH = 150.0
 """Of evidence: an ensemble from all starts and what followed it was seen to add 140 at most."""
 LED, TIMES = 2, 2  # how many of them an ensemble takes on, and how often at most
@@ -62,10 +63,11 @@ def wider(
     ahead += [one for one in listed if one not in ahead and one.evidence > level]
     recorded = (*best[0].anchor.calibration, *targets)
     room = int((MOST_WORK - best[0].anchor.bench.work) / max(work_of(recorded), 1.0)) - 1
-    chosen = ahead[: min(max(room, 1), FEWER if len(recorded) > MANY else TRIED)]
+    most = min(max(room, 1), FEWER if len(recorded) > MANY else TRIED)
+    chosen = ahead[: 2 * most]
     chosen += [one for one in best if one.id == UNLISTED]
     count = Counter(show, "best explanations from all starts", (len(chosen) + LED * TIMES) * ROUNDS)
-    found = _raced([Ensemble(one, targets, seed, final, everywhere=True) for one in chosen], count)
+    found = _raced([Ensemble(one, targets, seed, final, everywhere=True) for one in chosen], most, count)
     found.sort(key=lambda one: one.evidence, reverse=True)
     bench = best[0].anchor.bench
     for place, one in enumerate(found[:LED]):
@@ -81,15 +83,22 @@ def wider(
     return found
 
 
-def _raced(ensembles: list[Ensemble], count: Counter) -> list[Explained]:
-    """Where the ensembles end that are still in reach of the best once they run with fine steps."""
+def _raced(ensembles: list[Ensemble], most: int, count: Counter) -> list[Explained]:
+    """Where the ensembles end that are in front after the coarse rounds and still in reach of the best after fine ones.
+
+    ``most`` listed explanations at most run with fine steps.
+    """
     alive = list(ensembles)
     for done in range(ROUNDS):
         for ensemble in alive:
             ensemble.advance()
             count.advance()
-        if done >= ROUGH:
+        count.reach((done + 1) * len(ensembles))
+        if done == ROUGH - 1:
+            listed = [ensemble for ensemble in alive if ensemble.start.id != UNLISTED]
+            ahead = sorted(listed, key=lambda ensemble: ensemble.level, reverse=True)[:most]
+            alive = [ensemble for ensemble in alive if ensemble in ahead or ensemble.start.id == UNLISTED]
+        elif done >= ROUGH:
             level = max(ensemble.level for ensemble in alive)
             alive = [ensemble for ensemble in alive if ensemble.level > level - REACH]
-    count.reach(len(ensembles) * ROUNDS)
     return [ensemble.best() for ensemble in alive]
