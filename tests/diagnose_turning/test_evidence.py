@@ -11,7 +11,7 @@ from ssmr_ident.diagnose.turning.anchor import between
 from ssmr_ident.diagnose.turning.candidates import pitches_heard
 from ssmr_ident.diagnose.turning.counter import Counter
 from ssmr_ident.diagnose.turning.engine import CLOSE, _ahead
-from ssmr_ident.diagnose.turning.grip import _doubtful, profile
+from ssmr_ident.diagnose.turning.grip import REACH, _doubtful, profile
 from ssmr_ident.diagnose.turning.likelihood import NEPER_DB, Block, log_variance, score
 from ssmr_ident.diagnose.turning.maps import follows
 from ssmr_ident.diagnose.turning.rivals import _clear
@@ -208,6 +208,38 @@ def test_what_leaves_nothing_in_the_targets_needs_no_more_than_not_to_harm(
     monkeypatch, before, after, calibrated, expected
 ):
     assert _predicted(monkeypatch, before, after, 100.0, 0.1, calibrated) is expected
+
+
+@pytest.mark.parametrize(
+    ("gained", "expected"), [(-5.0, False), (9.0, False), (0.9 * REACH, False), (1.5 * REACH, True)]
+)
+def test_lambda_max_is_held_elsewhere_only_beyond_what_a_search_adds(gained: float, expected: bool) -> None:
+    baseline = SimpleNamespace(fit=SimpleNamespace(log_likelihood=100.0))
+    found = profile(np.array([0.1, 0.5, 0.8]), np.array([99.0, 100.0 + gained, -300.0]), scatter=2.0)
+    assert found.moves(baseline) is expected  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("with_it", "leaves", "expected"),
+    [
+        ((7.5, 8.0, 4.6, 2.5), 0.1, True),  # a robot that shakes in two ways: one run in four as it was recorded
+        ((7.0, 8.0, 7.0, 7.5), 0.1, False),  # none
+        ((7.5, 8.0, 4.6, 2.5), 2.0, False),  # the targets are not explained, so a near run may be chance
+    ],
+)
+def test_one_of_several_runs_predicts_a_robot_that_shakes_in_two_ways(monkeypatch, with_it, leaves, expected) -> None:
+    def distances(bench, kept, values, active, seeds):
+        runs = with_it if active else (5.8, 6.0, 5.7, 6.1)
+        return {"a": float(np.mean([runs[seed - 1] for seed in seeds]))}
+
+    monkeypatch.setattr(kept_back, "against_simulation", distances)
+    anchor = SimpleNamespace(values={})
+    baseline = SimpleNamespace(target=SimpleNamespace(left=100.0), evidence=0.0)
+    best = SimpleNamespace(anchor=anchor, effects={"a": 1}, target=SimpleNamespace(tau_db=leaves), evidence=2.0 * CLOSE)
+    outcome = SimpleNamespace(
+        bench=None, heldout=("a",), targets=(), anchor=anchor, calibrated=False, baseline=baseline
+    )
+    assert kept_back.predicts(outcome, best, 2.5) is expected
 
 
 def _predicted(monkeypatch, before: float, after: float, left: float, tau: float, calibrated: bool) -> bool:

@@ -141,7 +141,7 @@ def examine(
     count = Counter(show, "lambda_max", len(TRIED))
     grip = grip_profile(anchor, fitted_on, count.advance)
     # on the targets themselves a larger lambda_max may be the very effect that is looked for
-    if calibration and grip.lower is not None and grip.anchor is not None and PATH in known:
+    if calibration and grip.moves(anchor) and grip.anchor is not None and PATH in known:
         anchor = grip.anchor
     if again is not None and not quiet:
         # is it that this robot shakes now in one way, now in another?

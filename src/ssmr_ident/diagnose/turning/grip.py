@@ -42,6 +42,15 @@ class GripProfile(Shown):
     own_error_db: float = 0.0
     anchor: Anchor | None = None
 
+    def moves(self, baseline: Anchor) -> bool:
+        """Whether a value fits by more than another search would have gained the baseline with its own.
+
+        What is held there is held beside every effect. A robot with 0.04 had 0.4 fit its calibration better by 9, and
+        with that the centre of mass that was off left 4.4 dB in the targets with its true place, in place of 1.1 dB.
+        """
+        gained = float(self.log_likelihood.max()) - baseline.fit.log_likelihood
+        return self.lower is not None and gained > REACH
+
     def __str__(self) -> str:
         if self.own_error_db > FOREIGN_DB:
             return (
