@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 from ssmr_ident.diagnose.turning.conditions import Condition
 from ssmr_ident.diagnose.turning.counter import Counter, Progress
-from ssmr_ident.diagnose.turning.ensemble import ALIKE, ROUNDS, settled
+from ssmr_ident.diagnose.turning.ensemble import ROUNDS, settled
 from ssmr_ident.diagnose.turning.search import Explained, explained
 from ssmr_ident.diagnose.turning.wider import REACH, TIMES
 
@@ -53,9 +53,6 @@ def searched_again(
     for time in range(TIMES):
         if best - now.evidence <= needed:
             break
-        before = now
-        now = settled(before, targets, seed + 1 + time, final, count.advance)
-        if now.evidence < before.evidence + ALIKE:
-            break
+        now = settled(now, targets, seed + 1 + time, final, count.advance)
     count.finish()
     return now
