@@ -51,8 +51,8 @@ def settled(
     advance : callable
         Called once per round.
     everywhere : bool
-        The effect's own parameters begin spread over all of the candidate's starts, the baseline's own, where there is
-        no effect, over what is known of them; by twice as many members.
+        The effect's own parameters begin spread over all of the candidate's starts, the baseline's, where there is no
+        effect or no calibration, over what is known of them; by twice as many members.
     """
     ensemble = Ensemble(start, targets, seed, final, everywhere)
     for _ in range(ROUNDS):
