@@ -118,7 +118,7 @@ def _baseline(evidence: float, tau: float = 2.0) -> Explained:
     return Explained(None, {}, anchor, Score(0.0, tau, tau), 0.0, evidence)  # type: ignore[arg-type]
 
 
-@pytest.mark.parametrize(("ahead", "searched"), [(5.0, 0), (60.0, 2), (REACH + 1.0, 0)])
+@pytest.mark.parametrize(("ahead", "searched"), [(5.0, 0), (45.0, 2), (60.0, 3), (REACH + 1.0, 0)])
 def test_the_baseline_is_searched_again_where_that_decides(monkeypatch, ahead: float, searched: int) -> None:
     asked = []
 
@@ -132,8 +132,8 @@ def test_the_baseline_is_searched_again_where_that_decides(monkeypatch, ahead: f
     monkeypatch.setattr(alone, "settled", settled)
     show = lambda _, done, total: shown.append((done, total))  # noqa: E731
     found = alone.searched_again(_baseline(0.0), ahead, 12.0, (), 0, (1,), show)
-    assert asked == [True, False][:searched]
-    assert found.evidence == sum((1.5, 0.5)[:searched]) * ALIKE
+    assert asked == [True, False, False][:searched]
+    assert found.evidence == sum((1.5, 0.5, 0.5)[:searched]) * ALIKE
     assert not shown or shown[-1][0] == shown[-1][1]
 
 
