@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from ssmr_ident.diagnose.turning.candidates import UNLISTED, Candidate, candidates
-from ssmr_ident.diagnose.turning.words import EQUATIONS, UNLISTED_EQUATIONS
+from ssmr_ident.diagnose.turning.words import EQUATIONS, UNLISTED_EQUATIONS, unlisted_form
 from ssmr_ident.physics.slots import checked_for_robot
 
 EVERY = candidates((0.03, 0.1), (10.0,), 3e-5)
@@ -30,7 +30,7 @@ def test_what_is_unlisted_has_a_smooth_law_and_one_with_loops() -> None:
 def test_every_explanation_has_an_equation_in_words() -> None:
     for candidate in EVERY:
         if candidate.id == UNLISTED:
-            form = "loops" if "alpha" in candidate.starts[0] else "smooth force"
-            assert "K" in UNLISTED_EQUATIONS[form].format(**candidate.starts[0])
+            equation = UNLISTED_EQUATIONS[unlisted_form(candidate.starts[0])].format(**candidate.starts[0])
+            assert all(f"{value:.3g}" in equation for value in candidate.starts[0].values())
         else:
             assert EQUATIONS[candidate.id]

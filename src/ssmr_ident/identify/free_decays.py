@@ -94,8 +94,7 @@ class BodyDecay:
         """Block averages of a signal on the record's own grid, (..., m, c) to (..., n, c)."""
         skip = round((self.first - (self.block - 1) / 2 * self.record.step) / self.record.step)
         cut = signal[..., skip : skip + len(self.samples) * self.block, :]
-        blocks = cut.reshape(*cut.shape[:-2], len(self.samples), self.block, -1)
-        return np.add.reduce(blocks, axis=-2) / self.block  # asked for of every simulation; mean() takes twice as long
+        return cut.reshape(*cut.shape[:-2], len(self.samples), self.block, -1).mean(axis=-2)
 
     def averaging(self, poles: Array) -> Array:
         """What block averaging makes of e^(st), (k,) complex."""

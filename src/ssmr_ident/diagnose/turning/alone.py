@@ -1,7 +1,7 @@
 """The baseline once more, searched as widely as what is about to be named beside it.
 
 Without calibration an effect is worth what it adds to the baseline at its best. Effects are begun from many places and
-led on where they gain; a baseline that was searched once is then behind by that alone, and something is named where
+led on; a baseline that was searched once is then behind by that alone, and something is named where
 nothing is missing.
 """
 

@@ -20,7 +20,7 @@ from ssmr_ident.diagnose.turning.next_run import next_run
 from ssmr_ident.diagnose.turning.rivals import WITHIN, with_rivals
 from ssmr_ident.diagnose.turning.search import SPREAD_FACTOR, Explained
 from ssmr_ident.diagnose.turning.verdict import Decision, decide, findings_of
-from ssmr_ident.diagnose.turning.words import EQUATIONS, UNLISTED_EQUATIONS
+from ssmr_ident.diagnose.turning.words import EQUATIONS, UNLISTED_EQUATIONS, UNLISTED_WORDS, unlisted_form
 from ssmr_ident.diagnose.turning.worth import against_simulation, repeatability_db
 from ssmr_ident.physics.effects import CATALOGUE
 
@@ -126,7 +126,7 @@ def _named(outcome: Outcome, decision: Decision, best: Explained | None) -> tupl
             return (NamedEffect(name, sentence, "", {}, decision.confidence, others),)
         found = parameter_set(outcome, best.anchor, best).effects
         parameters = {key: value for block in found.values() for key, value in block.items()}
-        form = "loops" if "alpha" in best.values else "smooth force"
+        form = unlisted_form(best.values)
         equation = UNLISTED_EQUATIONS[form].format(**best.values)
         return (NamedEffect(name, sentence, equation, parameters, decision.confidence, others, form),)
     effect = CATALOGUE[name]
@@ -207,7 +207,7 @@ def _summary(outcome: Outcome, decision: Decision, best: Explained | None, heldo
     if best is None or best.candidate is None:
         return f"Something is missing and it is none of the listed effects: {decision.reason}."
     if best.id == UNLISTED:
-        law = "a force of the tires with loops" if "alpha" in best.values else "a smooth force of the tires"
+        law = UNLISTED_WORDS[unlisted_form(best.values)]
         return f"What is missing is none of the listed effects; {law} comes nearest: {after}."
     tie = f" (or {' or '.join(decision.named[1:])}, which fits as well)" if len(decision.named) > 1 else ""
     return f"{CATALOGUE[best.id].sentence[:-1]}{tie}: {after}."

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 EQUATIONS = {
     "ground_roughness": "<h(r) h(r + d)> = height^2 exp(-(d/length)^2)",
     "ground_joints": "h(path) = -depth sum_j exp(-(path - (j + 1/2) pitch)^2/(2 sigma^2)), sigma = width/4",
@@ -20,7 +22,17 @@ EQUATIONS = {
     "sensor_misalignment": "a_log = (R_z R_y R_x)^T a",
 }
 
+UNLISTED_WORDS = {"smooth force": "a smooth force of the tires", "loops": "a force of the tires with loops"}
 UNLISTED_EQUATIONS = {
     "smooth force": "F = K·s + D·v + {k3_N_m3:.3g}·s³ + {d2_N_s2_m2:.3g}·v·|v|   (each tire; N, m, s)",
     "loops": "F = {alpha:.3g}·K·s + (1 - {alpha:.3g})·K·z + D·v, |z| < {yield_m:.3g}   (each tire; N, m, s)",
 }
+
+
+def unlisted_form(parameters: Iterable[str]) -> str:
+    """Which of the unlisted laws has these parameters.
+
+    >>> unlisted_form({"alpha": 0.5, "yield_m": 4e-4}), unlisted_form({"k3_N_m3": 1e9, "d2_N_s2_m2": 10.0})
+    ('loops', 'smooth force')
+    """
+    return "loops" if "alpha" in parameters else "smooth force"
