@@ -8,7 +8,7 @@ import numpy as np
 from bank.truth import BankSession
 
 from ssmr_ident.compare.recorded import follow
-from ssmr_ident.diagnose.baseline import LAST, best_baseline, prepared
+from ssmr_ident.diagnose.baseline import LAST, alike_in, best_baseline, prepared
 from ssmr_ident.diagnose.explain import with_suspect, without
 from ssmr_ident.diagnose.followed import explained
 from ssmr_ident.diagnose.polish import polish
@@ -32,7 +32,7 @@ def true_evidence(drawn: BankSession) -> dict[str, float] | None:
         return None
     setup, known = with_law_of_sliding(drawn.campaign, known, None)
     fit, lengths = setup.begun or best_baseline(setup.fitted, setup, known)
-    kept = tuple(prepared(follow(setup.kept, fit.model, fit.point)))
+    kept = tuple(prepared(follow(alike_in(setup.kept, fit.trials), fit.model, fit.point)))
     baseline = explained(kept, fit)
     begun = fit
     for effect_id, values in truth.effects.items():

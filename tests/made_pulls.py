@@ -21,13 +21,19 @@ RATE, NOISE = 50.0, 0.5
 
 
 def made_pulls(
-    pulls: Sequence[tuple[str, float, float]], effects: Mapping[str, Mapping[str, float]], seed: int
+    pulls: Sequence[tuple[str, float, float]],
+    effects: Mapping[str, Mapping[str, float]],
+    seed: int,
+    aside: float = 0.0,
 ) -> tuple[Setup, ParameterSet]:
-    """Pulls of given direction, speed [mm/s] and travel [m]; the robot slides along both axes together."""
+    """Pulls of given direction, speed [mm/s] and travel [m]; the robot slides along both axes together, and its contacts
+    lie ``aside`` [m] of where its file has them."""
     random = np.random.default_rng(seed)
     known = read_parameters("p3at-extended")
     together = {"tire.mu_kinetic": known["tire.mu_static"], "tire.sliding_speed_m_s": Estimate(0.01, None, "m/s")}
     known = known.updated(together)
+    moved = Estimate(known["contact_points_m"].value + np.array([0.0, aside, 0.0]), None, "m")
+    robot = robot_from_parameters(known.updated({"contact_points_m": moved}))
     measurements = []
     for k, (direction, speed, travel) in enumerate(pulls):
         head = speed * 1e-3 / RATE * np.arange(round(travel / speed * 1e3 * RATE) + 1)
@@ -35,7 +41,7 @@ def made_pulls(
             "pull", len(head) / RATE, head=np.append(head, 2.0 * head[-1] - head[-2]), head_step=1.0 / RATE,
             direction=direction, height=0.05, wheels_gripping=(1, 2, 3, 4), wheel_rates=np.zeros((1, 2)),
         )  # fmt: skip
-        force = simulate(robot_from_parameters(known), scenario, RATE, effects=effects)["force"]
+        force = simulate(robot, scenario, RATE, effects=effects)["force"]
         seen = force + NOISE * random.standard_normal(len(head))
         channels = Channel("force", seen, "N"), Channel("position", head, "m")
         entry = Entry(f"pull-{k}.csv", "pull", direction=direction, speed_mm_s=speed, height_m=0.05, cable="steel")

@@ -13,7 +13,7 @@ from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.accept import CHANCE
 from ssmr_ident.diagnose.race import FAR
 from ssmr_ident.diagnose.setup import Setup
-from ssmr_ident.diagnose.start import begin
+from ssmr_ident.diagnose.start import begin, pooled
 from ssmr_ident.identify.clouds import settled
 from ssmr_ident.identify.descent import LOUD, chatters, descend
 from ssmr_ident.identify.horizons import horizons, led
@@ -62,7 +62,30 @@ def best_baseline(
     if leaves_much(fit) and len(lengths) > 1:
         other = differentiate(led(fit.trials, fit.model, fit.point, lengths, LAST // 2))
         fit = min((fit, other), key=lambda f: f.cost(fit.counted))
-    return led_out(fit) if chatters(fit) or unsteady(fit) else called_back(fit), lengths
+    if any(trial.uneven is not None for trial in fit.trials):
+        other = brought_home(uneven(fit))
+        if other.cost(fit.counted) < fit.cost(fit.counted):
+            return other, lengths
+    return brought_home(fit), lengths
+
+
+def uneven(fit: JointFit) -> JointFit:
+    """A fit of pulls of a robot that is alike left and right, led on with what all pulls say of where it is not.
+
+    Where nothing tells, it stays as it is: about a robot that is alike no step is an improvement.
+    """
+    begun = evaluate([t.as_it_is() for t in fit.trials], fit.model, fit.point, fit.nuisances)
+    return differentiate(descend(pooled(begun), LAST)) if np.isfinite(begun.rss) else begun
+
+
+def alike_in(kept: Sequence[Trial], fitted: Sequence[Trial]) -> list[Trial]:
+    """Recordings kept back, of a robot that is as even as that of those that were fitted."""
+    return list(kept) if any(t.uneven is not None for t in fitted) else [t.as_it_is() for t in kept]
+
+
+def brought_home(fit: JointFit) -> JointFit:
+    """A fit led out of the hollow in which a descent has left it, where it may be in one."""
+    return led_out(fit) if chatters(fit) or unsteady(fit) else called_back(fit)
 
 
 def called_back(fit: JointFit) -> JointFit:

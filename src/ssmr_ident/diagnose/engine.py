@@ -21,7 +21,7 @@ from ssmr_ident.diagnose.accept import (
     touches,
     within_file,
 )
-from ssmr_ident.diagnose.baseline import LAST, best_baseline, prepared, unsteady
+from ssmr_ident.diagnose.baseline import LAST, alike_in, best_baseline, prepared, unsteady
 from ssmr_ident.diagnose.coupling import coupled
 from ssmr_ident.diagnose.explain import without
 from ssmr_ident.diagnose.explore import Search, search
@@ -74,7 +74,7 @@ def examine(setup: Setup, parameters: ParameterSet, progress: Progress | None = 
         progress("fitting the baseline", 0, 1)
     setup = informed(setup, parameters)
     fit, lengths = setup.begun or best_baseline(setup.fitted, setup, parameters)
-    kept = tuple(prepared(follow(setup.kept, fit.model, fit.point)))
+    kept = tuple(prepared(follow(alike_in(setup.kept, fit.trials), fit.model, fit.point)))
     if progress:
         progress("fitting the baseline", 1, 1)
     baseline = explained(kept, fit)

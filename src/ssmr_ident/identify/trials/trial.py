@@ -103,6 +103,8 @@ class Trial:
         The basis has the mains lines already.
     drift : (n, d) float or None
         How a channel's zero may drift, in its unit: columns of which it has a share of unit standard deviation.
+    uneven : Trial or None
+        The same recording of a robot that is not alike left and right, where this one takes it to be.
     """
 
     name: str
@@ -133,6 +135,7 @@ class Trial:
     slides_from: float | None = None
     lined: bool = False
     drift: Array | None = None
+    uneven: Trial | None = None
 
     @property
     def step(self) -> float:
@@ -206,6 +209,12 @@ class Trial:
 
     def with_noises(self, noises: tuple[AutoregressiveNoise, ...]) -> Trial:
         return replace(self, noises=noises)
+
+    def as_it_is(self) -> Trial:
+        """The same of a robot that need not be alike left and right, with the noise and the lines that it has."""
+        if self.uneven is None:
+            return self
+        return replace(self.uneven, noises=self.noises, basis=self.basis, lined=self.lined)
 
     def until(self, seconds: float) -> Trial:
         """Its first part, with the noise that it has; itself where it cannot be shortened."""

@@ -1,0 +1,37 @@
+"""A pull lengthwise of a robot whose centre of mass lies beside its middle: its wheels let go one side after the other."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from made_pulls import made_pulls
+
+from ssmr_ident.diagnose.baseline import alike_in, best_baseline
+from ssmr_ident.identify.joint import evaluate
+
+ASIDE = 0.012
+"""m: 2.4 deviations of what a robot's file says."""
+
+PULLS = (("lateral", 1.0, 6e-3), ("lateral", 0.5, 6e-3), ("longitudinal", 2.0, 30e-3), ("longitudinal", 3.0, 30e-3))
+
+
+def test_pulls_sideways_tell_how_uneven_a_robot_is_that_is_pulled_lengthwise() -> None:
+    setup, known = made_pulls(PULLS, {}, 3, ASIDE)
+    base, _ = best_baseline(setup.fitted, setup, known)
+    left = {t.kind: p / t.size for t, p in zip(base.trials, base.parts, strict=True)}
+    even = evaluate(setup.fitted, base.model, base.point, base.nuisances)
+    without = {t.kind: p / t.size for t, p in zip(even.trials, even.parts, strict=True)}
+    assert base.model.split(base.point)[0]["contact_shift_y_m"] == pytest.approx(ASIDE, abs=0.003)
+    assert without["longitudinal"] > 4.0
+    assert max(left.values()) < 1.5
+    assert all(trial.uneven is None for trial in alike_in(setup.kept, base.trials))
+
+
+def test_a_robot_that_is_alike_left_and_right_stays_so() -> None:
+    setup, known = made_pulls(PULLS, {}, 3)
+    base, _ = best_baseline(setup.fitted, setup, known)
+    left = base.parts / [t.size for t in base.trials]
+    assert base.model.split(base.point)[0]["contact_shift_y_m"] == pytest.approx(0.0, abs=0.002)
+    assert np.max(left) < 1.5
+    assert any(trial.uneven is not None for trial in base.trials)
+    assert alike_in(setup.kept, base.trials) == list(setup.kept)
