@@ -26,8 +26,10 @@ def made_pulls(
     seed: int,
     aside: float = 0.0,
 ) -> tuple[Setup, ParameterSet]:
-    """Pulls of given direction, speed [mm/s] and travel [m]; the robot slides along both axes together, and its contacts
-    lie ``aside`` [m] of where its file has them."""
+    """Pulls of given direction, speed [mm/s] and travel [m]; the robot slides along both axes together.
+
+    Its contacts lie ``aside`` [m] of where its file has them.
+    """
     random = np.random.default_rng(seed)
     known = read_parameters("p3at-extended")
     together = {"tire.mu_kinetic": known["tire.mu_static"], "tire.sliding_speed_m_s": Estimate(0.01, None, "m/s")}

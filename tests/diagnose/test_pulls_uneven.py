@@ -1,4 +1,4 @@
-"""A pull lengthwise of a robot whose centre of mass lies beside its middle: its wheels let go one side after the other."""
+"""A robot pulled lengthwise whose centre of mass lies beside its middle: one side lets go after the other."""
 
 from __future__ import annotations
 
