@@ -84,10 +84,12 @@ def draw_robot(random: np.random.Generator) -> tuple[Robot, ParameterSet, np.nda
 
 
 def true_values(robot: Robot) -> dict[str, float]:
-    """The robot's numbers by the file's paths."""
+    """The robot's numbers by the file's paths, and how far its contacts lie from where the file has them."""
     found = {"mass_kg": robot.mass, "tire.mu_static": robot.mu_static, "height_m": robot.height}
     for row, column, name in ((0, 0, "xx"), (1, 1, "yy"), (2, 2, "zz"), (0, 2, "xz"), (0, 1, "xy"), (1, 2, "yz")):
         found[f"inertia_kg_m2.{name}"] = float(robot.inertia[row, column])
+    aside = robot.contact_points[:, :2].mean(axis=0) - np.mean(ARMS, axis=0)
+    found |= {f"contact_shift_{axis}_m": value for axis, value in zip("xy", aside, strict=True)}
     for index, axis in enumerate("xyz"):
         found[f"tire.stiffness_{axis}_N_m"] = float(robot.stiffness[index])
         found[f"tire.damping_{axis}_N_s_m"] = float(robot.damping[index])

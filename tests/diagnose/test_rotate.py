@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
-from small_rigs import Run, campaign
+from small_rigs import Run, campaign, fitted, prepared, quiet
 
 from ssmr_ident.diagnose import engine
 from ssmr_ident.diagnose.accept import better, certain
-from ssmr_ident.diagnose.rotate import shown_in_turn
+from ssmr_ident.diagnose.followed import explained
+from ssmr_ident.diagnose.rotate import left_elsewhere, shown_in_turn
 from ssmr_ident.diagnose.weigh import Explanation
 from ssmr_ident.pipeline.diagnose import diagnose
 
@@ -58,3 +60,11 @@ def test_no_pull_is_kept_back_in_its_turn() -> None:
     """Where contacts slide, two simulators differ by more than small effects do."""
     sliding = SimpleNamespace(fit=SimpleNamespace(trials=(SimpleNamespace(searched=True),) * 4))
     assert not shown_in_turn(sliding, sliding)  # type: ignore[arg-type]
+
+
+def test_a_recording_kept_back_may_be_left_with_more_than_any_that_was_fitted() -> None:
+    setup = prepared(campaign({}, LOUD_ONCE, seed=3))
+    base = explained([quiet(trial) for trial in setup.kept], fitted(setup))
+    assert not left_elsewhere(base)
+    louder = replace(base.kept, residuals=tuple(1.4 * r for r in base.kept.residuals))
+    assert left_elsewhere(replace(base, kept=louder))

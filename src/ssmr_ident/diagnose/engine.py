@@ -29,7 +29,7 @@ from ssmr_ident.diagnose.followed import all_explained, at_its_best, each_set_on
 from ssmr_ident.diagnose.pairs import backward, instead, partners_of, with_a_second
 from ssmr_ident.diagnose.polish import calmed, loud
 from ssmr_ident.diagnose.race import Progress
-from ssmr_ident.diagnose.rotate import shown_in_turn
+from ssmr_ident.diagnose.rotate import left_elsewhere, shown_in_turn
 from ssmr_ident.diagnose.setup import Setup
 from ssmr_ident.diagnose.weigh import TIE, Explanation, evidences
 from ssmr_ident.identify.descent import descend
@@ -88,7 +88,9 @@ def examine(setup: Setup, parameters: ParameterSet, progress: Progress | None = 
             new = [coupled(setup, parameters, kept)]
             result = Search(fit, (), tuple(e.fit for e in new), lengths)
         else:
-            result = search(chosen.fit, setup.campaign.session.baseline, lengths, chosen is not baseline, progress)
+            further = chosen is not baseline
+            elsewhere = not further and left_elsewhere(chosen)
+            result = search(chosen.fit, setup.campaign.session.baseline, lengths, further, progress, elsewhere)
             new = all_explained(kept, [calmed(f) if unsteady(f) else f for f in result.tried], chosen.kept)
         searches.append(result)
         if not new:
@@ -124,8 +126,8 @@ def examine(setup: Setup, parameters: ParameterSet, progress: Progress | None = 
                 break
         if not good or not significant(found_fit) or within_file(found_fit, parameters):
             break
-        further = [name for name in leader.fit.model.ids if name not in chosen.fit.model.ids]
-        stripped = without(leader.fit, further[-1])
+        more = [name for name in leader.fit.model.ids if name not in chosen.fit.model.ids]
+        stripped = without(leader.fit, more[-1])
         # the leader of pulls was led far, over hollows: what is without it begins where it ended, and is led as far
         stripped = descend(calmed(stripped) if unsteady(stripped) else stripped, LAST // 2)
         bare = explained(kept, differentiate(stripped), leader.kept)

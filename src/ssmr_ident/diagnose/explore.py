@@ -61,6 +61,7 @@ def search(
     lengths: Sequence[float],
     further: bool = False,
     progress: Progress | None = None,
+    elsewhere: bool = False,
 ) -> Search:
     """Every effect of the catalogue beside a model.
 
@@ -75,6 +76,8 @@ def search(
     further : bool
         The model has an effect already, and a second one is looked for.
     progress : callable, optional
+    elsewhere : bool
+        Recordings kept back leave what those that were fitted do not.
     """
     misfit = base.parts / [t.size for t in base.trials]
     # one recording that stands out may be the only one in which a wheel lifts; beside an effect that explains the
@@ -93,7 +96,7 @@ def search(
     else:
         chosen = [g for g in groups if g[0].gain > PROMISING + len(g[0].at)][: REFITTED if further else SCREENED]
         alone = bent(base) and not further
-        beyond = [g for g in groups if alone and _moves_beyond(g[0].effect) and len(lengths) > 1]
+        beyond = [g for g in groups if (alone or elsewhere) and _moves_beyond(g[0].effect) and len(lengths) > 1]
         same = [g[0] for g in groups if alone and g[0].own < SAME and not CATALOGUE[g[0].effect].sudden]
         field = [partial(started, base, s) for group in _each_group(chosen, beyond) for s in variants(group)]
         field += [partial(from_what_is_known, base, s, lengths) for group in beyond for s in variants(group)]

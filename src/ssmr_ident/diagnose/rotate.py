@@ -1,9 +1,10 @@
-"""An effect that no recording kept back shows, shown by one that was fitted: kept back in its turn."""
+"""What only fitted recordings show, and what only those show that were kept back."""
 
 from __future__ import annotations
 
 import numpy as np
 from scipy.stats import chi2
+from scipy.stats import f as fisher
 
 from ssmr_ident.compare.recorded import follow
 from ssmr_ident.diagnose.accept import CHANCE, certain, harmless
@@ -36,6 +37,21 @@ def shown_in_turn(leader: Explanation, before: Explanation) -> bool:
     left = [_without(e.fit, spared) for e in (before, leader)]
     change = float(np.log(left[1] / left[0]))
     return -float(leader.fit.counted[spared]) * change > chi2.isf(CHANCE, 1)
+
+
+def left_elsewhere(baseline: Explanation) -> bool:
+    """Whether a recording kept back is left with more than the fitted ones are, by more than chance (Fisher's F).
+
+    A wheel may leave the floor in that one alone. No fit of the others asks for it, and a straight line from where
+    nothing is missing promises nothing. Not where contacts slide: there no two runs are alike.
+    """
+    fitted, kept = baseline.fit, baseline.kept
+    if any(t.searched for t in fitted.trials):
+        return False
+    left, other = (e.parts / [t.size for t in e.trials] for e in (fitted, kept))
+    most, worst = int(np.argmax(left)), int(np.argmax(other))
+    chance = CHANCE / (len(left) + len(other))
+    return bool(other[worst] / left[most] > fisher.isf(chance, kept.counted[worst], fitted.counted[most]))
 
 
 def _without(fit: JointFit, spared: int) -> float:
