@@ -8,6 +8,7 @@ import numpy as np
 
 from ssmr_ident.compare.comparison import measure
 from ssmr_ident.compare.recorded import follow
+from ssmr_ident.diagnose.accept import UNHARMED
 from ssmr_ident.diagnose.weigh import CERTAIN, Explanation, from_recordings
 from ssmr_ident.diagnose.worth import predictions, without_jolts
 from ssmr_ident.identify.descent import descend
@@ -21,9 +22,6 @@ BEGUN = 0.9
 
 STEPS = 8
 """Gauss-Newton steps."""
-
-SAME = 1.001
-"""Error over another up to which it is no worse: two fits of the same recordings end as far apart."""
 
 
 def measure_of(chosen: Explanation, baseline: Explanation) -> Explanation:
@@ -58,15 +56,16 @@ def within_priors(baseline: Explanation) -> Explanation:
 
 
 def serves(chosen: Explanation, baseline: Explanation) -> bool:
-    """Whether recordings kept back are followed no worse than by the baseline that an answer is measured against.
+    """Whether recordings kept back are followed as well as by the baseline that an answer is measured against.
 
+    One that shows nothing of an effect may be followed a little worse by chance (``UNHARMED``, of the variance).
     Where wheels let go, a law that is not the world's may fit averages of all recordings better, and their samples in
     those that it never saw worse. Teeth are not asked: they come at other times in every run.
     """
     if any(trial.facts.get("teeth", 0.0) > 0.0 for trial in chosen.kept.trials):
         return True
     after, before = (_error(e) for e in (chosen, measure_of(chosen, baseline)))
-    return after <= SAME * before
+    return after**2 <= UNHARMED * before**2
 
 
 def _error(explanation: Explanation) -> float:
