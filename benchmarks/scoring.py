@@ -18,6 +18,7 @@ import numpy as np
 from ssmr_ident.core.atomic import write_text
 from ssmr_ident.diagnose.diagnosis import NOTHING, UNDETERMINED, Diagnosis
 from ssmr_ident.diagnose.weigh import CERTAIN
+from ssmr_ident.identify.parallel import processors
 
 LARGEST_TIE = 3
 UNSEEN = 1.02
@@ -79,7 +80,7 @@ def row_of(
     **more
         Kept in the row.
     """
-    row: Row = {"name": name, "truth": list(truth), **more}
+    row: Row = {"name": name, "truth": list(truth), "processors": processors(), **more}
     begin = time.perf_counter()
     try:
         diagnosis = run()

@@ -59,9 +59,11 @@ signals, not the one that the diagnosis states.
 
 
 def versions(rows: Sequence[Row]) -> str:
-    """Which engines the rows are from."""
+    """Which engines the rows are from, and how many processors each session had."""
     found = sorted({row["engine"] for row in rows if "engine" in row})
-    return f"Engine {', '.join(found)}.\n\n" if found else ""
+    shared = sorted({str(row["processors"]) for row in rows if "processors" in row})
+    had = f", processors for a session: {' or '.join(shared)}" if shared else ""
+    return f"Engine {', '.join(found)}{had}.\n\n" if found else ""
 
 
 def block(text: str) -> str:
