@@ -11,7 +11,7 @@ from small_rigs import ROUGH, Run, campaign, prepared
 from ssmr_ident.core.parameter import Estimate
 from ssmr_ident.diagnose.followed import explained
 from ssmr_ident.diagnose.weigh import Explanation
-from ssmr_ident.diagnose.within import REACH, measure_of, serves
+from ssmr_ident.diagnose.within import REACH, measure_of
 from ssmr_ident.identify.descent import descend
 from ssmr_ident.identify.joint import differentiate, evaluate
 
@@ -57,11 +57,3 @@ def test_what_the_recordings_say_is_measured_against_the_free_baseline() -> None
         kept=replace(free.kept, residuals=tuple(3.0 * r for r in free.kept.residuals)),
     )
     assert measure_of(free, worse) is worse
-
-
-def test_an_answer_serves_that_follows_recordings_kept_back_no_worse() -> None:
-    free = baseline(19000.0, 500.0)
-    assert serves(free, free)
-    off = replace(free.kept, point=free.kept.point + 0.05)
-    assert not serves(replace(free, kept=off), free)
-    assert serves(free, replace(free, kept=off))

@@ -32,7 +32,6 @@ from ssmr_ident.diagnose.race import Progress
 from ssmr_ident.diagnose.rotate import left_elsewhere, shown_in_turn
 from ssmr_ident.diagnose.setup import Setup
 from ssmr_ident.diagnose.weigh import TIE, Explanation, evidences
-from ssmr_ident.diagnose.within import serves
 from ssmr_ident.identify.descent import descend
 from ssmr_ident.identify.joint import differentiate
 from ssmr_ident.identify.scatter import covariance
@@ -144,7 +143,7 @@ def examine(setup: Setup, parameters: ParameterSet, progress: Progress | None = 
     chosen, tried = backward(kept, lengths, chosen, tried, singles)
     if chosen is not baseline and not setup.decoupled:
         chosen, tried = instead(chosen, tried, kept, setup.campaign.session.baseline, lengths, progress)
-    if chosen is not baseline and not (touches(chosen, baseline) and serves(chosen, baseline)):
+    if chosen is not baseline and not touches(chosen, baseline):
         chosen = baseline
     found = evidences(tried)
     top, wrong = found[chosen.id], leaves_structure(chosen)

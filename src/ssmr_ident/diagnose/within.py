@@ -1,4 +1,4 @@
-"""What an answer is measured against, and whether it serves: recordings kept back, in the metric of the report."""
+"""The baseline within its priors: what an answer is measured against that the priors gave, not the recordings."""
 
 from __future__ import annotations
 
@@ -6,11 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from ssmr_ident.compare.comparison import measure
 from ssmr_ident.compare.recorded import follow
-from ssmr_ident.diagnose.accept import UNHARMED
 from ssmr_ident.diagnose.weigh import CERTAIN, Explanation, from_recordings
-from ssmr_ident.diagnose.worth import predictions, without_jolts
 from ssmr_ident.identify.descent import descend
 from ssmr_ident.identify.joint import differentiate
 
@@ -53,21 +50,3 @@ def within_priors(baseline: Explanation) -> Explanation:
     ends = [descend(begun, STEPS, plain=plain) for plain in (False, True)]
     held = differentiate(min(ends, key=lambda f: float(np.sum(np.log(f.parts)))))
     return Explanation(held, follow(baseline.kept.trials, model, held.point, None, held))
-
-
-def serves(chosen: Explanation, baseline: Explanation) -> bool:
-    """Whether recordings kept back are followed as well as by the baseline that an answer is measured against.
-
-    One that shows nothing of an effect may be followed a little worse by chance (``UNHARMED``, of the variance).
-    Where wheels let go, a law that is not the world's may fit averages of all recordings better, and their samples in
-    those that it never saw worse. Teeth are not asked: they come at other times in every run.
-    """
-    if any(trial.facts.get("teeth", 0.0) > 0.0 for trial in chosen.kept.trials):
-        return True
-    after, before = (_error(e) for e in (chosen, measure_of(chosen, baseline)))
-    return after**2 <= UNHARMED * before**2
-
-
-def _error(explanation: Explanation) -> float:
-    found = without_jolts(explanation.kept, predictions(explanation.kept))
-    return float(np.mean([measure(prediction)[0] for prediction in found]))
