@@ -33,3 +33,19 @@ def test_a_belt_that_no_straight_line_promises_is_tried_beside_it(monkeypatch: p
         known = np.concatenate([np.zeros(len(base.model.physics)), fit.point[len(base.point) :]])
         assert fit.cost(base.counted) < follow(base.trials, fit.model, known).cost(base.counted)
     assert not [fit for fit in fields[0] if fit.model.ids == ("sensor_saturation",)]
+
+
+def test_what_acts_beyond_some_value_is_tried_where_kept_recordings_alone_leave_something(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    drawn = draw("decays", "none", 3, short=True)
+    setup = set_up(drawn.campaign, drawn.campaign.parameters)
+    base, lengths = best_baseline(setup.fitted, setup, drawn.campaign.parameters)
+    assert not bent(base)
+    tried: list[list[tuple[str, ...]]] = []
+    monkeypatch.setattr(explore, "run_on", lambda field: tried.append([fit.model.ids for fit in field]) or field[:1])
+    for elsewhere in (False, True):
+        search(base, "rigid6", lengths, elsewhere=elsewhere)
+    without, with_it = (ids.count(("motor_belt",)) for ids in tried)
+    assert without == 0
+    assert with_it >= 2  # from the baseline, and from what is known

@@ -35,3 +35,19 @@ def test_a_robot_that_is_alike_left_and_right_stays_so() -> None:
     assert np.max(left) < 1.5
     assert any(trial.uneven is not None for trial in base.trials)
     assert alike_in(setup.kept, base.trials) == list(setup.kept)
+
+
+def test_of_a_lone_pull_only_the_fitted_part_counts_whichever_robot_it_is_of() -> None:
+    (trial,) = made_pulls(PULLS[2:3], {}, 3)[0].fitted
+    whole = trial.as_it_is()
+    assert trial.uneven is not None
+    assert trial.part is not None
+    assert trial.counts is not None
+    assert whole.part == trial.part
+    assert np.array_equal(whole.counts, trial.counts)
+    assert whole.sees("contact_shift_y_m")
+    assert not trial.sees("contact_shift_y_m")
+    values = {"contact_shift_y_m": ASIDE}
+    own = np.array([0.0])
+    assert np.array_equal(trial.run(values, {}, own), trial.run({}, {}, own))
+    assert np.max(np.abs(whole.run(values, {}, own) - trial.run(values, {}, own))) > 1.0

@@ -70,10 +70,7 @@ def best_baseline(
 
 
 def uneven(fit: JointFit) -> JointFit:
-    """A fit of pulls of a robot that is alike left and right, led on with what all pulls say of where it is not.
-
-    Where nothing tells, it stays as it is: about a robot that is alike no step is an improvement.
-    """
+    """A fit of pulls of a robot that is alike left and right, led on with what all pulls say of where it is not."""
     begun = evaluate([t.as_it_is() for t in fit.trials], fit.model, fit.point, fit.nuisances)
     return differentiate(descend(pooled(begun), LAST)) if np.isfinite(begun.rss) else begun
 

@@ -91,8 +91,9 @@ def pull_trial(measurement: Measurement, parameters: ParameterSet) -> Trial:
     InputError
         Neither a position nor a speed.
     """
-    as_it_is = _trial(measurement, parameters, ())
-    if measurement.entry.direction != "longitudinal":
+    as_it_is, entry = _trial(measurement, parameters, ()), measurement.entry
+    robot = entry.experiment == "pull" and "tire.stiffness_y_N_m" in parameters
+    if not robot or entry.direction != "longitudinal":
         return as_it_is
     return replace(_trial(measurement, parameters, SIDEWAYS), uneven=as_it_is)
 

@@ -211,10 +211,13 @@ class Trial:
         return replace(self, noises=noises)
 
     def as_it_is(self) -> Trial:
-        """The same of a robot that need not be alike left and right, with the noise and the lines that it has."""
-        if self.uneven is None:
-            return self
-        return replace(self.uneven, noises=self.noises, basis=self.basis, lined=self.lined)
+        """The same of a robot that need not be alike left and right; what was measured and what counts stays."""
+        of = self.uneven
+        return (
+            self
+            if of is None
+            else replace(self, run=of.run, begin=of.begin, course=of.course, blind=of.blind, uneven=None)
+        )
 
     def until(self, seconds: float) -> Trial:
         """Its first part, with the noise that it has; itself where it cannot be shortened."""
