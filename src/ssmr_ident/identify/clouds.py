@@ -45,9 +45,13 @@ def averaged(fit: JointFit, width: float, random: np.random.Generator) -> JointF
         trial, nuisance = fit.trials[index], fit.nuisances[index]
         seen = np.array([trial.sees(name) for name in names])
         centre, rows, moves = trial.whitened(fit.simulated[index]), [], []
-        for move, aside in zip(points * seen, own[index], strict=True):
-            values, effects = fit.model.split(fit.point + move)
-            change = trial.whitened(trial.run(values, effects, nuisance + aside)) - centre
+        moved = points * seen
+        asked = [
+            (*fit.model.split(fit.point + move), nuisance + aside)
+            for move, aside in zip(moved, own[index], strict=True)
+        ]
+        for move, aside, white in zip(moved, own[index], trial.whitened(trial.runs(asked)).T, strict=True):
+            change = white - centre
             if np.all(np.isfinite(change)):
                 rows.append(change)
                 moves.append(np.concatenate([[1.0], move[seen], aside]))

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
 
+from ssmr_ident.core.lanes import WIDTH
 from ssmr_ident.identify.curvature import Curvature
-from ssmr_ident.identify.joint import JointFit, Slopes, differentiate, evaluate, over
+from ssmr_ident.identify.joint import JointFit, Slopes, differentiate, evaluate_all, over
 
 Array = np.ndarray
 
@@ -19,6 +21,9 @@ SETTLED = 0.1
 
 SECANTS = 3
 """Steps with corrected slopes after one with exact ones: each costs two simulations in place of thirty."""
+
+AHEAD = WIDTH
+"""Dampings that are simulated together where that costs hardly more than one."""
 
 SLOW = 1e-4
 """The same per independent sample: where a model leaves structure, its optimum is flat beyond what that is worth."""
@@ -130,23 +135,30 @@ def best_step(fit: JointFit, counted: Array, rung: int, shared: bool, plain: boo
     best, lowest = fit, _cost(fit, counted, plain)
     first = chosen = max(rung - 1, 0)
     curvature = Curvature.of(fit, np.ones(len(counted)) if plain else counted / fit.parts)
+    ahead = AHEAD if all(trial.abreast for trial in fit.trials) else 1
 
-    def improves(candidate: int) -> bool:
+    def tried(candidates: Sequence[int]) -> Iterator[tuple[int, JointFit]]:
+        for begin in range(0, len(candidates), ahead):
+            together = candidates[begin : begin + ahead]
+            moves = [curvature.step(DAMPINGS[candidate], shared) for candidate in together]
+            places = [
+                (fit.point + move, [n + o for n, o in zip(fit.nuisances, own, strict=True)]) for move, own in moves
+            ]
+            yield from zip(together, evaluate_all(fit.trials, fit.model, places, fit.slopes), strict=True)
+
+    def improves(candidate: int, trial: JointFit) -> bool:
         nonlocal best, chosen, lowest
-        move, own = curvature.step(DAMPINGS[candidate], shared)
-        nuisances = [n + o for n, o in zip(fit.nuisances, own, strict=True)]
-        trial = evaluate(fit.trials, fit.model, fit.point + move, nuisances, fit.slopes)
         cost = _cost(trial, counted, plain)
         if not cost < lowest:
             return False
         best, chosen, lowest = trial, candidate, cost
         return True
 
-    for candidate in range(first, len(DAMPINGS)):
-        if not improves(candidate) and best is not fit:
+    for candidate, trial in tried(range(first, len(DAMPINGS))):
+        if not improves(candidate, trial) and best is not fit:
             break
     if chosen == first:
-        for candidate in reversed(range(first)):
-            if not improves(candidate):
+        for candidate, trial in tried(range(first)[::-1]):
+            if not improves(candidate, trial):
                 break
     return best, chosen

@@ -10,7 +10,7 @@ Source: Gelman et al., Bayesian Data Analysis (2013), sections 2.7 and 14.2 (nor
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TypeVar
@@ -23,6 +23,8 @@ from ssmr_ident.identify.trials.trial import Asked, Trial
 
 Array = np.ndarray
 T = TypeVar("T")
+Place = tuple[Array, Sequence[Array]]
+"""A point, (p,), and the nuisances of every trial."""
 
 NUISANCE_STEP = 1e-4
 """Of differences in a nuisance, in units of its scale."""
@@ -146,21 +148,47 @@ def evaluate(
     trials: Sequence[Trial], model: Model, point: Array, nuisances: Sequence[Array], slopes: Sequence[Slopes] = ()
 ) -> JointFit:
     """Simulate every trial at a point."""
-    values, effects = model.split(point)
-    sane = bool(np.all(np.isfinite(point))) and all(np.all(np.isfinite(n)) for n in nuisances)
+    return next(evaluate_all(trials, model, [(point, nuisances)], slopes))
 
-    def one(index: int) -> tuple[Array, Array]:
+
+def evaluate_all(
+    trials: Sequence[Trial], model: Model, places: Sequence[Place], slopes: Sequence[Slopes] = ()
+) -> Iterator[JointFit]:
+    """Simulate every trial at several points and nuisances, all of a trial at once.
+
+    What is left of the recordings is worked out one place after the other, as they are asked for.
+    """
+    sane = [
+        bool(np.all(np.isfinite(point))) and all(np.all(np.isfinite(n)) for n in nuisances)
+        for point, nuisances in places
+    ]
+    split = [model.split(point) for point, _ in places]
+
+    def simulated(index: int) -> list[Array]:
         trial = trials[index]
-        simulated = trial.run(values, effects, nuisances[index]) if sane else np.full_like(trial.target, np.nan)
+        asked = [(*here, own[index]) for here, (_, own), good in zip(split, places, sane, strict=True) if good]
+        found = iter(np.moveaxis(trial.runs(asked), -1, 0) if asked else ())
+        return [next(found) if good else np.full_like(trial.target, np.nan) for good in sane]
+
+    def left(trial: Trial, simulated: Array) -> tuple[Array, Array]:
         if not np.all(np.abs(simulated) < BURST):
             simulated = np.full_like(trial.target, np.nan)
         return simulated, trial.white_target - trial.whitened(simulated)
 
-    pairs = over(trials, one)
-    return JointFit(
-        tuple(trials), model, point, tuple(nuisances), tuple(p[0] for p in pairs), tuple(p[1] for p in pairs),
-        tuple(slopes),
-    )  # fmt: skip
+    def begun(index: int) -> tuple[list[Array], tuple[Array, Array]]:
+        found = simulated(index)
+        return found, left(trials[index], found[0])
+
+    def further(place: int) -> list[tuple[Array, Array]]:
+        return over(trials, lambda index: left(trials[index], first[index][0][place]))
+
+    first = over(trials, begun)
+    for place, (point, nuisances) in enumerate(places):
+        pairs = further(place) if place else [pair for _, pair in first]
+        yield JointFit(
+            tuple(trials), model, point, tuple(nuisances), tuple(p[0] for p in pairs), tuple(p[1] for p in pairs),
+            tuple(slopes),
+        )  # fmt: skip
 
 
 def differentiate(fit: JointFit, shared: bool = True) -> JointFit:

@@ -7,6 +7,7 @@ these two functions; each is passed over while it is off, so the baseline is nes
 from __future__ import annotations
 
 from ssmr_ident.core.kernel import kernel
+from ssmr_ident.core.lanes import first, lanewise
 from ssmr_ident.physics.effects import (
     dry_friction,
     free_play,
@@ -37,7 +38,7 @@ from ssmr_ident.physics.slots import (
 _cubic, _beyond = nonlinear_stiffness.force, nonlinear_stiffness.beyond
 _quadratic = quadratic_damping.force
 _friction, _friction_advance = dry_friction.force, dry_friction.advance
-_loop, _loop_advance = hysteresis.force, hysteresis.advance
+_loop, _loop_advance = hysteresis.force, lanewise(hysteresis.advance)
 _relaxation, _relaxation_advance = viscoelastic_relaxation.force, viscoelastic_relaxation.advance
 _play = free_play.force
 
@@ -69,20 +70,20 @@ def element_force(s, v, z, stiffness, ratio, gap_share, tangential, e):
     e : (SLOTS,) float
     """
     f = 0.0
-    if e[CUBIC] != 0.0:
+    if first(e[CUBIC]) != 0.0:
         f += _cubic(s, e[CUBIC])
-    if e[RELAXATION_STIFFNESS] != 0.0:
+    if first(e[RELAXATION_STIFFNESS]) != 0.0:
         f += _relaxation(z[2], ratio * e[RELAXATION_STIFFNESS])
     if tangential:
-        if e[KNEE_SHARE] != 0.0:
+        if first(e[KNEE_SHARE]) != 0.0:
             f += _beyond(s, stiffness, e[KNEE_SHARE], e[KNEE])
-        if e[QUADRATIC] != 0.0:
+        if first(e[QUADRATIC]) != 0.0:
             f += _quadratic(v, e[QUADRATIC])
-        if e[FRICTION_FORCE] != 0.0:
+        if first(e[FRICTION_FORCE]) != 0.0:
             f += _friction(z[0], v, e[FRICTION_FORCE], e[FRICTION_STIFFNESS], e[FRICTION_ROUNDING])
-        if e[ALPHA] != 1.0:
+        if first(e[ALPHA]) != 1.0:
             f += _loop(s, z[1], stiffness, e[ALPHA])
-        if e[GAP] != 0.0 and gap_share > 0.0:
+        if first(e[GAP]) != 0.0 and first(gap_share) > 0.0:
             f += _play(s, stiffness, gap_share * e[GAP], e[GAP_ROUNDING])
     return f
 
@@ -91,12 +92,12 @@ def element_force(s, v, z, stiffness, ratio, gap_share, tangential, e):
 def element_next(z, v, step, tangential, e):
     """Hidden states one step later, exactly for a constant rate; (STATES,) tuple."""
     friction, loop, relaxation = z[0], z[1], z[2]
-    if e[RELAXATION_STIFFNESS] != 0.0:
+    if first(e[RELAXATION_STIFFNESS]) != 0.0:
         relaxation = _relaxation_advance(relaxation, v, step, e[RELAXATION_TIME])
     if tangential:
-        if e[FRICTION_FORCE] != 0.0:
+        if first(e[FRICTION_FORCE]) != 0.0:
             friction = _friction_advance(friction, v, step, e[FRICTION_FORCE], e[FRICTION_STIFFNESS], e[SLIDER])
-        if e[ALPHA] != 1.0:
+        if first(e[ALPHA]) != 1.0:
             loop = _loop_advance(loop, v, step, e[YIELD], e[LOOP_EXPONENT], e[LOOP_SHAPE])
     return friction, loop, relaxation
 
@@ -117,7 +118,7 @@ def element_loaded(s, share, tangential, e):
     z = (0.0, 0.0, 0.0)
     for _ in range(PUSH_PARTS):
         z = element_next(z, s, 1.0 / PUSH_PARTS, tangential, e)
-    relaxation = s if e[RELAXATION_STIFFNESS] != 0.0 else 0.0
+    relaxation = s if first(e[RELAXATION_STIFFNESS]) != 0.0 else 0.0
     return share * z[0], share * z[1], share * relaxation
 
 

@@ -72,20 +72,22 @@ def low_pass_coefficients(bandwidth_hz: float, step: float) -> np.ndarray:
 
 
 @kernel
-def filter_step(history, value, c):
+def filter_step(history, axis, value, c):
     """One step of a second-order difference equation.
 
     Parameters
     ----------
-    history : (4,) float
-        Last two inputs and last two outputs; changed in place.
+    history : (k, 4) float
+        Last two inputs and last two outputs of each axis; changed in place.
+    axis : int
     value : float
     c : (5,) float
         As ``low_pass_coefficients`` gives them.
     """
-    result = c[0] * value + c[1] * history[0] + c[2] * history[1] - c[3] * history[2] - c[4] * history[3]
-    history[1], history[0] = history[0], value
-    history[3], history[2] = history[2], result
+    before, before_that = history[axis, 0], history[axis, 1]
+    left, left_before = history[axis, 2], history[axis, 3]
+    result = c[0] * value + c[1] * before + c[2] * before_that - c[3] * left - c[4] * left_before
+    history[axis, 0], history[axis, 1], history[axis, 2], history[axis, 3] = value, before, result, left
     return result
 
 

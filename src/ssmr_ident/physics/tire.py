@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 
+from ssmr_ident.core.exponential import exp
 from ssmr_ident.core.kernel import kernel
+from ssmr_ident.core.lanes import anywhere, where
 
 
 @kernel
@@ -27,14 +29,11 @@ def grip_shares(rim_speed, slip_x, slip_y, lambda_max):
     -------
     (float, float)
     """
-    rim = abs(rim_speed)
-    if rim < 1e-9:
-        return 1.0, 1.0
-    sliding = abs(slip_x)
-    limit = rim * lambda_max
+    turns = abs(rim_speed) >= 1e-9
+    sliding, limit = abs(slip_x), where(turns, abs(rim_speed) * lambda_max, 1.0)
     share_x = min(sliding / limit, 1.0)
     share_y = min(abs(slip_y) / max(limit, sliding), 1.0)
-    return share_x, share_y
+    return where(turns, share_x, 1.0), where(turns, share_y, 1.0)
 
 
 @kernel
@@ -70,29 +69,25 @@ def contact_force(deflection, sliding, velocity, hub, beside, stiffness, damping
         Sliding or not, contact velocity [m/s], force on the hub [N].
     """
     force = stiffness * deflection + damping * hub + beside
-    if not sliding and abs(force) > breakaway:
-        sliding = True
-        velocity = 0.0
-    if sliding and abs(force) <= grip:
-        sliding = False
-    if not sliding:
-        return False, 0.0, -force
+    # a contact that stuck has velocity 0
+    slides = (sliding | (abs(force) > breakaway)) & (abs(force) > grip)
+    if not anywhere(slides):
+        return slides, 0.0 * force, -force
     inertia = mass / step
-    direction = 1.0 if force > 0.0 else -1.0
+    direction = where(force > 0.0, 1.0, -1.0)
     velocity = (inertia * velocity + force - drag * direction) / (inertia + damping)
     landing = hub + (deflection - (direction * grip - damping * hub - beside) / stiffness) / step
-    if direction * velocity > direction * landing:
-        velocity = landing
-    return True, velocity, damping * velocity - force
+    velocity = where(direction * velocity > direction * landing, landing, velocity)
+    return slides, where(slides, velocity, 0.0), where(slides, damping * velocity - force, -force)
 
 
 @kernel
 def weakened(mu_static, mu_kinetic, speed, width):
     """mu_k + (mu_s - mu_k)·exp(-(u/v_s)²); speed u and width v_s : float [m/s]."""
-    if speed == 0.0:  # most contacts stand, and an exponential is most of what they cost
+    if not anywhere(speed != 0.0):  # most contacts stand, and an exponential is most of what they cost
         return mu_kinetic + (mu_static - mu_kinetic)
     ratio = speed / width
-    return mu_kinetic + (mu_static - mu_kinetic) * math.exp(-ratio * ratio)
+    return mu_kinetic + (mu_static - mu_kinetic) * exp(-ratio * ratio)
 
 
 @kernel
@@ -103,9 +98,8 @@ def combined_share(rim_speed, slip_x, slip_y, lambda_max):
     its length is cut instead, so that sliding has no preferred axes.
     """
     limit = abs(rim_speed) * lambda_max
-    if limit < 1e-9:
-        return 1.0
-    return min(math.sqrt(slip_x * slip_x + slip_y * slip_y) / limit, 1.0)
+    turns = limit >= 1e-9
+    return where(turns, min(math.sqrt(slip_x * slip_x + slip_y * slip_y) / where(turns, limit, 1.0), 1.0), 1.0)
 
 
 @kernel
@@ -141,19 +135,26 @@ def sliding_force(deflection, velocity, slip, beside, stiffness, damping, mass, 
     push_x = force_x + half * stiffness[0] * slip[0] + inertia * velocity[0]
     push_y = force_y + half * stiffness[1] * slip[1] + inertia * velocity[1]
     length = math.sqrt(push_x * push_x + push_y * push_y)
-    if length <= limit:
-        return False, 0.0, 0.0, -force_x, -force_y
+    slides = length > limit
+    if not anywhere(slides):
+        return slides, 0.0 * length, 0.0 * length, -force_x, -force_y
     drag_x = damping[0] + inertia + half * stiffness[0]
     drag_y = damping[1] + inertia + half * stiffness[1]
     speed = (length - limit) / max(drag_x, drag_y)  # never above the root, so Newton comes from one side
+    coming = slides
     for _ in range(20):
         along_x, along_y = push_x / (drag_x * speed + limit), push_y / (drag_y * speed + limit)
         square = along_x * along_x + along_y * along_y
         slope = drag_x * along_x * along_x / (drag_x * speed + limit)
         slope += drag_y * along_y * along_y / (drag_y * speed + limit)
         change = (math.sqrt(square) - 1.0) * square / slope
-        speed += change
-        if abs(change) <= 1e-12 * speed:
+        speed = where(coming, speed + change, speed)
+        coming = coming & (abs(change) > 1e-12 * speed)
+        if not anywhere(coming):
             break
     sliding_x, sliding_y = push_x * speed / (drag_x * speed + limit), push_y * speed / (drag_y * speed + limit)
-    return True, sliding_x, sliding_y, damping[0] * sliding_x - force_x, damping[1] * sliding_y - force_y
+    pulled_x, pulled_y = damping[0] * sliding_x - force_x, damping[1] * sliding_y - force_y
+    return (
+        slides, where(slides, sliding_x, 0.0), where(slides, sliding_y, 0.0),
+        where(slides, pulled_x, -force_x), where(slides, pulled_y, -force_y),
+    )  # fmt: skip

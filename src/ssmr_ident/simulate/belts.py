@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from ssmr_ident.core.kernel import kernel
+from ssmr_ident.core.lanes import first
 from ssmr_ident.simulate.layout import KX, POINTS, RADIUS
 
 
 @kernel
-def take_up(p, stiffness, start, deflection, belt, belt_rate):
+def take_up(p, stiffness, start, deflection, belt):
     """Belts and tires share in series what the hubs have moved along x, and its rate: as after a slow push.
 
     A belt begun at length zero beside tires that are strained would ring at the rim's own frequency, which no push by
@@ -23,19 +22,22 @@ def take_up(p, stiffness, start, deflection, belt, belt_rate):
     start : (START,) float
     deflection : (4, 2) float [m]
         Of the carcasses if belts did not give; less what the belts take up afterwards.
-    belt, belt_rate : (2,) float [m], [m/s]
-        Left and right; filled.
+    belt : (3, 2) float [m], [m/s]
+        Length and its rate of left and right; filled.
     """
-    wheels = np.zeros(2)
+    wheels_left = wheels_right = 0.0
     for i in range(4):
         b, c = p[POINTS + 3 * i + 1], p[POINTS + 3 * i + 2]
-        side = 0 if b > 0.0 else 1
-        wheels[side] += 1.0
-        belt[side] += deflection[i, 0]
-        belt_rate[side] += start[6] + start[10] * c - start[11] * b - p[RADIUS] * start[12 + side]
+        side = 0 if first(b) > 0.0 else 1
+        if side == 0:
+            wheels_left += 1.0
+        else:
+            wheels_right += 1.0
+        belt[0, side] += deflection[i, 0]
+        belt[1, side] += start[6] + start[10] * c - start[11] * b - p[RADIUS] * start[12 + side]
     for side in range(2):
-        share = p[KX] / (stiffness + wheels[side] * p[KX])
-        belt[side] *= share
-        belt_rate[side] *= share
+        share = p[KX] / (stiffness + (wheels_left if side == 0 else wheels_right) * p[KX])
+        belt[0, side] *= share
+        belt[1, side] *= share
     for i in range(4):
-        deflection[i, 0] -= belt[0 if p[POINTS + 3 * i + 1] > 0.0 else 1]
+        deflection[i, 0] -= belt[0, 0 if first(p[POINTS + 3 * i + 1]) > 0.0 else 1]

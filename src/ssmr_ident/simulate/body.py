@@ -13,7 +13,16 @@ from ssmr_ident.core.recent import Recent
 from ssmr_ident.physics.effect import Site
 from ssmr_ident.physics.effects import CATALOGUE, ground_roughness
 from ssmr_ident.physics.robot import GRAVITY, Robot
-from ssmr_ident.physics.slots import CUBIC, Effects, checked_for_robot, effect_vector, is_plain
+from ssmr_ident.physics.slots import (
+    CUBIC,
+    ECCENTRICITY,
+    JOINT_DEPTH,
+    ROUGHNESS,
+    Effects,
+    checked_for_robot,
+    effect_vector,
+    is_plain,
+)
 from ssmr_ident.physics.statics import rest_pose
 from ssmr_ident.simulate import layout as k
 from ssmr_ident.simulate.mast import inverse_mass_matrix
@@ -21,6 +30,7 @@ from ssmr_ident.simulate.scenarios import Scenario
 
 LOADED, POINTS, UNSEEN = k.LOADED, k.POINTS, k.UNSEEN
 FLAT = np.zeros((1, 1))
+_UNEVEN = np.array([JOINT_DEPTH, ECCENTRICITY, ROUGHNESS])
 _POSE = ("x", "y", "z", "roll", "pitch", "yaw")
 AWAY = (*_POSE, "brace_x", "brace_y", "sway_x", "sway_y", "loaded", "unseen")
 MOVING = (*_POSE, "sway_x", "sway_y")
@@ -52,6 +62,11 @@ class Body:
     mast: np.ndarray
     beyond: bool
     read_otherwise: bool
+
+    @property
+    def uneven(self) -> np.ndarray | None:
+        """The floor, (n, n) float [m], where anything makes it uneven; None where it is flat."""
+        return self.floor if np.any(self.e[_UNEVEN] != 0.0) else None
 
     @cached_property
     def rest(self) -> np.ndarray:

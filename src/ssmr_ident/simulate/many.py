@@ -1,4 +1,4 @@
-"""Many free responses in one call of the compiled loop, which lets other threads go on all the while."""
+"""Many runs in one call of the compiled loop, which lets other threads go on all the while."""
 
 from __future__ import annotations
 
@@ -8,18 +8,20 @@ from dataclasses import dataclass
 import numpy as np
 
 from ssmr_ident.core.errors import InputError
-from ssmr_ident.core.kernel import kernel
 from ssmr_ident.physics.robot import Robot
-from ssmr_ident.physics.sensor import low_pass_coefficients
 from ssmr_ident.physics.slots import Effects
 from ssmr_ident.simulate import layout
 from ssmr_ident.simulate.body import Body, body_of, let_go
 from ssmr_ident.simulate.pulling import PULLING
-from ssmr_ident.simulate.robot_kernel import run
+from ssmr_ident.simulate.scenarios import Scenario
 from ssmr_ident.simulate.sensed import sensed
-from ssmr_ident.simulate.simulation import grid
+from ssmr_ident.simulate.simulation import grid, prepared
+from ssmr_ident.simulate.together import Run, run_together
 
-_OUTPUTS, _START = len(layout.OUTPUTS), layout.START
+SENSED = ("ax", "ay", "az", "force")
+"""What sensor effects read: one axis of a turned sensor reads all three."""
+
+STILL, NO_HEAD, AT_REST = np.zeros(PULLING), np.zeros(1), np.zeros((1, 2))
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,46 +62,76 @@ def simulate_many(
     (k, n, c) float
         NaN all through where a state was no longer finite, or the robot cannot have its effects.
     """
-    step, stride, samples = grid(duration, sample_rate, step)
     bodies = _bodies(releases)
-    # one axis of a turned sensor reads all three
-    read = layout.OUTPUTS if any(body is not None and body.read_otherwise for body in bodies) else tuple(names)
-    out = np.empty((len(releases), samples, len(read)))
+    starts = np.zeros((len(releases), layout.START))
+    runs = []
+    for body, release, start in zip(bodies, releases, starts, strict=True):
+        if body is not None:
+            let_go(body.packed, body.rest, release.away, release.moving, start)
+        runs.append(None if body is None else Run(body, body.packed, start, STILL, NO_HEAD))
+    return _channels(runs, duration, sample_rate, step, names, 1.0, AT_REST, 1.0)
+
+
+def simulate_pulls(
+    pulls: Sequence[tuple[Robot, Effects, Scenario]], sample_rate: float, step: float, names: Sequence[str]
+) -> np.ndarray:
+    """Integrate pulls of one length, on wheels that turn alike; to the last bit what ``simulate`` gives of each.
+
+    Parameters
+    ----------
+    pulls : sequence of (Robot, mapping of effect id to mapping of parameter to value, Scenario)
+    sample_rate : float [Hz]
+    step : float [s]
+        Upper limit of the integration step.
+    names : sequence of str
+        Of the channels that are kept.
+
+    Returns
+    -------
+    (k, n, c) float
+        NaN all through where a state was no longer finite, or the robot cannot have its effects.
+    """
+    runs: list[Run | None] = []
+    for robot, effects, scenario in pulls:
+        try:
+            runs.append(prepared(robot, scenario, effects))
+        except InputError:  # a mast heavier than the robot
+            runs.append(None)
+    one = pulls[0][2]
+    return _channels(runs, one.duration, sample_rate, step, names, one.head_step, one.wheel_rates, one.wheel_rate_step)
+
+
+def _channels(
+    runs: Sequence[Run | None],
+    duration: float,
+    sample_rate: float,
+    step: float,
+    names: Sequence[str],
+    head_step: float,
+    rates: np.ndarray,
+    rate_step: float,
+) -> np.ndarray:
+    """What the sensors read of runs, (k, n, c) float."""
+    step, stride, samples = grid(duration, sample_rate, step)
+    read = tuple(names)
+    if any(one is not None and one.body.read_otherwise for one in runs):
+        read = tuple(dict.fromkeys((*names, *SENSED)))
+    out = np.full((len(runs), samples, len(read)), np.nan)
     kept = np.array([layout.OUTPUTS.index(name) for name in read])
-    groups: dict[tuple[int, bool], list[int]] = {}
-    for index, body in enumerate(bodies):
-        if body is None:
-            out[index] = np.nan
-        else:
-            groups.setdefault((id(body.floor), body.beyond), []).append(index)
-    for members in groups.values():
-        own = list(dict.fromkeys(body for index in members if (body := bodies[index]) is not None))
-        place = {id(body): number for number, body in enumerate(own)}
-        run_many(
-            np.array([body.packed for body in own]),
-            np.array([body.e for body in own]),
-            own[0].floor,
-            np.array([body.mast for body in own]),
-            np.array([low_pass_coefficients(body.robot.accelerometer.bandwidth_hz, step) for body in own]),
-            np.array([body.rest for body in own]),
-            np.array([(index, place[id(bodies[index])]) for index in members]),
-            np.array([releases[index].away for index in members]),
-            np.array([releases[index].moving for index in members]),
-            step,
-            (samples - 1) * stride,
-            stride,
-            True if own[0].beyond else None,
-            kept,
-            out,
-        )
-    for result, body in zip(out, bodies, strict=True):
-        if body is not None and np.any(body.robot.accelerometer.gain != 1.0):
-            result *= np.append(body.robot.accelerometer.gain, np.ones(_OUTPUTS - 3))[kept]
+    there = [index for index, one in enumerate(runs) if one is not None]
+    possible = [one for one in runs if one is not None]
+    if possible:
+        out[there] = run_together(possible, head_step, rates, rate_step, step, stride, samples, kept)
     time = np.arange(samples) / sample_rate
-    for result, body in zip(out, bodies, strict=True):
-        if body is not None and body.read_otherwise:
+    for result, one in zip(out, runs, strict=True):
+        if one is None:
+            continue
+        gain = one.body.robot.accelerometer.gain
+        if np.any(gain != 1.0):
+            result *= np.append(gain, np.ones(len(layout.OUTPUTS) - 3))[kept]
+        if one.body.read_otherwise:
             channels = {name: result[:, index] for index, name in enumerate(read)}
-            result[:] = np.column_stack(list(sensed(time, channels, body.active).values()))
+            result[:] = np.column_stack(list(sensed(time, channels, one.body.active).values()))
     return out if read == tuple(names) else out[:, :, [read.index(name) for name in names]]
 
 
@@ -115,34 +147,3 @@ def _bodies(releases: Sequence[Release]) -> list[Body | None]:
                 body = None
         found.append(body)
     return found
-
-
-@kernel
-def run_many(p, e, floor, mast, low_pass, rest, which, away, moving, step, steps, stride, beyond, kept, out):
-    """``run`` for every release.
-
-    Parameters
-    ----------
-    p, e, mast, low_pass, rest : (m, ...) float
-        Of each body, as ``run`` and ``let_go`` take them.
-    which : (k, 2) int
-        Place in ``out``, and body, of each release.
-    away, moving : (k, 12) and (k, 8) float
-    kept : (c,) int
-        Outputs that are wanted.
-    out : (l, n, c) float
-        Filled; NaN where a state was no longer finite.
-    """
-    pulling, head, reference = np.zeros(PULLING), np.zeros(1), np.zeros((1, 2))
-    whole = np.empty((out.shape[1], _OUTPUTS))
-    for k in range(len(which)):
-        place, b = which[k]
-        start = np.zeros(_START)
-        let_go(p[b], rest[b], away[k], moving[k], start)
-        failed = run(
-            p[b], e[b], floor, mast[b], pulling, head, 1.0, reference, 1.0, start, step, steps, stride,
-            low_pass[b], whole, beyond,
-        )  # fmt: skip
-        for n in range(out.shape[1]):
-            for c in range(len(kept)):
-                out[place, n, c] = whole[n, kept[c]] if failed < 0 else np.nan

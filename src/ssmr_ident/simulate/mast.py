@@ -62,7 +62,7 @@ def accelerate_with_mast(inverse, e, sway, sway_rate, force, torque, gravity, ou
     force, torque : (float, float, float) [N], [N m]
         On the body with the mast locked, weight included.
     gravity : (float, float, float) [m/s^2]
-    out : (8,) float
+    out : (1, 8) float
         Filled: CoM [m/s^2], rates [rad/s^2], sway [m/s^2].
     """
     mass = e[MAST_MASS]
@@ -80,4 +80,4 @@ def accelerate_with_mast(inverse, e, sway, sway_rate, force, torque, gravity, ou
         total = 0.0
         for k in range(8):
             total += inverse[j, k] * right[k]
-        out[j] = total
+        out[0, j] = total

@@ -2,30 +2,28 @@
 
 from __future__ import annotations
 
-import math
-
 from ssmr_ident.core.kernel import kernel
+from ssmr_ident.core.lanes import where
 
 PULLED, CABLE_K, CABLE_D, PULL_X, PULL_Y, HOOK_X, HOOK_Y, HOOK_Z, HELD, MOBILITY = range(10)
 PULLING = 10
 
 
 @kernel
-def head_motion(head, head_step, t):
-    """Position [m] and speed [m/s] of the head at time t [s]: straight between its samples, at rest after the end."""
-    last = head.shape[0] - 1
+def head_motion(head, last, head_step, t):
+    """Position [m] and speed [m/s] of the head at time t [s]: straight between its samples, at rest after the last."""
     position = t / head_step
     k = min(int(position + 1e-9), last)
+    rate = (head[min(k + 1, last)] - head[k]) / head_step
     if k == last:
-        return head[last], 0.0
-    rate = (head[k + 1] - head[k]) / head_step
+        return head[k], rate
     return head[k] + (position - k) * (head[k + 1] - head[k]), rate
 
 
 @kernel
-def hook_position(pulling, x, y, yaw, hx, hy):
-    """Where the hook is along the direction of pull [m]; (hx, hy) is the hook along the heading axes [m]."""
-    cos, sin = math.cos(yaw), math.sin(yaw)
+def hook_position(pulling, x, y, sin, cos, hx, hy):
+    """Where the hook is along the direction of pull [m]; sine and cosine are those of yaw, and (hx, hy) is the hook
+    along the heading axes [m]."""
     return pulling[PULL_X] * (x + cos * hx - sin * hy) + pulling[PULL_Y] * (y + sin * hx + cos * hy)
 
 
@@ -49,4 +47,4 @@ def cable_tension(pulling, head, head_rate, hook, hook_rate, last, half):
     share = pulling[CABLE_D] * pulling[MOBILITY] * half
     tension = pulling[CABLE_K] * stretch + pulling[CABLE_D] * (head_rate - hook_rate)
     tension = (tension + share * last) / (1.0 + share)
-    return tension if tension > 0.0 and stretch >= 0.0 else 0.0
+    return where((tension > 0.0) & (stretch >= 0.0), tension, 0.0)

@@ -147,13 +147,13 @@ def _run(
         element_force(x, v, hidden, stiffness, 1.0, 1.0, True, e) + _unlisted(x, v, 0.0, 1.0, free) if beside else 0.0
     )
     first = (force[0] - damping * v - stiffness * x - extra) / body
-    history = np.full(4, first)
+    history = np.full((1, 4), first)
     steps = (out.shape[0] - 1) * every
     for n in range(steps + 1):
         inertial = force[n] - damping * v - stiffness * x - extra
         if riding:
             inertial += pull_y * y + pull_w * w
-        acceleration = filter_step(history, inertial / body, low_pass)
+        acceleration = filter_step(history, 0, inertial / body, low_pass)
         if n % every == 0:
             row = out[n // every]
             row[0], row[1], row[2] = x, v, acceleration

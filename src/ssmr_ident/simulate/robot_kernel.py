@@ -13,9 +13,8 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from ssmr_ident.core.kernel import kernel
+from ssmr_ident.core.lanes import anywhere, first, lanewise, space, where
 from ssmr_ident.physics import slots
 from ssmr_ident.physics.effects import (
     load_sensitive_friction,
@@ -88,31 +87,32 @@ _CUBIC, _KNEE, _QUADRATIC = slots.CUBIC, slots.KNEE_SHARE, slots.QUADRATIC
 _FRICTION, _ALPHA = slots.FRICTION_FORCE, slots.ALPHA
 _RELAXATION, _GAP, _LIFT, _CORIOLIS = slots.RELAXATION_STIFFNESS, slots.GAP, slots.LIFT, slots.CORIOLIS
 _FREE, _TERMS = slots.UNLISTED, len(unlisted.TERMS)
-_stribeck, _load_law, _rolling = (
-    stribeck.coefficient,
-    load_sensitive_friction.coefficient,
-    rolling_resistance.force,
-)
+_stribeck, _load_law = stribeck.coefficient, lanewise(load_sensitive_friction.coefficient)
+_rolling = rolling_resistance.force
 _belt_force, _lifted, _unlisted = motor_belt.force, lift_effect.load, unlisted.force
 
 
 @kernel
 def run(
-    p, e, floor, mast, pulling, head, head_step, reference, reference_step, start, step, steps, stride, low_pass, out,
-    beyond,
+    p, e, floor, mast, pulling, head, head_last, head_step, reference, reference_step, start, step, steps, stride,
+    low_pass, out, beyond,
 ):  # fmt: skip
     """Integrate ``steps`` steps and store every ``stride``-th state in ``out``.
+
+    All arrays but ``floor`` and ``reference`` may hold lanes (``core.lanes``): as many robots at once then, whose
+    effects are on and off alike, and whose wheels are on the same sides.
 
     Parameters
     ----------
     p : (PARAMETERS,) float
     e : (SLOTS,) float
         Effects.
-    floor : (n, n) float [m]
+    floor : (n, n) float [m], or None
+        None where nothing acts that makes a floor uneven.
     mast : (8, 8) float
         Inverse mass matrix of body and swaying mast; not used while the mast is stiff.
     pulling : (PULLING,) float
-    head : (m,) float [m]
+    head : (head_last + 1,) float [m]
         Position of the pulling head at multiples of ``head_step`` [s].
     reference : (k, 2) float [rad/s]
         Wanted rates of the left and right wheels at multiples of ``reference_step`` [s].
@@ -128,31 +128,33 @@ def run(
 
     Returns
     -------
-    int
+    float
         The step at which a state was no longer finite, or -1.
     """
     mass, gravity = p[MASS], p[GRAVITY_G]
     kx, ky, kz, dx, dy, dz = p[KX], p[KY], p[KZ], p[DX], p[DY], p[DZ]
     patch, radius, lambda_max, gain = p[PATCH_MASS], p[RADIUS], p[LAMBDA_MAX], p[MOTOR_GAIN]
     coupling, drag_share, nominal_load = p[SLIP_COUPLING], p[RELEASE_DRAG], 0.25 * p[MASS] * p[GRAVITY_G]
-    sliding_speed, together = p[SLIDING_SPEED], p[SLIDING_SPEED] > 0.0
-    inv, tensor = p[INVERSE_INERTIA : INVERSE_INERTIA + 9], p[INERTIA : INERTIA + 9]
+    sliding_speed, together = p[SLIDING_SPEED], first(p[SLIDING_SPEED]) > 0.0
+    inv, tensor = INVERSE_INERTIA, INERTIA
     beside = remembers = patterned = rough = falling = load_law = swaying = stretching = lift = smooth = pulled = (
         held
     ) = False
     coriolis = rolling = 0.0
     if beyond is not None:
-        beside = (
-            e[_CUBIC] != 0.0 or e[_KNEE] != 0.0 or e[_QUADRATIC] != 0.0 or e[_FRICTION] != 0.0 or e[_ALPHA] != 1.0
-            or e[_RELAXATION] != 0.0 or e[_GAP] != 0.0
-        )  # fmt: skip
-        remembers = e[_FRICTION] != 0.0 or e[_ALPHA] != 1.0 or e[_RELAXATION] != 0.0
-        patterned, rough = e[_JOINT_DEPTH] != 0.0 or e[_ECCENTRICITY] != 0.0, e[_ROUGHNESS] != 0.0
-        falling, load_law = e[KINETIC_SHARE] != 1.0, e[LOAD_EXPONENT] != 0.0
-        swaying, stretching = math.isfinite(e[MAST_HZ]), math.isfinite(e[BELT_STIFFNESS])
-        lift, coriolis, rolling = e[_LIFT] > 0.5, e[_CORIOLIS], e[ROLLING]
-        smooth = bool(np.any(e[_FREE : _FREE + _TERMS] != 0.0))
-        pulled, held = pulling[PULLED] > 0.5, pulling[HELD] > 0.5
+        remembers = first(e[_FRICTION]) != 0.0 or first(e[_ALPHA]) != 1.0 or first(e[_RELAXATION]) != 0.0
+        beside = remembers or (
+            first(e[_CUBIC]) != 0.0 or first(e[_KNEE]) != 0.0 or first(e[_QUADRATIC]) != 0.0 or first(e[_GAP]) != 0.0
+        )
+        if floor is not None:
+            patterned, rough = e[_JOINT_DEPTH] != 0.0 or e[_ECCENTRICITY] != 0.0, e[_ROUGHNESS] != 0.0
+        falling, load_law = first(e[KINETIC_SHARE]) != 1.0, first(e[LOAD_EXPONENT]) != 0.0
+        swaying, stretching = math.isfinite(first(e[MAST_HZ])), math.isfinite(first(e[BELT_STIFFNESS]))
+        lift, coriolis, rolling = first(e[_LIFT]) > 0.5, e[_CORIOLIS], e[ROLLING]
+        for term in range(_TERMS):
+            smooth = smooth or first(e[_FREE + term]) != 0.0
+        pulled, held = first(pulling[PULLED]) > 0.5, first(pulling[HELD]) > 0.5
+    turning_back, coupled, rolls = first(coriolis) != 0.0, first(coupling) != 0.0, first(rolling) != 0.0
     uneven, share_x_gap = patterned or rough, e[GAP_SHARE_X]
 
     x, y, z, roll, pitch, yaw = start[0], start[1], start[2], start[3], start[4], start[5]
@@ -162,40 +164,43 @@ def run(
     au = av = aw = bx = by = bz = 0.0  # accelerations of the last step
     roll_rate = pitch_rate = yaw_rate = 0.0
 
-    deflection = np.empty((4, 2))
+    deflection = space(p, 4, 2)
     for i in range(4):
         deflection[i, 0], deflection[i, 1] = start[14 + 2 * i], start[15 + 2 * i]
-    belt, belt_rate, belt_pull = np.zeros(2), np.zeros(2), np.zeros(2)
+    belt = space(p, 3, 2)  # length, its rate, and pull of left and right
     if stretching:
-        take_up(p, e[BELT_STIFFNESS], start, deflection, belt, belt_rate)
-    contact, slip = np.zeros((4, 2)), np.zeros((4, 2))  # velocities of contact points, and of hubs over them
-    sliding = np.zeros((4, 2), dtype=np.bool_)
-    hidden = np.zeros((12, STATES))  # of x, y, z of the first wheel, then of the next
+        take_up(p, e[BELT_STIFFNESS], start, deflection, belt)
+    contact, slip = space(p, 4, 2), space(p, 4, 2)  # velocities of contact points, and of hubs over them
+    sliding = space(p, 4, 2)  # 1 where a contact slides
+    hidden = space(p, 12, STATES)  # of x, y, z of the first wheel, then of the next
     law = inner_slots(e)
     f = _FREE
     free = (
         e[f], e[f + 1], e[f + 2], e[f + 3], e[f + 4], e[f + 5], e[f + 6], e[f + 7], e[f + 8], e[f + 9], e[f + 10],
         e[f + 11], e[f + 12], e[f + 13], 0.0, 0.0, 0.0, e[f + 17],
     )  # fmt: skip
-    if beside and start[LOADED] != 0.0:
+    if beside and anywhere(start[LOADED] != 0.0):
         for i in range(12):
             pressed = start[LOADED + 1 + i // 3] if i % 3 == 2 else deflection[i // 3, i % 3]
             hidden[i, 0], hidden[i, 1], hidden[i, 2] = element_loaded(pressed, start[LOADED], i % 3 < 2, law)
-    arm, load, path, ground_rate = np.zeros((4, 3)), np.zeros(4), np.zeros(4), np.zeros(4)
-    sway, sway_rate, sway_acceleration = np.zeros(2), np.zeros(2), np.zeros(2)
-    sway[0], sway[1], sway_rate[0], sway_rate[1] = start[22], start[23], start[24], start[25]
-    solved = np.zeros(8)
-    history = np.zeros((3, 4))  # of the accelerometer's low-pass: u', u'', y', y'' per axis
+    arm, load, path, ground_rate = space(p, 4, 3), space(p, 1, 4), space(p, 1, 4), space(p, 1, 4)
+    sway = space(p, 3, 2)  # of the mast, its rate and its acceleration
+    sway[0, 0], sway[0, 1], sway[1, 0], sway[1, 1] = start[22], start[23], start[24], start[25]
+    solved = space(p, 1, 8)
+    history = space(p, 3, 4)  # of the accelerometer's low-pass: u', u'', y', y'' per axis
     decay = math.exp(-gain * step)
 
     # where the hook stands at rest, so that the cable starts without slack
     hook_start, tension_last = 0.0, 0.0
     if pulled:
-        hx, hy, _ = _to_heading(roll, pitch, pulling[HOOK_X], pulling[HOOK_Y], pulling[HOOK_Z])
-        hook_start = hook_position(pulling, x, y, yaw, hx, hy)
+        sr, cr = sin_cos(roll)
+        sp, cp = sin_cos(pitch)
+        syaw, cyaw = sin_cos(yaw)
+        a, b, c = pulling[HOOK_X], pulling[HOOK_Y], pulling[HOOK_Z]
+        hook_start = hook_position(pulling, x, y, syaw, cyaw, cp * a + sp * sr * b + sp * cr * c, cr * b - sr * c)
     reference_last = reference.shape[0] - 1
 
-    row = 0
+    row, failed = 0, -1.0
     for n in range(steps + 1):
         t = n * step
         # velocity at this whole step
@@ -210,24 +215,24 @@ def run(
         fx, fy, fz = 0.0, 0.0, 0.0
         tx, ty, tz = 0.0, 0.0, 0.0
         any_sliding = 0.0
-        belt_pull[0] = belt_pull[1] = 0.0
+        belt[2, 0] = belt[2, 1] = 0.0
         cyaw, syaw = 1.0, 0.0
         if uneven or pulled:
             syaw, cyaw = sin_cos(yaw)
         for i in range(4):
             a, b, c = p[POINTS + 3 * i], p[POINTS + 3 * i + 1], p[POINTS + 3 * i + 2]
-            side = 0 if b > 0.0 else 1
+            side = 0 if first(b) > 0.0 else 1
             rx, ry, rz = cp * a + r01 * b + r02 * c, cr * b + r12 * c, -sp * a + r21 * b + r22 * c
             arm[i, 0], arm[i, 1], arm[i, 2] = rx, ry, rz
             hub_x, hub_y, hub_z = ue + oy * rz - oz * ry, ve + oz * rx - ox * rz, we + ox * ry - oy * rx
             rate = rate_left if side == 0 else rate_right
             rim = radius * rate
             depth, sinking = -(z + rz), -hub_z
-            if uneven:
+            if floor is not None and uneven:
                 angle = angle_left if side == 0 else angle_right
                 level, change = 0.0, 0.0
                 if patterned:
-                    level, change = floor_height(law, i, path[i], contact_speed(hub_x, hub_y), angle, rate)
+                    level, change = floor_height(law, i, path[0, i], contact_speed(hub_x, hub_y), angle, rate)
                 if rough:
                     height, climbing = rough_height(
                         floor, x + cyaw * rx - syaw * ry, y + syaw * rx + cyaw * ry,
@@ -235,20 +240,20 @@ def run(
                     )  # fmt: skip
                     level, change = level + height, change + climbing
                 depth, sinking = depth + level, sinking + change
-                ground_rate[i] = change
+                ground_rate[0, i] = change
             normal = kz * depth + dz * sinking
             if beside:
                 kept = hidden[3 * i + 2, 0], hidden[3 * i + 2, 1], hidden[3 * i + 2, 2]
                 normal += element_force(depth, sinking, kept, kz, kz / ky, 0.0, False, law)
             if lift:
                 normal = _lifted(normal, depth)
-            load[i] = normal
+            load[0, i] = normal
             weight = max(normal, 0.0) * p[GRIPPING + i]
             slip[i, 0], slip[i, 1] = hub_x - rim, hub_y
             if stretching:
-                slip[i, 0] -= belt_rate[side]
+                slip[i, 0] -= belt[1, side]
             share_x, share_y = 1.0, 1.0
-            if coupling != 0.0:
+            if coupled:
                 if together:
                     share_x = combined_share(rim, slip[i, 0], hub_y, lambda_max)
                     share_y = share_x
@@ -285,24 +290,25 @@ def run(
                     (deflection[i, 0], deflection[i, 1]), (contact[i, 0], contact[i, 1]), (slip[i, 0], hub_y),
                     (beside_x, beside_y), (kx, ky), (dx, dy), patch, mu_s * share_x * weight, step,
                 )  # fmt: skip
-                sliding[i, 0] = sliding[i, 1] = slides
+                sliding[i, 0] = sliding[i, 1] = where(slides, 1.0, 0.0)
                 contact[i, 0], contact[i, 1] = contact_x, contact_y
             else:
                 limit, grip = mu_s * share_x * weight, mu_k * share_x * weight
-                sliding[i, 0], contact[i, 0], force_x = contact_force(
-                    deflection[i, 0], sliding[i, 0], contact[i, 0], slip[i, 0], beside_x, kx, dx, patch,
+                slides, contact[i, 0], force_x = contact_force(
+                    deflection[i, 0], sliding[i, 0] != 0.0, contact[i, 0], slip[i, 0], beside_x, kx, dx, patch,
                     limit, grip, release * grip, step,
                 )  # fmt: skip
+                sliding[i, 0] = where(slides, 1.0, 0.0)
                 limit, grip = mu_s * share_y * weight, mu_k * share_y * weight
-                sliding[i, 1], contact[i, 1], force_y = contact_force(
-                    deflection[i, 1], sliding[i, 1], contact[i, 1], hub_y, beside_y, ky, dy, patch,
+                slides, contact[i, 1], force_y = contact_force(
+                    deflection[i, 1], sliding[i, 1] != 0.0, contact[i, 1], hub_y, beside_y, ky, dy, patch,
                     limit, grip, release * grip, step,
                 )  # fmt: skip
-            if sliding[i, 0] or sliding[i, 1]:
-                any_sliding += 1.0
+                sliding[i, 1] = where(slides, 1.0, 0.0)
+            any_sliding += max(sliding[i, 0], sliding[i, 1])
             if stretching:
-                belt_pull[side] += force_x
-            if rolling != 0.0 and rim != 0.0:
+                belt[2, side] += force_x
+            if rolls and anywhere(rim != 0.0):
                 force_x += _rolling(weight, hub_x, rolling)
             fx += force_x
             fy += force_y
@@ -313,11 +319,12 @@ def run(
 
         tension, head_now = 0.0, 0.0
         if pulled:
-            head_now, head_rate = head_motion(head, head_step, t)
+            head_now, head_rate = head_motion(head, head_last, head_step, t)
             pull_x, pull_y = pulling[PULL_X], pulling[PULL_Y]
             along_x, along_y = cyaw * pull_x + syaw * pull_y, -syaw * pull_x + cyaw * pull_y
-            hx, hy, hz = _to_heading(roll, pitch, pulling[HOOK_X], pulling[HOOK_Y], pulling[HOOK_Z])
-            hook = hook_position(pulling, x, y, yaw, hx, hy) - hook_start
+            a, b, c = pulling[HOOK_X], pulling[HOOK_Y], pulling[HOOK_Z]
+            hx, hy, hz = cp * a + r01 * b + r02 * c, cr * b + r12 * c, -sp * a + r21 * b + r22 * c
+            hook = hook_position(pulling, x, y, syaw, cyaw, hx, hy) - hook_start
             hook_rate = along_x * (ue + oy * hz - oz * hy) + along_y * (ve + oz * hx - ox * hz)
             tension = cable_tension(pulling, head_now, head_rate, hook, hook_rate, tension_last, 0.5 * step)
             tension_last = tension
@@ -332,34 +339,34 @@ def run(
 
         # accelerations; torque and rates in body axes
         body_x, body_y, body_z = cp * tx - sp * tz, r01 * tx + cr * ty + r21 * tz, r02 * tx + r12 * ty + r22 * tz
-        if coriolis != 0.0:
-            lx = tensor[0] * pe + tensor[1] * qe + tensor[2] * re
-            ly = tensor[3] * pe + tensor[4] * qe + tensor[5] * re
-            lz = tensor[6] * pe + tensor[7] * qe + tensor[8] * re
+        if turning_back:
+            lx = p[tensor + 0] * pe + p[tensor + 1] * qe + p[tensor + 2] * re
+            ly = p[tensor + 3] * pe + p[tensor + 4] * qe + p[tensor + 5] * re
+            lz = p[tensor + 6] * pe + p[tensor + 7] * qe + p[tensor + 8] * re
             body_x -= coriolis * (qe * lz - re * ly)
             body_y -= coriolis * (re * lx - pe * lz)
             body_z -= coriolis * (pe * ly - qe * lx)
         if swaying:
             ahead = 0.5 * step
-            sway_ahead = sway_rate[0] + ahead * sway_acceleration[0], sway_rate[1] + ahead * sway_acceleration[1]
+            sway_ahead = sway[1, 0] + ahead * sway[2, 0], sway[1, 1] + ahead * sway[2, 1]
             fz_all = fz - mass * gravity
             forces = cp * fx - sp * fz_all, r01 * fx + cr * fy + r21 * fz_all, r02 * fx + r12 * fy + r22 * fz_all
             pull_down = sp * gravity, -r21 * gravity, -r22 * gravity  # gravity along the body axes
             accelerate_with_mast(
-                mast, e, (sway[0], sway[1]), sway_ahead, forces, (body_x, body_y, body_z), pull_down, solved
+                mast, e, (sway[0, 0], sway[0, 1]), sway_ahead, forces, (body_x, body_y, body_z), pull_down, solved
             )
-            au = cp * solved[0] + r01 * solved[1] + r02 * solved[2]
-            av = cr * solved[1] + r12 * solved[2]
-            aw = -sp * solved[0] + r21 * solved[1] + r22 * solved[2]
-            bx, by, bz = solved[3], solved[4], solved[5]
-            sway_acceleration[0], sway_acceleration[1] = solved[6], solved[7]
+            au = cp * solved[0, 0] + r01 * solved[0, 1] + r02 * solved[0, 2]
+            av = cr * solved[0, 1] + r12 * solved[0, 2]
+            aw = -sp * solved[0, 0] + r21 * solved[0, 1] + r22 * solved[0, 2]
+            bx, by, bz = solved[0, 3], solved[0, 4], solved[0, 5]
+            sway[2, 0], sway[2, 1] = solved[0, 6], solved[0, 7]
         else:
             au, av, aw = fx / mass, fy / mass, fz / mass - gravity
-            bx = inv[0] * body_x + inv[1] * body_y + inv[2] * body_z
-            by = inv[3] * body_x + inv[4] * body_y + inv[5] * body_z
-            bz = inv[6] * body_x + inv[7] * body_y + inv[8] * body_z
+            bx = p[inv + 0] * body_x + p[inv + 1] * body_y + p[inv + 2] * body_z
+            by = p[inv + 3] * body_x + p[inv + 4] * body_y + p[inv + 5] * body_z
+            bz = p[inv + 6] * body_x + p[inv + 7] * body_y + p[inv + 8] * body_z
         force_u, force_v, force_w = au, av, aw + gravity
-        if coriolis != 0.0:
+        if turning_back:
             au += coriolis * oz * ve
             av -= coriolis * oz * ue
 
@@ -377,21 +384,23 @@ def run(
                 history[0, j] = ax - new * (ax + sp * gravity)
                 history[1, j] = ay - new * (ay - r21 * gravity)
                 history[2, j] = az - new * (az - r22 * gravity)
-        ax = filter_step(history[0], ax, low_pass)
-        ay = filter_step(history[1], ay, low_pass)
-        az = filter_step(history[2], az, low_pass)
+        ax = filter_step(history, 0, ax, low_pass)
+        ay = filter_step(history, 1, ay, low_pass)
+        az = filter_step(history, 2, az, low_pass)
 
         if n % stride == 0:
-            o = out[row]
-            o[0], o[1], o[2], o[3], o[4], o[5] = ax, ay, az, pe, qe, re
-            o[6], o[7], o[8], o[9], o[10], o[11] = x, y, z, roll, pitch, yaw
-            o[12], o[13], o[14], o[15], o[16], o[17] = ue, ve, tension, head_now, rate_left, rate_right
-            o[18] = any_sliding
+            out[row, 0], out[row, 1], out[row, 2], out[row, 3], out[row, 4], out[row, 5] = ax, ay, az, pe, qe, re
+            out[row, 6], out[row, 7], out[row, 8], out[row, 9] = x, y, z, roll
+            out[row, 10], out[row, 11], out[row, 12], out[row, 13] = pitch, yaw, ue, ve
+            out[row, 14], out[row, 15], out[row, 16], out[row, 17] = tension, head_now, rate_left, rate_right
+            out[row, 18] = any_sliding
             for i in range(4):
-                o[19 + i] = load[i]
+                out[row, 19 + i] = load[0, i]
             row += 1
-            if not (math.isfinite(x) and math.isfinite(z) and math.isfinite(yaw) and math.isfinite(az)):
-                return n
+            finite = math.isfinite(x) & math.isfinite(z) & math.isfinite(yaw) & math.isfinite(az)
+            failed = where(finite | (failed >= 0.0), failed, 1.0 * n)
+            if not anywhere(failed < 0.0):
+                return failed
 
         # kick: to the next half step (half a step at the very start)
         kick = step if n > 0 else 0.5 * step
@@ -399,29 +408,29 @@ def run(
         wx, wy, wz = wx + kick * bx, wy + kick * by, wz + kick * bz
         if swaying:
             for j in range(2):
-                sway_rate[j] += kick * sway_acceleration[j]
-                sway[j] += step * sway_rate[j]
+                sway[1, j] += kick * sway[2, j]
+                sway[0, j] += step * sway[1, j]
         if stretching:
             for j in range(2):
                 # the tire pulls the rim along with minus its force on the hub; a light rim asks for the implicit form
-                pushed = belt_rate[j] - kick / e[RIM_MASS] * (
-                    belt_pull[j] - _belt_force(belt[j], 0.0, e[BELT_STIFFNESS], 0.0)
+                pushed = belt[1, j] - kick / e[RIM_MASS] * (
+                    belt[2, j] - _belt_force(belt[0, j], 0.0, e[BELT_STIFFNESS], 0.0)
                 )
-                belt_rate[j] = pushed / (1.0 + kick * e[BELT_DAMPING] / e[RIM_MASS])
-                belt[j] += step * belt_rate[j]
+                belt[1, j] = pushed / (1.0 + kick * e[BELT_DAMPING] / e[RIM_MASS])
+                belt[0, j] += step * belt[1, j]
         # carcasses follow the hubs half a step on
         ox, oy, oz = cp * wx + r01 * wy + r02 * wz, cr * wy + r12 * wz, -sp * wx + r21 * wy + r22 * wz
         for i in range(4):
             rx, ry, rz = arm[i, 0], arm[i, 1], arm[i, 2]
-            side = 0 if p[POINTS + 3 * i + 1] > 0.0 else 1
+            side = 0 if first(p[POINTS + 3 * i + 1]) > 0.0 else 1
             hub_x, hub_y = u + oy * rz - oz * ry, v + oz * rx - ox * rz
             slip_x = hub_x - radius * (rate_left if side == 0 else rate_right)
             if stretching:
-                slip_x -= belt_rate[side]
+                slip_x -= belt[1, side]
             deflection[i, 0] += step * (slip_x - contact[i, 0])
             deflection[i, 1] += step * (hub_y - contact[i, 1])
             if uneven:
-                path[i] += step * contact_speed(hub_x, hub_y)
+                path[0, i] += step * contact_speed(hub_x, hub_y)
             if remembers:
                 for axis in range(3):
                     element = 3 * i + axis
@@ -431,7 +440,7 @@ def run(
                     elif axis == 1:
                         kept = element_next(kept, hub_y - contact[i, 1], step, True, law)
                     else:
-                        kept = element_next(kept, ground_rate[i] - (w + ox * ry - oy * rx), step, False, law)
+                        kept = element_next(kept, ground_rate[0, i] - (w + ox * ry - oy * rx), step, False, law)
                     hidden[element, 0], hidden[element, 1], hidden[element, 2] = kept
         # drift: pose rates with the angles half a step ahead
         sr, cr = sin_cos(roll + 0.5 * step * roll_rate)
@@ -451,12 +460,4 @@ def run(
         angle_right += step * rate_right
         rate_left = reference[k, 0] + (rate_left - reference[k, 0]) * decay
         rate_right = reference[k, 1] + (rate_right - reference[k, 1]) * decay
-    return -1
-
-
-@kernel
-def _to_heading(roll, pitch, a, b, c):
-    """A body vector along the heading axes: Ry(pitch)·Rx(roll)·(a, b, c)."""
-    cr, sr, cp, sp = math.cos(roll), math.sin(roll), math.cos(pitch), math.sin(pitch)
-    across = sr * b + cr * c
-    return cp * a + sp * across, cr * b - sr * c, -sp * a + cp * across
+    return failed

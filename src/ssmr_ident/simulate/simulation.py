@@ -34,6 +34,7 @@ from ssmr_ident.simulate.robot_kernel import run
 from ssmr_ident.simulate.scenarios import Scenario
 from ssmr_ident.simulate.sensed import sensed
 from ssmr_ident.simulate.step import choose_step
+from ssmr_ident.simulate.together import Run
 
 _UNITS = ["m/s^2"] * 3 + ["rad/s"] * 3 + ["m"] * 3 + ["rad"] * 3 + ["m/s"] * 2
 _UNITS += ["N", "m", "rad/s", "rad/s", "1"] + ["N"] * 4
@@ -108,32 +109,30 @@ def simulate(
     InputError
         An unknown effect or parameter.
     """
-    body = body_of(robot, effects or {})
+    one = prepared(robot, scenario, effects or {}, release_drag)
+    body = one.body
     if step is None:
         step = choose_step(body.robot, scenario, body.e).step
     step, stride, samples = grid(scenario.duration, sample_rate, step)
     out = np.empty((samples, len(k.OUTPUTS)))
-    pulling = _pulling(body.robot, scenario, body.active)
-    p = body.packed.copy()
-    p[k.RELEASE_DRAG] = release_drag
-    p[k.GRIPPING : k.GRIPPING + 4] = [float(i in scenario.wheels_gripping) for i in (1, 2, 3, 4)]
     failed = run(
-        p,
+        one.p,
         body.e,
-        body.floor,
+        body.uneven,
         body.mast,
-        pulling,
-        scenario.head if len(scenario.head) else np.zeros(1),
+        one.pulling,
+        one.head,
+        len(one.head) - 1,
         scenario.head_step,
         scenario.wheel_rates,
         scenario.wheel_rate_step,
-        body.start(scenario),
+        one.start,
         step,
         (samples - 1) * stride,
         stride,
         low_pass_coefficients(body.robot.accelerometer.bandwidth_hz, step),
         out,
-        True if body.beyond or pulling[PULLED] else None,
+        True if one.beyond else None,
     )
     if failed >= 0:
         raise SimulationError(
@@ -154,6 +153,22 @@ def grid(duration: float, sample_rate: float, step: float) -> tuple[float, int, 
     """The step itself, steps from sample to sample, and samples, for an upper limit of the step [s]."""
     stride = max(1, math.ceil(1.0 / (sample_rate * step) - 1e-9))
     return 1.0 / (sample_rate * stride), stride, round(duration * sample_rate)
+
+
+def prepared(robot: Robot, scenario: Scenario, effects: Effects, release_drag: float = 0.0) -> Run:
+    """What the loop takes of a scenario.
+
+    Raises
+    ------
+    InputError
+        An unknown effect or parameter, or a mast heavier than the robot.
+    """
+    body = body_of(robot, effects)
+    p = body.packed.copy()
+    p[k.RELEASE_DRAG] = release_drag
+    p[k.GRIPPING : k.GRIPPING + 4] = [float(i in scenario.wheels_gripping) for i in (1, 2, 3, 4)]
+    head = scenario.head if len(scenario.head) else np.zeros(1)
+    return Run(body, p, body.start(scenario), _pulling(body.robot, scenario, body.active), head)
 
 
 def _pulling(robot: Robot, scenario: Scenario, active: Effects) -> np.ndarray:

@@ -217,6 +217,7 @@ def _trial(whole: BodyDecay, kept: int, facts: _Facts) -> Trial:
         ("cable.",),
         quiet=True,
         many=many,
+        abreast=model is None,
         idle={**dict.fromkeys(SWAYING, ("flexible_mast",)), **dict.fromkeys(BRACE, ("wheel_lift",)), **OWN},
         even=BRACE,
         lined=bool(whole.record.lines),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -16,13 +16,14 @@ from ssmr_ident.identify.noise import AutoregressiveNoise
 from ssmr_ident.identify.robot_map import RobotBuilder
 from ssmr_ident.identify.trials.moments import lets_go, tightening
 from ssmr_ident.identify.trials.teeth import find_teeth
-from ssmr_ident.identify.trials.trial import Array, Course, Trial, Values
+from ssmr_ident.identify.trials.trial import Array, Asked, Course, Trial, Values
 from ssmr_ident.physics.rig import Block, block_from_parameters
 from ssmr_ident.physics.robot import Robot
 from ssmr_ident.physics.slots import Effects
 from ssmr_ident.session import Entry
 from ssmr_ident.signals.grid import even_samples
 from ssmr_ident.simulate.bench import compress_wheel, drag_wheel, pull_block
+from ssmr_ident.simulate.many import simulate_pulls
 from ssmr_ident.simulate.scenarios import Scenario, cable_properties, fixture_needed
 from ssmr_ident.simulate.simulation import simulate
 
@@ -61,9 +62,10 @@ counts (``Trial.uneven``): 12 mm make a misfit of 28 times a load cell's noise w
 POINTS = 1000
 """Samples at which a slack is looked for."""
 
-Force = Callable[[Values, Effects, Array, float, float | None], Array]
-"""``force(values, effects, head, step, inner)``: what the load cell reads, (n,) [N]; ``inner`` is the longest step of
-the integration, None for the simulator's own choice."""
+Head = tuple[Values, Effects, Array]
+Forces = Callable[[Sequence[Head], float, float | None], Array]
+"""``forces(asked, step, inner)``: what the load cell reads for each (values, effects, head), (k, n) [N], NaN where that
+cannot be simulated; ``inner`` is the longest step of the integration, None for the simulator's own choice."""
 
 QUICK = 2e-3
 """Integration step of fits [s]: averages of a pull without teeth then differ by 0.01 to 0.12 N rms from those at the
@@ -101,7 +103,7 @@ def pull_trial(measurement: Measurement, parameters: ParameterSet) -> Trial:
 def _trial(measurement: Measurement, parameters: ParameterSet, unseen: tuple[str, ...]) -> Trial:
     """A recording that does not depend on some parameters, whatever their values."""
     measured, travel, step, start = travelled(measurement)
-    force = force_model(measurement.entry, parameters, holds(measured, travel), unseen)
+    forces = force_model(measurement.entry, parameters, holds(measured, travel), unseen)
     elapsed = step * np.arange(len(travel))
     speed = float(np.polyfit(elapsed, travel, 1)[0])
     size = float(travel.max())
@@ -124,23 +126,24 @@ def _trial(measurement: Measurement, parameters: ParameterSet, unseen: tuple[str
         averages = signal[: count * block].reshape(count, block).mean(axis=1)[:, None]
         return share * (averages if teeth is None else teeth.ordered(averages))
 
-    def simulated(values: Values, effects: Effects, slack: float, inner: float | None = QUICK) -> Array:
-        try:
-            return force(values, effects, np.maximum(head - slack, 0.0), step, inner)[:-1]
-        except SimulationError:
-            return np.full(len(travel), np.nan)
-
-    def slack(nuisance: Array) -> float:
-        return float(np.clip(nuisance[0], 0.0, 0.5)) * size
+    def simulated(asked: Sequence[Asked], inner: float | None = QUICK) -> Array:
+        heads = [
+            (values, effects, np.maximum(head - float(np.clip(nuisance[0], 0.0, 0.5)) * size, 0.0))
+            for values, effects, nuisance in asked
+        ]
+        return forces(heads, step, inner)[:, :-1]
 
     def whole(values: Values, effects: Effects, nuisance: Array) -> Array:
-        return simulated(values, effects, slack(nuisance), None)[:, None]
+        return simulated([(values, effects, nuisance)], None)[0][:, None]
+
+    def many(asked: Sequence[Asked]) -> Array:
+        return np.array([averaged(one) for one in simulated(asked)])
 
     def run(values: Values, effects: Effects, nuisance: Array) -> Array:
-        return averaged(simulated(values, effects, slack(nuisance)))
+        return many([(values, effects, nuisance)])[0]
 
     def begin(values: Values, effects: Effects) -> Array:
-        tight = simulated(values, effects, 0.0)
+        tight = simulated([(values, effects, np.zeros(1))])[0]
         found = find_slack(measured[rising], travel[rising], tight[rising]) / size
         if not measurement.entry.wheel_rate_rad_s:
             return np.array([found])
@@ -173,6 +176,8 @@ def _trial(measurement: Measurement, parameters: ParameterSet, unseen: tuple[str
         searched=True,
         quiet=teeth is not None,
         jolt=(tightened + JOLT[0], tightened + JOLT[1]),
+        many=many,
+        abreast=swings,
         slides_from=float(times[lets_go(target / share)]) if swings and teeth is None else None,
     )
     return trial
@@ -214,33 +219,62 @@ def holds(force: Array, travel: Array) -> bool:
     return bool(gains[-1] > STILL_RISES * gains.max() > 0.0)
 
 
-def force_model(entry: Entry, parameters: ParameterSet, held: bool = False, unseen: tuple[str, ...] = ()) -> Force:
+def force_model(entry: Entry, parameters: ParameterSet, held: bool = False, unseen: tuple[str, ...] = ()) -> Forces:
     """The simulator of an entry's experiment; ``held`` says that a dragged wheel does not let go, and ``unseen`` which
     parameters a pull stays as the file has them in."""
     if "tire.stiffness_y_N_m" not in parameters:
         block = block_from_parameters(parameters)
-        return lambda values, effects, head, step, inner: pull_block(_block(block, values), head, step, effects)
+        return _each(lambda values, effects, head, step, inner: pull_block(_block(block, values), head, step, effects))
     builder = RobotBuilder.of(parameters)
     if entry.experiment == "vertical_compression":
-        return lambda values, effects, head, step, inner: compress_wheel(builder(values), head, step, effects=effects)
+        return _each(
+            lambda values, effects, head, step, inner: compress_wheel(builder(values), head, step, effects=effects)
+        )
     if entry.experiment == "wheel_drag":
         free = entry.free_normal and not held
-        return lambda values, effects, head, step, inner: drag_wheel(builder(values), head, step, free, effects, inner)
+        return _each(
+            lambda values, effects, head, step, inner: drag_wheel(builder(values), head, step, free, effects, inner)
+        )
 
-    def pulled(values: Values, effects: Effects, head: Array, step: float, inner: float | None) -> Array:
-        seen = {name: value for name, value in values.items() if name not in unseen}
-        return _pulled(builder(seen), entry, head, step, effects, inner)
+    def pulled(asked: Sequence[Head], step: float, inner: float | None) -> Array:
+        pulls = []
+        for values, effects, head in asked:
+            seen = {name: value for name, value in values.items() if name not in unseen}
+            pulls.append((builder(seen), effects, _scenario(entry, head, step)))
+        if inner is None:  # each has a step of its own
+            return np.array([_by_its_own_step(*one, step) for one in pulls])
+        longest = min(inner, FIXTURE_STEP) if pulls[0][2].held else inner
+        return simulate_pulls(pulls, 1.0 / step, longest, ("force",))[:, :, 0]
 
     return pulled
 
 
-def _pulled(robot: Robot, entry: Entry, head: Array, step: float, effects: Effects, inner: float | None) -> Array:
+def _by_its_own_step(robot: Robot, effects: Effects, scenario: Scenario, step: float) -> Array:
+    try:
+        return simulate(robot, scenario, 1.0 / step, effects=effects)["force"]
+    except SimulationError:
+        return np.full(len(scenario.head), np.nan)
+
+
+def _each(force: Callable[[Values, Effects, Array, float, float | None], Array]) -> Forces:
+    """Experiments that are quick, one after the other."""
+
+    def forces(asked: Sequence[Head], step: float, inner: float | None) -> Array:
+        found = []
+        for values, effects, head in asked:
+            try:
+                found.append(force(values, effects, head, step, inner))
+            except SimulationError:
+                found.append(np.full(len(head), np.nan))
+        return np.array(found)
+
+    return forces
+
+
+def _scenario(entry: Entry, head: Array, step: float) -> Scenario:
     stiffness, damping = cable_properties(entry.cable)
     rate = entry.wheel_rate_rad_s or 0.0
-    held = fixture_needed(entry.wheels_gripping, rate)
-    if held and inner is not None:
-        inner = min(inner, FIXTURE_STEP)
-    scenario = Scenario(
+    return Scenario(
         "pull",
         len(head) * step,
         head=head,
@@ -251,9 +285,8 @@ def _pulled(robot: Robot, entry: Entry, head: Array, step: float, effects: Effec
         cable_stiffness=stiffness,
         cable_damping=damping,
         wheel_rates=np.full((1, 2), rate),
-        held=held,
+        held=fixture_needed(entry.wheels_gripping, rate),
     )
-    return simulate(robot, scenario, 1.0 / step, step=inner, effects=effects)["force"]
 
 
 def _block(nominal: Block, values: Values) -> Block:

@@ -105,6 +105,8 @@ class Trial:
         How a channel's zero may drift, in its unit: columns of which it has a share of unit standard deviation.
     uneven : Trial or None
         The same recording of a robot that is not alike left and right, where this one takes it to be.
+    abreast : bool
+        ``many`` of a few costs hardly more than one.
     """
 
     name: str
@@ -136,6 +138,7 @@ class Trial:
     lined: bool = False
     drift: Array | None = None
     uneven: Trial | None = None
+    abreast: bool = False
 
     @property
     def step(self) -> float:
@@ -216,7 +219,7 @@ class Trial:
         return (
             self
             if of is None
-            else replace(self, run=of.run, begin=of.begin, course=of.course, blind=of.blind, uneven=None)
+            else replace(self, run=of.run, many=of.many, begin=of.begin, course=of.course, blind=of.blind, uneven=None)
         )
 
     def until(self, seconds: float) -> Trial:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 
+from ssmr_ident.core.exponential import exp
 from ssmr_ident.core.kernel import kernel
+from ssmr_ident.core.lanes import first, where
 from ssmr_ident.core.parameter import Parameter
 from ssmr_ident.physics.effect import Effect, Site, Sized
 
@@ -15,7 +17,7 @@ def force(z, v, friction, stiffness, rounding):
 
     z : float [m], v : float [m/s], friction : float [N], stiffness : float [N/m], rounding : float [m/s].
     """
-    if rounding != 0.0:
+    if first(rounding) != 0.0:
         return friction * math.tanh(v / rounding)
     return stiffness * z
 
@@ -26,14 +28,11 @@ def advance(z, v, step, friction, stiffness, slider):
 
     z : float [m], v : float [m/s], friction : float [N], stiffness : float [N/m], slider : float, 0 for Dahl's law.
     """
-    speed = abs(v)
-    if speed == 0.0:
-        return z
-    reach = friction / stiffness
-    if slider != 0.0:
+    speed, reach = abs(v), friction / stiffness
+    if first(slider) != 0.0:
         return min(max(z + v * step, -reach), reach)
-    end = math.copysign(reach, v)
-    return end + (z - end) * math.exp(-speed * step * stiffness / friction)
+    end = where(v > 0.0, reach, -reach)
+    return where(speed == 0.0, z, end + (z - end) * exp(-speed * step * stiffness / friction))
 
 
 EFFECT = Effect(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ssmr_ident.core.kernel import kernel
+from ssmr_ident.core.lanes import where
 from ssmr_ident.core.parameter import Parameter
 from ssmr_ident.physics.effect import Effect, Site, Sized
 
@@ -17,13 +18,9 @@ def force(s, stiffness, gap, rounding):
     half = 0.5 * gap
     width = rounding * gap
     beyond = abs(s) - half
-    if beyond <= -width:
-        taken = abs(s)
-    elif beyond >= width:
-        taken = half
-    else:
-        taken = abs(s) - (beyond + width) ** 2 / (4.0 * width)
-    return -stiffness * (taken if s >= 0.0 else -taken)
+    corner = abs(s) - (beyond + width) * (beyond + width) / (4.0 * width)
+    taken = where(beyond <= -width, abs(s), where(beyond >= width, half, corner))
+    return -stiffness * where(s >= 0.0, taken, -taken)
 
 
 EFFECT = Effect(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ssmr_ident.core.kernel import kernel
+from ssmr_ident.core.lanes import where
 from ssmr_ident.core.parameter import Parameter
 from ssmr_ident.physics.effect import Effect, Site, Sized
 
@@ -16,9 +17,8 @@ def force(s, k3):
 @kernel
 def beyond(s, stiffness, share, knee):
     """Further force [N] of a spring of slope (1 + share)·K beyond a knee; s, knee : float [m], stiffness K [N/m]."""
-    if s > knee:
-        return share * stiffness * (s - knee)
-    return share * stiffness * (s + knee) if s < -knee else 0.0
+    further = where(s > knee, s - knee, where(s < -knee, s + knee, 0.0))
+    return share * stiffness * further
 
 
 EFFECT = Effect(

@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
-import math
-
+from ssmr_ident.core.exponential import exp
 from ssmr_ident.core.kernel import kernel
+from ssmr_ident.core.lanes import lanewise
 from ssmr_ident.core.parameter import Parameter
 from ssmr_ident.physics.effect import Effect, Site
+
+
+@lanewise
+@kernel
+def _power(ratio, exponent):
+    return ratio * ratio if exponent == 2.0 else ratio**exponent
 
 
 @kernel
 def coefficient(mu_static, share, speed, width, exponent):
     """mu_s·(r + (1 - r)·exp(-(u/v_s)^δ)); speed u, width v_s : float [m/s], share r = mu_k/mu_s, exponent δ : float."""
-    ratio = speed / width
-    power = ratio * ratio if exponent == 2.0 else ratio**exponent
-    return mu_static * (share + (1.0 - share) * math.exp(-power))
+    return mu_static * (share + (1.0 - share) * exp(-_power(speed / width, exponent)))
 
 
 EFFECT = Effect(

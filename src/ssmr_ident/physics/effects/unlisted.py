@@ -8,6 +8,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from ssmr_ident.core.kernel import kernel
+from ssmr_ident.core.lanes import first, lanewise
 from ssmr_ident.core.parameter import Parameter
 from ssmr_ident.physics.effect import Effect, Site, Sized
 
@@ -39,6 +40,13 @@ _SLOW = 1e-3
 _TURN = 2.0 * math.pi
 
 
+@lanewise
+@kernel
+def _slowness(v):
+    """1/sqrt|v|, and finite at rest; v : float [m/s]."""
+    return (v * v + _SLOW * _SLOW) ** -0.25
+
+
 @kernel
 def force(s, v, t, ratio, c):
     """Σ c_i f_i(s, v, t) [N], what is in proportion to s alone times ``ratio``.
@@ -47,13 +55,13 @@ def force(s, v, t, ratio, c):
     since a spring is uneven by a share of its stiffness; c : (n,) float in the order of the parameters.
     """
     spring = c[1] * (abs(s - c[PLACE]) - abs(c[PLACE])) + c[2] * s * s + t * c[9] * s
-    if c[11] != 0.0 or c[12] != 0.0:
+    if first(c[11]) != 0.0 or first(c[12]) != 0.0:
         phase = _TURN * c[PULSE_HZ] * t
         spring += s * (c[11] * math.sin(phase) + c[12] * math.cos(phase))
     return (
         ratio * spring
         + c[0] * abs(v) + c[3] * v * v + c[4] * s * v + c[5] * s * s * v + c[6] * v * v * v + c[7] * s * abs(v)
-        + (c[8] * v * (v * v + _SLOW * _SLOW) ** -0.25 if c[8] != 0.0 else 0.0) + t * c[10] * v
+        + (c[8] * v * _slowness(v) if first(c[8]) != 0.0 else 0.0) + t * c[10] * v
     )  # fmt: skip
 
 

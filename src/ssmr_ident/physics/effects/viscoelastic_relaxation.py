@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import math
-
+from ssmr_ident.core.exponential import exp
 from ssmr_ident.core.kernel import kernel
 from ssmr_ident.core.parameter import Parameter
 from ssmr_ident.physics.effect import Effect, Site, Sized
@@ -19,7 +18,7 @@ def force(z, stiffness):
 def advance(z, v, step, tau):
     """dz/dt = v - z/tau over one step at constant v, exactly; z : float [m], v : float [m/s], tau : float [s]."""
     end = v * tau
-    return end + (z - end) * math.exp(-step / tau)
+    return end + (z - end) * exp(-step / tau)
 
 
 EFFECT = Effect(

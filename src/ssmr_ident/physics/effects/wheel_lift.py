@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ssmr_ident.core.kernel import kernel
+from ssmr_ident.core.lanes import where
 from ssmr_ident.core.parameter import Parameter
 from ssmr_ident.physics.effect import Effect, Site
 
@@ -10,7 +11,7 @@ from ssmr_ident.physics.effect import Effect, Site
 @kernel
 def load(force, depth):
     """max(0, N) and none in the air (4.15); force : float [N], depth of the tire below the floor : float [m]."""
-    return force if force > 0.0 and depth > 0.0 else 0.0
+    return where((force > 0.0) & (depth > 0.0), force, 0.0)
 
 
 EFFECT = Effect(

@@ -1,0 +1,194 @@
+"""The robot's compiled loop for many runs at once: in lanes where they are alike, one after the other elsewhere."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ssmr_ident.core.kernel import kernel
+from ssmr_ident.core.lanes import WIDTH, lane, lanes_of
+from ssmr_ident.physics import slots
+from ssmr_ident.physics.effects import unlisted
+from ssmr_ident.physics.sensor import low_pass_coefficients
+from ssmr_ident.physics.slots import effect_vector
+from ssmr_ident.simulate.body import Body
+from ssmr_ident.simulate.layout import OUTPUTS, POINTS, SLIDING_SPEED, SLIP_COUPLING
+from ssmr_ident.simulate.pulling import HELD, PULLED
+from ssmr_ident.simulate.robot_kernel import run
+
+_COLUMNS = len(OUTPUTS)
+
+FEWEST = 3
+"""Runs from which lanes are quicker than one run after the other."""
+
+_SWITCHES = np.array(
+    [
+        slots.CUBIC, slots.KNEE_SHARE, slots.QUADRATIC, slots.FRICTION_FORCE, slots.FRICTION_ROUNDING, slots.ALPHA,
+        slots.RELAXATION_STIFFNESS, slots.GAP, slots.GAP_SHARE_X, slots.KINETIC_SHARE, slots.LOAD_EXPONENT,
+        slots.ROLLING, slots.LIFT, slots.CORIOLIS, slots.MAST_HZ, slots.BELT_STIFFNESS,
+        *range(slots.UNLISTED, slots.UNLISTED + len(unlisted.TERMS)),
+    ]
+)  # fmt: skip
+"""What the loop asks of all lanes in common: whether these are off."""
+
+_OFF = effect_vector({})
+_OFF[slots.GAP_SHARE_X] = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """One run of the loop.
+
+    Parameters
+    ----------
+    body : Body
+    p : (PARAMETERS,) float
+        Its parameters, with the wheels that grip.
+    start : (START,) float
+    pulling : (PULLING,) float
+    head : (m,) float [m]
+    """
+
+    body: Body
+    p: np.ndarray
+    start: np.ndarray
+    pulling: np.ndarray
+    head: np.ndarray
+
+    @property
+    def beyond(self) -> bool:
+        """Whether anything acts or pulls."""
+        return self.body.beyond or bool(self.pulling[PULLED] > 0.5)
+
+    @property
+    def alike(self) -> tuple[object, ...]:
+        """What runs have in common that go in lanes."""
+        return (
+            self.beyond,
+            (self.body.e[_SWITCHES] != _OFF[_SWITCHES]).tobytes(),
+            (self.p[POINTS + 1 : POINTS + 12 : 3] > 0.0).tobytes(),
+            self.p[SLIDING_SPEED] > 0.0,
+            self.p[SLIP_COUPLING] != 0.0,
+            self.pulling[PULLED],
+            self.pulling[HELD],
+            len(self.head),
+            id(self.body.uneven),
+        )
+
+
+def run_together(
+    runs: Sequence[Run],
+    head_step: float,
+    reference: np.ndarray,
+    reference_step: float,
+    step: float,
+    stride: int,
+    samples: int,
+    kept: np.ndarray,
+) -> np.ndarray:
+    """Integrate runs, to the last bit what each gives alone.
+
+    Parameters
+    ----------
+    runs : sequence of Run
+    head_step, reference, reference_step, step, stride
+        As the loop takes them.
+    samples : int
+    kept : (c,) int
+        Outputs that are wanted.
+
+    Returns
+    -------
+    (k, samples, c) float
+        NaN all through where a state was no longer finite.
+    """
+    out = np.empty((len(runs), samples, len(kept)))
+    groups: dict[tuple[object, ...], list[int]] = {}
+    for index, one in enumerate(runs):
+        groups.setdefault(one.alike, []).append(index)
+    for alike, members in groups.items():
+        own = [runs[index] for index in members]
+        _in_turn(
+            np.array([one.p for one in own]),
+            np.array([one.body.e for one in own]),
+            own[0].body.uneven,
+            np.array([one.body.mast for one in own]),
+            np.array([one.pulling for one in own]),
+            np.array([one.head for one in own]),
+            head_step,
+            reference,
+            reference_step,
+            np.array([one.start for one in own]),
+            np.array([low_pass_coefficients(one.body.robot.accelerometer.bandwidth_hz, step) for one in own]),
+            np.array(members),
+            step,
+            (samples - 1) * stride,
+            stride,
+            True if alike[0] else None,
+            kept,
+            out,
+        )
+    return out
+
+
+@kernel
+def _in_turn(
+    p, e, floor, mast, pulling, head, head_step, reference, reference_step, start, low_pass, places, step, steps,
+    stride, beyond, kept, out,
+):  # fmt: skip
+    """``run`` for every row of its arguments; results go to ``places`` of ``out``."""
+    done = 0
+    if floor is None:
+        wide = np.empty((out.shape[1] if len(places) >= FEWEST else 0, _COLUMNS, WIDTH))
+        while len(places) - done >= FEWEST:
+            upto = min(done + WIDTH, len(places))
+            ended = _in_lanes(
+                _abreast(p, done, upto), _abreast(e, done, upto), _abreast(mast.reshape(len(mast), 64), done, upto),
+                _abreast(pulling, done, upto), _abreast(head, done, upto), head.shape[1] - 1, head_step, reference,
+                reference_step, _abreast(start, done, upto), step, steps, stride, _abreast(low_pass, done, upto),
+                wide, beyond,
+            )  # fmt: skip
+            for j in range(upto - done):
+                place = places[done + j]
+                for n in range(out.shape[1]):
+                    for c in range(len(kept)):
+                        out[place, n, c] = wide[n, kept[c], j] if ended[j] < 0.0 else np.nan
+            done = upto
+    whole = np.empty((out.shape[1], _COLUMNS))
+    for j in range(done, len(places)):
+        place = places[j]
+        ended_at = run(
+            p[j], e[j], floor, mast[j], pulling[j], head[j], head.shape[1] - 1, head_step, reference, reference_step,
+            start[j], step, steps, stride, low_pass[j], whole, beyond,
+        )  # fmt: skip
+        for n in range(out.shape[1]):
+            for c in range(len(kept)):
+                out[place, n, c] = whole[n, kept[c]] if ended_at < 0.0 else np.nan
+
+
+@kernel
+def _in_lanes(
+    p, e, mast, pulling, head, head_last, head_step, reference, reference_step, start, step, steps, stride, low_pass,
+    out, beyond,
+):  # fmt: skip
+    """``run`` for arrays whose last axis is of lanes; the caller keeps them. (WIDTH,) float, as ``run`` returns."""
+    ended = run(
+        lanes_of(p, 0), lanes_of(e, 0), None, lanes_of(mast, 8), lanes_of(pulling, 0), lanes_of(head, 0), head_last,
+        head_step, reference, reference_step, lanes_of(start, 0), step, steps, stride, lanes_of(low_pass, 0),
+        lanes_of(out, _COLUMNS), beyond,
+    )  # fmt: skip
+    failed = np.empty(WIDTH)
+    for j in range(WIDTH):
+        failed[j] = lane(ended, j)
+    return failed
+
+
+@kernel
+def _abreast(rows, first, upto):
+    """Rows (k, n) as lanes, (n, WIDTH); lanes that are left over do what the last one does."""
+    out = np.empty((rows.shape[1], WIDTH))
+    for j in range(WIDTH):
+        out[:, j] = rows[min(first + j, upto - 1)]
+    return out
