@@ -2,30 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 from scipy.optimize import minimize_scalar
 
 from ssmr_ident.campaign import Measurement
-from ssmr_ident.core.errors import InputError, SimulationError
+from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.identify.decay_record import spread
 from ssmr_ident.identify.noise import AutoregressiveNoise
-from ssmr_ident.identify.robot_map import RobotBuilder
+from ssmr_ident.identify.trials.machine import QUICK, force_model
 from ssmr_ident.identify.trials.moments import lets_go, tightening
 from ssmr_ident.identify.trials.teeth import find_teeth
 from ssmr_ident.identify.trials.trial import Array, Asked, Course, Trial, Values
-from ssmr_ident.physics.rig import Block, block_from_parameters
-from ssmr_ident.physics.robot import Robot
 from ssmr_ident.physics.slots import Effects
-from ssmr_ident.session import Entry
 from ssmr_ident.signals.grid import even_samples
-from ssmr_ident.simulate.bench import compress_wheel, drag_wheel, pull_block
-from ssmr_ident.simulate.many import simulate_pulls
-from ssmr_ident.simulate.scenarios import Scenario, cable_properties, fixture_needed
-from ssmr_ident.simulate.simulation import simulate
 
 STARTING = 3
 """Samples at the start that do not count: how the head takes up speed is not in the log."""
@@ -61,20 +54,6 @@ counts (``Trial.uneven``): 12 mm make a misfit of 28 times a load cell's noise w
 
 POINTS = 1000
 """Samples at which a slack is looked for."""
-
-Head = tuple[Values, Effects, Array]
-Forces = Callable[[Sequence[Head], float, float | None], Array]
-"""``forces(asked, step, inner)``: what the load cell reads for each (values, effects, head), (k, n) [N], NaN where that
-cannot be simulated; ``inner`` is the longest step of the integration, None for the simulator's own choice."""
-
-QUICK = 2e-3
-"""Integration step of fits [s]: averages of a pull without teeth then differ by 0.01 to 0.12 N rms from those at the
-simulator's own choice (the body's swing after the start), of a dragged wheel by less than 0.1 N; a load cell's noise is
-some 0.5 N."""
-
-
-FIXTURE_STEP = 2e-4
-"""The same where a stiff fixture holds the robot while its wheels spin: its own vibration would burst beyond 4e-4 s."""
 
 
 def pull_trial(measurement: Measurement, parameters: ParameterSet) -> Trial:
@@ -217,86 +196,6 @@ def holds(force: Array, travel: Array) -> bool:
         return False
     gains = np.diff([float(force[part].mean()) for part in np.array_split(inside, ENDS)])
     return bool(gains[-1] > STILL_RISES * gains.max() > 0.0)
-
-
-def force_model(entry: Entry, parameters: ParameterSet, held: bool = False, unseen: tuple[str, ...] = ()) -> Forces:
-    """The simulator of an entry's experiment; ``held`` says that a dragged wheel does not let go, and ``unseen`` which
-    parameters a pull stays as the file has them in."""
-    if "tire.stiffness_y_N_m" not in parameters:
-        block = block_from_parameters(parameters)
-        return _each(lambda values, effects, head, step, inner: pull_block(_block(block, values), head, step, effects))
-    builder = RobotBuilder.of(parameters)
-    if entry.experiment == "vertical_compression":
-        return _each(
-            lambda values, effects, head, step, inner: compress_wheel(builder(values), head, step, effects=effects)
-        )
-    if entry.experiment == "wheel_drag":
-        free = entry.free_normal and not held
-        return _each(
-            lambda values, effects, head, step, inner: drag_wheel(builder(values), head, step, free, effects, inner)
-        )
-
-    def pulled(asked: Sequence[Head], step: float, inner: float | None) -> Array:
-        pulls = []
-        for values, effects, head in asked:
-            seen = {name: value for name, value in values.items() if name not in unseen}
-            pulls.append((builder(seen), effects, _scenario(entry, head, step)))
-        if inner is None:  # each has a step of its own
-            return np.array([_by_its_own_step(*one, step) for one in pulls])
-        longest = min(inner, FIXTURE_STEP) if pulls[0][2].held else inner
-        return simulate_pulls(pulls, 1.0 / step, longest, ("force",))[:, :, 0]
-
-    return pulled
-
-
-def _by_its_own_step(robot: Robot, effects: Effects, scenario: Scenario, step: float) -> Array:
-    try:
-        return simulate(robot, scenario, 1.0 / step, effects=effects)["force"]
-    except SimulationError:
-        return np.full(len(scenario.head), np.nan)
-
-
-def _each(force: Callable[[Values, Effects, Array, float, float | None], Array]) -> Forces:
-    """Experiments that are quick, one after the other."""
-
-    def forces(asked: Sequence[Head], step: float, inner: float | None) -> Array:
-        found = []
-        for values, effects, head in asked:
-            try:
-                found.append(force(values, effects, head, step, inner))
-            except SimulationError:
-                found.append(np.full(len(head), np.nan))
-        return np.array(found)
-
-    return forces
-
-
-def _scenario(entry: Entry, head: Array, step: float) -> Scenario:
-    stiffness, damping = cable_properties(entry.cable)
-    rate = entry.wheel_rate_rad_s or 0.0
-    return Scenario(
-        "pull",
-        len(head) * step,
-        head=head,
-        head_step=step,
-        direction=entry.direction or "lateral",
-        height=0.05 if entry.height_m is None else entry.height_m,
-        wheels_gripping=entry.wheels_gripping,
-        cable_stiffness=stiffness,
-        cable_damping=damping,
-        wheel_rates=np.full((1, 2), rate),
-        held=fixture_needed(entry.wheels_gripping, rate),
-    )
-
-
-def _block(nominal: Block, values: Values) -> Block:
-    mu_static = values.get("mu_static", nominal.mu_static)
-    return Block(
-        values.get("mass_kg", nominal.mass),
-        mu_static,
-        values.get("mu_kinetic", mu_static if nominal.mu_kinetic == nominal.mu_static else nominal.mu_kinetic),
-        values.get("cable.stiffness_N_m", nominal.cable_stiffness),
-    )
 
 
 def find_slack(force: Array, travel: Array, tight: Array) -> float:

@@ -1,0 +1,97 @@
+"""Lane after lane: for what branches by itself, or asks a library."""
+
+from __future__ import annotations
+
+import functools
+import inspect
+import math
+from collections.abc import Callable
+from typing import Any
+
+from llvmlite import ir
+from numba import types
+from numba.extending import overload
+
+from ssmr_ident.core.lanes.vector import INDEX, LANES, NUMBERS, WIDTH, LanesType, instructions
+
+
+@instructions
+def lane(typingctx: Any, x: Any, index: Any) -> Any:
+    """One number out of ``Lanes``; a number is the same in all of them."""
+
+    def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+        if not isinstance(sig.args[0], LanesType):
+            return args[0]
+        return builder.extract_element(args[0], builder.trunc(args[1], INDEX))
+
+    if isinstance(x, LanesType):
+        return types.float64(LANES, types.intp), codegen
+    return types.float64(types.float64, types.intp), codegen
+
+
+@instructions
+def with_lane(typingctx: Any, x: Any, index: Any, value: Any) -> Any:
+    """The same ``Lanes`` with one number changed."""
+
+    def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+        return builder.insert_element(args[0], args[2], builder.trunc(args[1], INDEX))
+
+    return LANES(LANES, types.intp, types.float64), codegen
+
+
+@instructions
+def nothing(typingctx: Any) -> Any:
+    """``Lanes`` of zeros."""
+
+    def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+        return ir.Constant(NUMBERS, [0.0] * WIDTH)
+
+    return LANES(), codegen
+
+
+def lanewise(function: Callable[..., float]) -> Callable[..., float]:
+    """A compiled function of numbers as one of ``Lanes`` too, lane after lane.
+
+    For what branches by itself, or asks a library for its exponentials.
+    """
+    names = tuple(inspect.signature(function).parameters)
+    takes, each = ", ".join(names), ", ".join(f"lane({name}, i)" for name in names)
+    # numba asks what stands in for a function for the very arguments of it
+    text = f"""
+def in_lanes({takes}):
+    out = nothing()
+    for i in range({WIDTH}):
+        out = with_lane(out, i, function({each}))
+    return out
+
+def alone({takes}):
+    return function({takes})
+"""
+    known: dict[str, Any] = {"function": function, "lane": lane, "with_lane": with_lane, "nothing": nothing}
+    exec(text, known)
+
+    @functools.wraps(function)
+    def either(*args: float) -> float:
+        return function(*args)
+
+    @overload(either, strict=False)
+    def chosen(*args: Any) -> Any:
+        return known["in_lanes" if any(isinstance(a, LanesType) for a in args) else "alone"]
+
+    return either
+
+
+def _by_library(function: Callable[[float], float]) -> None:
+    def one_by_one(x: Any) -> Any:
+        out = nothing()
+        for i in range(WIDTH):
+            out = with_lane(out, i, function(lane(x, i)))
+        return out
+
+    @overload(function, strict=False)
+    def lanes(x: Any) -> Any:
+        return one_by_one if isinstance(x, LanesType) else None
+
+
+for _function in (math.sin, math.cos, math.exp, math.tanh):
+    _by_library(_function)
