@@ -1,4 +1,5 @@
-"""How fast is the simulator? Steps per second against MuJoCo, 20 s of swivel, ``ident simulate``, memory of a run.
+"""How fast is the simulator? Steps per second against MuJoCo, 20 s of swivel, ``ident simulate``, memory of a run, and
+what many runs at once save over one after the other.
 
 Run it as ``python benchmarks/bench_simulator.py [ROUNDS]``. Everything is measured in one run, the engines in turn,
 and the medians are printed; one thread each. Without MuJoCo (extra ``proof``) its rows are left out. Nothing here
@@ -16,16 +17,19 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from ssmr_ident.core.errors import InputError
+from ssmr_ident.core.lanes import WIDTH
 from ssmr_ident.physics.motor import wheel_rates
 from ssmr_ident.physics.robot import Robot, robot_from_parameters
 from ssmr_ident.session import read_parameters
 from ssmr_ident.simulate import simulate
-from ssmr_ident.simulate.scenarios import swivel
+from ssmr_ident.simulate.many import Release, simulate_many, simulate_pulls
+from ssmr_ident.simulate.scenarios import Scenario, swivel
 
 STEP = 2e-5  # s
 YAW_RATE = np.radians(45.0)
@@ -117,6 +121,44 @@ def twenty_seconds(robot: Robot, rounds: int) -> None:
     print(f"20 s of swivel at 20 µs: median {np.median(times):.3f} s, best {times[0]:.3f} s, worst {times[-1]:.3f} s")
 
 
+def eight_at_once(robot: Robot, rounds: int) -> None:
+    """Decays and pulls in lanes over the same one by one, which gives the same bits."""
+    random = np.random.default_rng(1)
+    count, head = 4 * WIDTH, np.linspace(0.0, 0.03, 1500)
+    print(f"{count} runs in one call over one after the other, median of {rounds} rounds in turn, one thread")
+    for effects in ({}, {"nonlinear_stiffness": {"k3_N_m3": 1e8}}, {"dry_friction": {}}, {"hysteresis": {}}):
+        releases = [
+            Release(robot, effects, 1e-3 * random.standard_normal(12), 0.05 * random.standard_normal(8))
+            for _ in range(count)
+        ]
+        name = f"decays, {next(iter(effects), 'all effects off')}"
+        _compared(name, lambda some: simulate_many(some, 2.0, 500.0, 2.5e-4, ("ax", "ay")), releases, rounds)
+    for law, speed in (("relay", 0.0), ("cone", 0.01)):
+        pulls = [
+            (
+                replace(robot, sliding_speed=speed),
+                {},
+                Scenario("pull", 15.0, head=np.maximum(head - slack, 0.0), head_step=0.01, height=0.2),
+            )
+            for slack in 1e-3 * random.random(count)
+        ]
+        _compared(f"pulls, {law}", lambda some: simulate_pulls(some, 100.0, 2e-3, ("force",)), pulls, rounds)
+
+
+def _compared(name: str, together: Callable[[list], np.ndarray], asked: list, rounds: int) -> None:
+    def timed(parts: list[list]) -> Runner:
+        def run() -> float:
+            begin = time.perf_counter()
+            for part in parts:
+                together(part)
+            return time.perf_counter() - begin
+
+        return run
+
+    medians = alternate({"alone": timed([[one] for one in asked]), "at once": timed([asked])}, rounds)
+    print(f"  {name:<28}{medians['alone'] / medians['at once']:>6.1f}×")
+
+
 def whole_process(rounds: int) -> None:
     """``ident simulate`` from the shell, interpreter, imports, 20 s of swivel and the written log included."""
     with tempfile.TemporaryDirectory() as folder:
@@ -161,6 +203,7 @@ def main() -> None:
     robot = robot_from_parameters(read_parameters("p3at-extended"))
     steps_per_second(robot, rounds)
     twenty_seconds(robot, rounds)
+    eight_at_once(robot, rounds)
     whole_process(rounds)
     memory()
 

@@ -18,8 +18,8 @@ from ssmr_ident.simulate.sensed import sensed
 from ssmr_ident.simulate.simulation import grid, prepared
 from ssmr_ident.simulate.together import Run, run_together
 
-SENSED = ("ax", "ay", "az", "force")
-"""What sensor effects read: one axis of a turned sensor reads all three."""
+SENSED = ("ax", "ay", "az", "wx", "wy", "wz", "force", "head")
+"""What sensors see, and effects on them may read: one axis of a turned sensor reads all three."""
 
 STILL, NO_HEAD, AT_REST = np.zeros(PULLING), np.zeros(1), np.zeros((1, 2))
 
