@@ -136,15 +136,22 @@ def test_pulls_in_lanes(robot: Robot, sliding_speed: float, direction: str) -> N
 
 
 def test_runs_that_are_not_alike_do_not_share_lanes(robot: Robot) -> None:
-    """A lane asks the first one what is on: friction, play and nothing beside each other, one of them at its off."""
-    effects = [{}, {"dry_friction": {"F_c_N": 3.0}}, {"dry_friction": {"F_c_N": 0.0}}, {"free_play": {"gap_m": 2e-4}}]
+    """A lane asks the first one what is on: friction in three forms, play, and friction that is off."""
+    effects = [
+        {"dry_friction": {"F_c_N": 3.0}},
+        {"dry_friction": {"F_c_N": 3.0, "slider": 1.0}},
+        {"dry_friction": {"F_c_N": 3.0, "rounding_m_s": 0.01}},
+        {"dry_friction": {"F_c_N": 0.0}},
+        {"free_play": {"gap_m": 2e-4}},
+        {"free_play": {"gap_m": 2e-4, "share_x": 0.0}},
+    ]
     away, moving = np.zeros(12), np.zeros(8)
-    away[1] = 2e-3
+    away[:2] = 2e-3
     releases = [Release(robot, one, away, moving) for one in effects * FEWEST]
-    together = simulate_many(releases, 0.15, 500.0, 2.5e-4, ("ay",))
-    alone = [simulate_many([one], 0.15, 500.0, 2.5e-4, ("ay",))[0] for one in releases]
+    together = simulate_many(releases, 0.15, 500.0, 2.5e-4, ("ax", "ay"))
+    alone = [simulate_many([one], 0.15, 500.0, 2.5e-4, ("ax", "ay"))[0] for one in releases]
     np.testing.assert_array_equal(together, alone)
-    assert len({one.tobytes() for one in together}) == 3
+    assert len({one.tobytes() for one in together}) == len(effects)
 
 
 def test_a_lane_that_bursts_spoils_no_other(robot: Robot) -> None:

@@ -25,8 +25,8 @@ FEWEST = 3
 
 _SWITCHES = np.array(
     [
-        slots.CUBIC, slots.KNEE_SHARE, slots.QUADRATIC, slots.FRICTION_FORCE, slots.FRICTION_ROUNDING, slots.ALPHA,
-        slots.RELAXATION_STIFFNESS, slots.GAP, slots.GAP_SHARE_X, slots.KINETIC_SHARE, slots.LOAD_EXPONENT,
+        slots.CUBIC, slots.KNEE_SHARE, slots.QUADRATIC, slots.FRICTION_FORCE, slots.SLIDER, slots.FRICTION_ROUNDING,
+        slots.ALPHA, slots.RELAXATION_STIFFNESS, slots.GAP, slots.GAP_SHARE_X, slots.KINETIC_SHARE, slots.LOAD_EXPONENT,
         slots.ROLLING, slots.LIFT, slots.CORIOLIS, slots.MAST_HZ, slots.BELT_STIFFNESS,
         *range(slots.UNLISTED, slots.UNLISTED + len(unlisted.TERMS)),
     ]

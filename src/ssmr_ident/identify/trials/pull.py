@@ -128,7 +128,10 @@ def _trial(measurement: Measurement, parameters: ParameterSet, unseen: tuple[str
             return np.array([found])
         # wheels that spin all the while have turned further when a slack ends: one simulation does not tell another's
         around = travel[[min(max(tight_at + k, 0), len(travel) - 1) for k in (-1, 0, 1)]] / size
-        return min((np.array([s]) for s in (found, *around)), key=lambda own: _misfit(trial, values, effects, own))
+        slacks = [np.array([s]) for s in (found, *around)]
+        white = trial.whitened(trial.runs([(values, effects, own) for own in slacks]))
+        misfits = np.sum((trial.white_target[:, None] - white) ** 2, axis=0)
+        return slacks[int(np.argmin(np.where(np.isfinite(misfits), misfits, np.inf)))]
 
     # a block alone has nothing to swing on
     swings = measurement.entry.experiment == "pull" and "tire.stiffness_y_N_m" in parameters
@@ -160,12 +163,6 @@ def _trial(measurement: Measurement, parameters: ParameterSet, unseen: tuple[str
         slides_from=float(times[lets_go(target / share)]) if swings and teeth is None else None,
     )
     return trial
-
-
-def _misfit(trial: Trial, values: Values, effects: Effects, own: Array) -> float:
-    left = trial.white_target - trial.whitened(trial.run(values, effects, own))
-    misfit = float(left @ left)
-    return misfit if np.isfinite(misfit) else np.inf
 
 
 def travelled(measurement: Measurement) -> tuple[Array, Array, float, float]:
