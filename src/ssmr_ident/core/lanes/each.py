@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import inspect
 import math
 from collections.abc import Callable
 from typing import Any
@@ -27,6 +26,23 @@ def lane(typingctx: Any, x: Any, index: Any) -> Any:
     if isinstance(x, LanesType):
         return types.float64(LANES, types.intp), codegen
     return types.float64(types.float64, types.intp), codegen
+
+
+@instructions
+def lane_of_all(typingctx: Any, numbers: Any, index: Any) -> Any:
+    """One number out of each of a tuple's ``Lanes``."""
+
+    def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+        place, found = builder.trunc(args[1], INDEX), []
+        for at, kind in enumerate(numbers.types):
+            one = builder.extract_value(args[0], at)
+            if isinstance(kind, LanesType):
+                found.append(builder.extract_element(one, place))
+            else:
+                found.append(context.cast(builder, one, kind, types.float64))
+        return context.make_tuple(builder, sig.return_type, found)
+
+    return types.UniTuple(types.float64, len(numbers))(numbers, types.intp), codegen
 
 
 @instructions
@@ -54,21 +70,15 @@ def lanewise(function: Callable[..., float]) -> Callable[..., float]:
 
     For what branches by itself, or asks a library for its exponentials.
     """
-    names = tuple(inspect.signature(function).parameters)
-    takes, each = ", ".join(names), ", ".join(f"lane({name}, i)" for name in names)
-    # numba asks what stands in for a function for the very arguments of it
-    text = f"""
-def in_lanes({takes}):
-    out = nothing()
-    for i in range({WIDTH}):
-        out = with_lane(out, i, function({each}))
-    return out
 
-def alone({takes}):
-    return function({takes})
-"""
-    known: dict[str, Any] = {"function": function, "lane": lane, "with_lane": with_lane, "nothing": nothing}
-    exec(text, known)
+    def in_lanes(*args: Any) -> Any:
+        out = nothing()
+        for i in range(WIDTH):
+            out = with_lane(out, i, function(*lane_of_all(args, i)))
+        return out
+
+    def alone(*args: Any) -> Any:
+        return function(*args)
 
     @functools.wraps(function)
     def either(*args: float) -> float:
@@ -76,7 +86,7 @@ def alone({takes}):
 
     @overload(either, strict=False)
     def chosen(*args: Any) -> Any:
-        return known["in_lanes" if any(isinstance(a, LanesType) for a in args) else "alone"]
+        return in_lanes if any(isinstance(a, LanesType) for a in args) else alone
 
     return either
 
