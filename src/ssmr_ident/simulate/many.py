@@ -80,16 +80,13 @@ def simulate_pulls(
     Parameters
     ----------
     pulls : sequence of (Robot, mapping of effect id to mapping of parameter to value, Scenario)
-    sample_rate : float [Hz]
-    step : float [s]
-        Upper limit of the integration step.
-    names : sequence of str
-        Of the channels that are kept.
+    sample_rate, step, names
+        As ``simulate_many`` takes them.
 
     Returns
     -------
     (k, n, c) float
-        NaN all through where a state was no longer finite, or the robot cannot have its effects.
+        As ``simulate_many`` gives it.
     """
     runs: list[Run | None] = []
     for robot, effects, scenario in pulls:

@@ -23,6 +23,9 @@ _COLUMNS = len(OUTPUTS)
 FEWEST = 3
 """Runs from which lanes are quicker than one run after the other."""
 
+LONGEST = 200_000
+"""Samples up to which they are taken: eight runs of all outputs then fill 0.3 GB, and each thread has its own."""
+
 _SWITCHES = np.array(
     [
         slots.CUBIC, slots.KNEE_SHARE, slots.QUADRATIC, slots.FRICTION_FORCE, slots.SLIDER, slots.FRICTION_ROUNDING,
@@ -140,7 +143,7 @@ def _in_turn(
 ):  # fmt: skip
     """``run`` for every row of its arguments; results go to ``places`` of ``out``."""
     done = 0
-    if floor is None:
+    if floor is None and out.shape[1] <= LONGEST:
         wide = np.empty((out.shape[1] if len(places) >= FEWEST else 0, _COLUMNS, WIDTH))
         while len(places) - done >= FEWEST:
             upto = min(done + WIDTH, len(places))

@@ -12,16 +12,16 @@ from numba import types
 from numba.core.typing.templates import ConcreteTemplate, infer_global, signature
 from numba.extending import lower_builtin, overload
 
-from ssmr_ident.core.lanes.vector import BITS, LANES, MASK, WIDTH, LanesType, MaskType, instructions
+from ssmr_ident.core.lanes.vector import BITS, LANES, MASK, WIDTH, LanesType, instructions
 
 
-def _arithmetic(symbol: Any, instruction: str) -> None:
+def _operation(symbol: Any, of: types.Type, instruction: str) -> None:
     class Template(ConcreteTemplate):
-        cases = [signature(LANES, LANES, LANES)]
+        cases = [signature(of, of, of)]
 
     infer_global(symbol)(Template)
 
-    @lower_builtin(symbol, LanesType, LanesType)
+    @lower_builtin(symbol, type(of), type(of))
     def lowered(context: Any, builder: Any, sig: Any, args: Any) -> Any:
         return getattr(builder, instruction)(*args)
 
@@ -38,24 +38,13 @@ def _comparison(symbol: Any, sign: str, unequal: bool) -> None:
         return builder.zext(compare(sign, *args), BITS)
 
 
-def _logic(symbol: Any, instruction: str) -> None:
-    class Template(ConcreteTemplate):
-        cases = [signature(MASK, MASK, MASK)]
-
-    infer_global(symbol)(Template)
-
-    @lower_builtin(symbol, MaskType, MaskType)
-    def lowered(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-        return getattr(builder, instruction)(*args)
-
-
 for _symbol, _name in (("add", "fadd"), ("sub", "fsub"), ("mul", "fmul"), ("truediv", "fdiv")):
-    _arithmetic(getattr(operator, _symbol), _name)
-    _arithmetic(getattr(operator, f"i{_symbol}"), _name)
+    _operation(getattr(operator, _symbol), LANES, _name)
+    _operation(getattr(operator, f"i{_symbol}"), LANES, _name)
 for _symbol, _sign in (("lt", "<"), ("le", "<="), ("gt", ">"), ("ge", ">="), ("eq", "=="), ("ne", "!=")):
     _comparison(getattr(operator, _symbol), _sign, _symbol == "ne")
 for _symbol in ("and_", "or_", "iand", "ior"):
-    _logic(getattr(operator, _symbol), _symbol.removeprefix("i").removesuffix("_") + "_")
+    _operation(getattr(operator, _symbol), MASK, _symbol.removeprefix("i").removesuffix("_") + "_")
 
 
 @infer_global(operator.neg)

@@ -16,16 +16,12 @@ from ssmr_ident.core.lanes.vector import INDEX, LANES, NUMBERS, WIDTH, LanesType
 
 @instructions
 def lane(typingctx: Any, x: Any, index: Any) -> Any:
-    """One number out of ``Lanes``; a number is the same in all of them."""
+    """One number out of ``Lanes``."""
 
     def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-        if not isinstance(sig.args[0], LanesType):
-            return args[0]
         return builder.extract_element(args[0], builder.trunc(args[1], INDEX))
 
-    if isinstance(x, LanesType):
-        return types.float64(LANES, types.intp), codegen
-    return types.float64(types.float64, types.intp), codegen
+    return types.float64(LANES, types.intp), codegen
 
 
 @instructions
