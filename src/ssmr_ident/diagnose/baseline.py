@@ -113,7 +113,8 @@ def led_out(fit: JointFit) -> JointFit:
     begun = (fit, *from_all_sides(fit))
     best = min((*begun, *(led_through_slides(f) for f in begun if unsteady(f))), key=lambda f: f.cost(fit.counted))
     best = min((best, descend(best, LAST), descend(settled(best), LAST)), key=lambda f: f.cost(fit.counted))
-    return differentiate(min((best, *from_afar(best)), key=lambda f: f.cost(best.counted)))
+    afar = from_afar(best) if unsteady(best) else []
+    return differentiate(min((best, *afar), key=lambda f: f.cost(best.counted)))
 
 
 def unsteady(fit: JointFit) -> bool:
