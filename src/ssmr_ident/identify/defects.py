@@ -45,7 +45,7 @@ def defect(decay: BodyDecay, robot: Robot, start: Array, effects: Effects | None
     )
     axes = list(decay.axes)
     run = simulate(robot, scenario, 1.0 / step, step=STEP, effects=effects).values[:, axes]
-    difference = decay.averaged(run - small_motion(robot, start, samples, step)[:, axes])
+    difference = decay.averaged((run - small_motion(robot, start, samples, step)[:, axes])[None])[0]
     # The resting values differ (gravity, zero); each channel has its own offset, so the end is taken as zero.
     return difference - difference[-1]
 

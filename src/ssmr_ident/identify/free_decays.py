@@ -13,6 +13,7 @@ from functools import cached_property
 
 import numpy as np
 
+from ssmr_ident.core.kernel import kernel
 from ssmr_ident.identify.decay_record import Record, prepare, spread
 from ssmr_ident.identify.decay_start import nuisance_columns
 from ssmr_ident.identify.noise import AutoregressiveNoise, fit_noise
@@ -90,11 +91,27 @@ class BodyDecay:
         middle = (times - times.mean())[:, None] / np.ptp(times)
         return np.linalg.qr(np.hstack([columns, middle * columns[:, 1:]]))[0]
 
-    def averaged(self, signal: Array) -> Array:
-        """Block averages of a signal on the record's own grid, (..., m, c) to (..., n, c)."""
+    def averaged(self, signals: Array, rows: Array | None = None, gains: Array | None = None) -> Array:
+        """Block averages of signals on the record's own grid.
+
+        Parameters
+        ----------
+        signals : (j, m, c) float
+        rows : (k,) int, optional
+            Which of them, maybe one several times; each once otherwise.
+        gains : (k, c) float, optional
+            By which each is multiplied.
+
+        Returns
+        -------
+        (k, n, c) float
+        """
         skip = round((self.first - (self.block - 1) / 2 * self.record.step) / self.record.step)
-        cut = signal[..., skip : skip + len(self.samples) * self.block, :]
-        return cut.reshape(*cut.shape[:-2], len(self.samples), self.block, -1).mean(axis=-2)
+        rows = np.arange(len(signals)) if rows is None else rows
+        gains = np.ones((len(rows), signals.shape[2])) if gains is None else gains
+        means = np.empty((len(rows), len(self.samples), signals.shape[2]))
+        _block_means(np.ascontiguousarray(signals), rows, gains, skip, self.block, means)
+        return means
 
     def averaging(self, poles: Array) -> Array:
         """What block averaging makes of e^(st), (k,) complex."""
@@ -166,3 +183,19 @@ def body_decay(
     return BodyDecay(
         name, tuple(axis for axis, _ in channels), samples, first, block * record.step, block, record, noises
     )
+
+
+@kernel
+def _block_means(signals, rows, gains, skip, block, means):
+    """What ``mean`` gives of ``gains * signals[rows]`` over its blocks, whose short last axis numpy takes many times as
+    long for."""
+    for k in range(len(rows)):
+        signal = signals[rows[k]]
+        for n in range(means.shape[1]):
+            begin = skip + n * block
+            for c in range(means.shape[2]):
+                gain = gains[k, c]
+                total = signal[begin, c] * gain
+                for i in range(begin + 1, begin + block):
+                    total += signal[i, c] * gain
+                means[k, n, c] = total / block

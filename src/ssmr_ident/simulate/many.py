@@ -113,12 +113,13 @@ def _channels(
     read = tuple(names)
     if any(one is not None and one.body.read_otherwise for one in runs):
         read = tuple(dict.fromkeys((*names, *SENSED)))
-    out = np.full((len(runs), samples, len(read)), np.nan)
     kept = np.array([layout.OUTPUTS.index(name) for name in read])
     there = [index for index, one in enumerate(runs) if one is not None]
     possible = [one for one in runs if one is not None]
-    if possible:
-        out[there] = run_together(possible, head_step, rates, rate_step, step, stride, samples, kept)
+    out = run_together(possible, head_step, rates, rate_step, step, stride, samples, kept)
+    if len(possible) < len(runs):
+        found, out = out, np.full((len(runs), samples, len(read)), np.nan)
+        out[there] = found
     time = np.arange(samples) / sample_rate
     for result, one in zip(out, runs, strict=True):
         if one is None:

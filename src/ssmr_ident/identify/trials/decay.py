@@ -137,7 +137,8 @@ def _trial(whole: BodyDecay, kept: int, facts: _Facts) -> Trial:
     raw = decay.record.samples[skip:length].reshape(kept, decay.block, -1)
     counts = np.all(np.abs(raw) < 0.999 * builder.nominal.accelerometer.range_m_s2, axis=1)
 
-    def simulated(asked: Sequence[Asked], samples: int, step: float) -> Array:
+    def simulated(asked: Sequence[Asked], samples: int, step: float) -> tuple[Array, Array, Array]:
+        """Releases that differ, which of them each is asked for, and by what its axes' gains differ."""
         releases: dict[tuple[int, int, bytes], Release] = {}
         own, gains = [], []
         last, robot, gain = None, builder.nominal, np.ones(len(decay.axes))
@@ -154,26 +155,32 @@ def _trial(whole: BodyDecay, kept: int, facts: _Facts) -> Trial:
         names = [AXES[axis] for axis in decay.axes]
         found = simulate_many(list(releases.values()), samples * seconds, 1.0 / seconds, step, names)
         places = {key: place for place, key in enumerate(releases)}
-        return found[[places[key] for key in own]] * np.array(gains)[:, None, :]
+        return found, np.array([places[key] for key in own]), np.array(gains)
+
+    def read(asked: Sequence[Asked], samples: int, step: float) -> Array:
+        found, rows, gain = simulated(asked, samples, step)
+        return found[rows] * gain[:, None, :]
 
     def rotated(values: Values, effects: Effects, nuisance: Array, samples: int, step: float) -> Array:
         assert model is not None
         others = {name: effect for name, effect in effects.items() if name != "translation_coupling"}
         if "translation_coupling" in effects:
-            return simulated([(values, others, nuisance)], samples, step)[0]
+            return read([(values, others, nuisance)], samples, step)[0]
         pure = model.responses(builder(values), samples, decay.record.step) @ nuisance[:12]
         if not others:
             return pure
         # what an effect adds to the six degrees of freedom, added to the pure rotation
-        more, plain = simulated([(values, e, nuisance) for e in (others, {})], samples, step)
+        more, plain = read([(values, e, nuisance) for e in (others, {})], samples, step)
         return pure + more - plain
 
     def followed(asked: Sequence[Asked], samples: int, step: float) -> Array:
         if model is None:
-            return simulated(asked, samples, step)
+            return read(asked, samples, step)
         return np.stack([rotated(*one, samples, step) for one in asked])
 
     def many(asked: Sequence[Asked]) -> Array:
+        if model is None:
+            return decay.averaged(*simulated(asked, length, facts.step))
         return decay.averaged(followed(asked, length, facts.step))
 
     def run(values: Values, effects: Effects, nuisance: Array) -> Array:
@@ -190,7 +197,7 @@ def _trial(whole: BodyDecay, kept: int, facts: _Facts) -> Trial:
         if model is None or "translation_coupling" in effects:
             return _linear_start(trial, _columns(robot, decay))
         responses = model.responses(robot, length, decay.record.step)[:, 0]
-        return _linear_start(trial, decay.averaged(responses)[:, None, :])
+        return _linear_start(trial, decay.averaged(responses[None])[0][:, None, :])
 
     trial = Trial(
         facts.name,
