@@ -11,14 +11,14 @@ from scipy.stats import chi2
 from ssmr_ident.compare.recorded import follow, radian
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.accept import CHANCE
+from ssmr_ident.diagnose.hollows import from_afar
 from ssmr_ident.diagnose.race import FAR
 from ssmr_ident.diagnose.setup import Setup
 from ssmr_ident.diagnose.start import begin, pooled
 from ssmr_ident.identify.clouds import settled
 from ssmr_ident.identify.descent import LOUD, chatters, descend
 from ssmr_ident.identify.horizons import horizons, led
-from ssmr_ident.identify.joint import JointFit, differentiate, evaluate, evaluate_all
-from ssmr_ident.identify.parallel import side_by_side
+from ssmr_ident.identify.joint import JointFit, differentiate, evaluate
 from ssmr_ident.identify.swings import led_through_slides
 from ssmr_ident.identify.trials import Trial
 
@@ -28,9 +28,6 @@ what pulls leave may be swings out of step: of sessions without missing physics 
 
 ASIDE = 1.5
 """Standard deviations of what is known of the centre of mass, where pulls are begun again."""
-
-DRAWN, BEGUN, SEED = 64, 16, 20120511
-"""Robots drawn out of what is known, those of them from which pulls are fitted, and the seed of the draws."""
 
 LAST = 8
 """Gauss-Newton steps on whole recordings."""
@@ -142,21 +139,6 @@ def from_all_sides(fit: JointFit) -> list[JointFit]:
         begun.append(descend(evaluate(fit.trials, fit.model, point, fit.nuisances), 3, plain=True))
     nearest = sorted(begun, key=lambda f: f.rss + f.penalty if np.isfinite(f.rss) else np.inf)
     return [descend(f, LAST) for f in nearest[:1] if np.isfinite(f.rss)]
-
-
-def from_afar(fit: JointFit) -> list[JointFit]:
-    """Pulls fitted from robots drawn out of what is known of theirs: the nearest few of many, which lanes have at once.
-
-    The order in which wheels let go makes many hollows, and one in four or five of such starts ends in the deepest.
-    """
-    if not all(trial.abreast for trial in fit.trials):
-        return []
-    random = np.random.default_rng(SEED)
-    places = [(random.standard_normal(len(fit.point)), fit.nuisances) for _ in range(DRAWN)]
-    drawn = [f for f in evaluate_all(fit.trials, fit.model, places) if np.isfinite(f.rss)]
-    nearest = sorted(drawn, key=lambda f: f.rss + f.penalty)[:BEGUN]
-    ends = list(side_by_side(lambda f: descend(descend(f, LAST, plain=True), LAST), nearest))
-    return sorted(ends, key=lambda f: f.cost(fit.counted))[:1]
 
 
 def leaves_much(fit: JointFit) -> bool:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -26,6 +28,7 @@ from ssmr_ident.diagnose.coupling import coupled
 from ssmr_ident.diagnose.explain import without
 from ssmr_ident.diagnose.explore import Search, search
 from ssmr_ident.diagnose.followed import all_explained, at_its_best, each_set_once, explained, joined
+from ssmr_ident.diagnose.hollows import challenged
 from ssmr_ident.diagnose.pairs import backward, instead, partners_of, with_a_second
 from ssmr_ident.diagnose.polish import calmed, loud
 from ssmr_ident.diagnose.race import Progress
@@ -33,8 +36,9 @@ from ssmr_ident.diagnose.rotate import left_elsewhere, shown_in_turn
 from ssmr_ident.diagnose.setup import Setup
 from ssmr_ident.diagnose.weigh import TIE, Explanation, evidences
 from ssmr_ident.identify.descent import descend
-from ssmr_ident.identify.joint import differentiate
+from ssmr_ident.identify.joint import JointFit, differentiate
 from ssmr_ident.identify.scatter import covariance
+from ssmr_ident.identify.trials import Trial
 
 MOST_EFFECTS = 2
 """Effects that are looked for together."""
@@ -130,6 +134,9 @@ def examine(setup: Setup, parameters: ParameterSet, progress: Progress | None = 
         stripped = without(leader.fit, more[-1])
         # the leader of pulls was led far, over hollows: what is without it begins where it ended, and is led as far
         stripped = descend(calmed(stripped) if unsteady(stripped) else stripped, LAST // 2)
+        if first and any(trial.searched for trial in stripped.trials):
+            beaten = partial(_beaten, leader, kept)
+            stripped = challenged(leader.fit, chosen.fit.counted, (stripped, chosen.fit), beaten)
         bare = explained(kept, differentiate(stripped), leader.kept)
         if bare.id == chosen.id and _cost(bare, chosen) < _cost(chosen, chosen):
             # the effect had only shown the way to a better fit without it
@@ -157,6 +164,11 @@ def examine(setup: Setup, parameters: ParameterSet, progress: Progress | None = 
 
 def _good(leader: Explanation, before: Explanation, first: bool) -> bool:
     return better(leader, before, first) or (first and shown_in_turn(leader, before))
+
+
+def _beaten(leader: Explanation, kept: Sequence[Trial], base: JointFit) -> bool:
+    """Whether beside a fit of the baseline nobody would name an effect."""
+    return not _good(leader, explained(kept, base, leader.kept), True)
 
 
 def informed(setup: Setup, parameters: ParameterSet) -> Setup:

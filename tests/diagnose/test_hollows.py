@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from made_pulls import made_pulls
 
-from ssmr_ident.diagnose.baseline import from_afar
+from ssmr_ident.diagnose import hollows
+from ssmr_ident.diagnose.hollows import ENOUGH, SHAKES, challenged, from_afar
 from ssmr_ident.diagnose.setup import Setup
 from ssmr_ident.diagnose.start import begin
 from ssmr_ident.identify.descent import descend
@@ -40,3 +41,41 @@ def test_recordings_that_take_their_time_each_are_left_as_they_are(stuck: tuple[
     _, fit = stuck
     alone = replace(fit, trials=tuple(replace(trial, abreast=False) for trial in fit.trials))
     assert from_afar(alone) == []
+
+
+def test_a_baseline_in_a_hollow_is_shaken_until_it_beats_an_effect(stuck: tuple[Setup, JointFit]) -> None:
+    _, fit = stuck
+    goal = fit.cost(fit.counted) - 2.0
+    deeper = challenged(_at(fit, goal), fit.counted, (fit,), lambda f: f.cost(fit.counted) < goal)
+    assert deeper.cost(fit.counted) < goal
+
+
+@pytest.mark.parametrize(("ahead", "times"), [(1e6, ENOUGH), (-1.0, len(SHAKES))])
+def test_a_baseline_is_given_up_that_never_gets_to_an_effect(
+    stuck: tuple[Setup, JointFit], monkeypatch: pytest.MonkeyPatch, ahead: float, times: int
+) -> None:
+    _, fit = stuck
+    asked: list[float] = []
+
+    def around(_fit: JointFit, _centre: np.ndarray, width: float, *_: object) -> list[JointFit]:
+        asked.append(width)
+        return []
+
+    monkeypatch.setattr(hollows, "_around", around)
+    goal = fit.cost(fit.counted) - ahead
+    assert challenged(_at(fit, goal), fit.counted, (fit,), lambda _: False) is fit
+    assert asked == list(SHAKES[:times])
+
+
+def test_an_effect_that_is_beaten_already_costs_nothing(
+    stuck: tuple[Setup, JointFit], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    _, fit = stuck
+    monkeypatch.delattr(hollows, "_around")
+    assert challenged(fit, fit.counted, (fit,), lambda _: True) is fit
+
+
+def _at(fit: JointFit, cost: float) -> JointFit:
+    """A fit of that cost."""
+    change = (cost - fit.cost(fit.counted)) / (2.0 * fit.counted.sum())
+    return replace(fit, residuals=tuple(np.exp(change) * r for r in fit.residuals))
