@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from ssmr_ident.core.parameter import Estimate, ParameterSet
-from ssmr_ident.diagnose.accept import mends, relieves, within_file
+from ssmr_ident.diagnose.accept import mends, relieves, touches, within_file
 from ssmr_ident.diagnose.weigh import Explanation
 from ssmr_ident.identify.coordinates import Model
 from ssmr_ident.identify.joint import JointFit
@@ -48,6 +48,24 @@ def test_an_effect_takes_back_what_the_baseline_bent(bent: float, left: float, r
         return Explanation(fit, fit)  # type: ignore[arg-type]
 
     assert relieves(explained(0.0, left), explained(bent, 1.0)) is relieved
+
+
+@pytest.mark.parametrize(
+    ("fitted", "kept", "answers"),
+    [
+        ([1.07, 1.31, 2.15], [2.99, 1.67], True),  # a drift: one recording kept back is left with 9.0 without it
+        ([1.07, 1.31, 2.15], [2.61, 9.01], False),
+        ([1.07, 1.31, 1.50], [2.61, 9.01], True),
+    ],
+)
+def test_an_answer_mends_what_the_baseline_leaves_wherever_it_shows(
+    fitted: list[float], kept: list[float], answers: bool
+) -> None:
+    def leaving(parts: list[float]) -> SimpleNamespace:
+        return SimpleNamespace(parts=np.array(parts) * 100.0, trials=[SimpleNamespace(size=100) for _ in parts])
+
+    baseline = Explanation(leaving([1.23, 1.62, 2.23]), leaving([2.61, 9.01]))  # type: ignore[arg-type]
+    assert touches(Explanation(leaving(fitted), leaving(kept)), baseline) is answers  # type: ignore[arg-type]
 
 
 def test_what_lies_below_the_noise_does_not_speak_against_a_second_effect() -> None:
