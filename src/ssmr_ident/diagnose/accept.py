@@ -88,12 +88,12 @@ def relieves(leader: Explanation, before: Explanation) -> bool:
 def touches(chosen: Explanation, baseline: Explanation) -> bool:
     """Whether an explanation takes anything from the recordings in which the baseline leaves more than noise.
 
-    What is named beside a misfit that it leaves as it is, is not what is missing. A drift may show in one alone that was
-    kept back, which the baseline has not bent round.
+    What is named beside a misfit that it leaves as it is, is not what is missing. A drift may show in one alone that
+    was kept back, which the baseline has not bent round.
     """
     left = np.concatenate([f.parts / [t.size for t in f.trials] for f in (baseline.fit, baseline.kept)])
     loud = left > LOUD
-    return not loud.any() or float(np.mean(_changes(chosen, baseline)[loud])) < np.log(UNTOUCHED)
+    return not loud.any() or float(np.mean(_changes(chosen, baseline)[loud])) < float(np.log(UNTOUCHED))
 
 
 def certain(leader: Explanation, before: Explanation) -> bool:
