@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 
 import numpy as np
 
@@ -36,9 +34,8 @@ from ssmr_ident.diagnose.rotate import left_elsewhere, shown_in_turn
 from ssmr_ident.diagnose.setup import Setup
 from ssmr_ident.diagnose.weigh import TIE, Explanation, evidences
 from ssmr_ident.identify.descent import descend
-from ssmr_ident.identify.joint import JointFit, differentiate
+from ssmr_ident.identify.joint import differentiate
 from ssmr_ident.identify.scatter import covariance
-from ssmr_ident.identify.trials import Trial
 
 MOST_EFFECTS = 2
 """Effects that are looked for together."""
@@ -135,14 +132,18 @@ def examine(setup: Setup, parameters: ParameterSet, progress: Progress | None = 
         # the leader of pulls was led far, over hollows: what is without it begins where it ended, and is led as far
         stripped = descend(calmed(stripped) if unsteady(stripped) else stripped, LAST // 2)
         if first and any(trial.searched for trial in stripped.trials):
-            beaten = partial(_beaten, leader, kept)
-            stripped = challenged(leader.fit, chosen.fit.counted, (stripped, chosen.fit), beaten)
+            stripped = challenged(
+                leader.fit,
+                chosen.fit.counted,
+                (stripped, chosen.fit),
+                lambda base, leader=leader: _beaten(leader, True, explained(kept, base, leader.kept)),  # type: ignore[misc]
+            )
         bare = explained(kept, differentiate(stripped), leader.kept)
         if bare.id == chosen.id and _cost(bare, chosen) < _cost(chosen, chosen):
             # the effect had only shown the way to a better fit without it
             tried[tried.index(chosen)], chosen = bare, bare
             baseline = bare if first else baseline
-            if not _good(leader, bare, first):
+            if _beaten(leader, first, bare):
                 continue
         chosen = replace(leader, fit=found_fit)
         tried[tried.index(leader)] = chosen
@@ -166,9 +167,12 @@ def _good(leader: Explanation, before: Explanation, first: bool) -> bool:
     return better(leader, before, first) or (first and shown_in_turn(leader, before))
 
 
-def _beaten(leader: Explanation, kept: Sequence[Trial], base: JointFit) -> bool:
-    """Whether beside a fit of the baseline nobody would name an effect."""
-    return not _good(leader, explained(kept, base, leader.kept), True)
+def _beaten(leader: Explanation, first: bool, bare: Explanation) -> bool:
+    """Whether beside a fit without it nobody would name an effect.
+
+    What fits better without an effect than with it has found a place where that was not looked for.
+    """
+    return not _good(leader, bare, first) or _cost(bare, bare) < _cost(leader, bare)
 
 
 def informed(setup: Setup, parameters: ParameterSet) -> Setup:
