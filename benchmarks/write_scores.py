@@ -1,12 +1,14 @@
-"""Write docs/theory/diagnosis_scores.md from the result files of the benchmarks: ``python benchmarks/write_scores.py``.
+r"""Write docs/theory/diagnosis_scores.md from the result files of the benchmarks.
 
 python benchmarks/score_practice.py --out out/practice.jsonl
 python benchmarks/score_practice.py --real --out out/real.jsonl
-python benchmarks/bench_diagnosis.py --first 1000 --count 200 --out out/diagnosis.jsonl
-python benchmarks/bench_nulls.py --count 1000 --out out/nulls.jsonl
+python benchmarks/bench_diagnosis.py --first 4900 --count 100 --out benchmarks/results/diagnosis.jsonl
+python benchmarks/bench_nulls.py --first 193000 --count 1000 --out benchmarks/results/nulls.jsonl --families \
+    decays,forced,rig_decay,bench,decays,forced,rig_decay,pulls,decays,forced,rig_decay,block
 python benchmarks/bench_power.py --family forced --out out/power.jsonl
 python benchmarks/bench_peers.py --out out/peers.jsonl
 python benchmarks/bench_cost.py > out/cost.txt
+python benchmarks/write_scores.py --results benchmarks/results
 """
 
 from __future__ import annotations
@@ -27,7 +29,9 @@ PAGE = Path(__file__).resolve().parents[1] / "docs" / "theory" / "diagnosis_scor
 HEAD = """# What the diagnosis is worth
 
 Written by `python benchmarks/write_scores.py` from the results of the benchmarks named below; nothing here is typed by
-hand but the words. An engine's commit stands with each table; a + means that files were changed beside it.
+hand but the words. An engine's commit stands with each table; a + means that files were changed beside it. Rows of
+counts that take hours, and go on where they stopped, are in `benchmarks/results/`; a session that led to a change
+of the engine stays in them as it was answered before.
 
 ## How it is judged
 **Sessions.** `benchmarks/bank` draws random sessions with known answers, each from its seed: nine decays of a robot and
