@@ -33,3 +33,5 @@ def test_block_averages_of_some_signals_by_gains_of_their_own(decay: BodyDecay) 
     )
     # an open-ended signal is cut where the blocks end
     np.testing.assert_array_equal(decay.averaged(signals[:, : first + 7 * len(decay.samples)]), decay.averaged(signals))
+    with pytest.raises(ValueError, match="blocks need"):
+        decay.averaged(signals[:, : first + 7 * len(decay.samples) - 1])

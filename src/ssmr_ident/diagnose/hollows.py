@@ -18,7 +18,7 @@ DRAWN, BEGUN, SEED = 64, 16, 20120511
 
 SHAKES = (0.3, 0.1) * 4
 """Standard deviations of what is known by which a fit is shaken, one time after the other. The baseline of a null
-session went down by 39, 42 and 119 in six times, from where it had begun, and by 7 to 82 the first time."""
+session went down by 39, 42 and 119 in six times, from where it had begun, and by 0 to 82 the first time."""
 
 ENOUGH, HOPE = 2, 2.0
 """Times after which a fit is given up that at so many times the pace it has had would not come as far as it should."""

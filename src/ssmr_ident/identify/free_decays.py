@@ -105,8 +105,15 @@ class BodyDecay:
         Returns
         -------
         (k, n, c) float
+
+        Raises
+        ------
+        ValueError
+            Signals end before the last block does.
         """
         skip = round((self.first - (self.block - 1) / 2 * self.record.step) / self.record.step)
+        if signals.shape[1] < skip + len(self.samples) * self.block:
+            raise ValueError(f"{signals.shape[1]} samples; blocks need {skip + len(self.samples) * self.block}")
         rows = np.arange(len(signals)) if rows is None else rows
         gains = np.ones((len(rows), signals.shape[2])) if gains is None else gains
         means = np.empty((len(rows), len(self.samples), signals.shape[2]))
