@@ -16,7 +16,7 @@ from ssmr_ident.diagnose.race import FAR
 from ssmr_ident.diagnose.setup import Setup
 from ssmr_ident.diagnose.start import begin, pooled
 from ssmr_ident.identify.clouds import settled
-from ssmr_ident.identify.descent import LOUD, chatters, descend
+from ssmr_ident.identify.descent import LOUD, chatters, descend, slides
 from ssmr_ident.identify.horizons import horizons, led
 from ssmr_ident.identify.joint import JointFit, differentiate, evaluate
 from ssmr_ident.identify.swings import led_through_slides
@@ -94,7 +94,7 @@ def called_back(fit: JointFit) -> JointFit:
     """
     left = fit.parts / [t.size for t in fit.trials]
     far = np.flatnonzero(far_off(fit))
-    if not len(far) or not float(np.median(left)) < WIDE or any(t.searched for t in fit.trials):
+    if not len(far) or not float(np.median(left)) < WIDE or slides(fit):
         return fit
     ends = [fit]
     for column in far:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -33,9 +34,10 @@ from ssmr_ident.diagnose.race import Progress
 from ssmr_ident.diagnose.rotate import left_elsewhere, shown_in_turn
 from ssmr_ident.diagnose.setup import Setup
 from ssmr_ident.diagnose.weigh import TIE, Explanation, evidences
-from ssmr_ident.identify.descent import descend
-from ssmr_ident.identify.joint import differentiate
+from ssmr_ident.identify.descent import descend, slides
+from ssmr_ident.identify.joint import JointFit, differentiate
 from ssmr_ident.identify.scatter import covariance
+from ssmr_ident.identify.trials import Trial
 
 MOST_EFFECTS = 2
 """Effects that are looked for together."""
@@ -131,20 +133,18 @@ def examine(setup: Setup, parameters: ParameterSet, progress: Progress | None = 
         stripped = without(leader.fit, more[-1])
         # the leader of pulls was led far, over hollows: what is without it begins where it ended, and is led as far
         stripped = descend(calmed(stripped) if unsteady(stripped) else stripped, LAST // 2)
-        if first and any(trial.searched for trial in stripped.trials):
-            stripped = challenged(
-                leader.fit,
-                chosen.fit.counted,
-                (stripped, chosen.fit),
-                lambda base, leader=leader: _beaten(leader, True, explained(kept, base, leader.kept)),  # type: ignore[misc]
-            )
+        if first and slides(stripped):
+            stripped = _shaken(stripped, chosen, leader, kept)
         bare = explained(kept, differentiate(stripped), leader.kept)
-        if bare.id == chosen.id and _cost(bare, chosen) < _cost(chosen, chosen):
+        moved = bare.id == chosen.id and _cost(bare, chosen) < _cost(chosen, chosen)
+        if moved:
             # the effect had only shown the way to a better fit without it
             tried[tried.index(chosen)], chosen = bare, bare
             baseline = bare if first else baseline
-            if _beaten(leader, first, bare):
+        if _outdone(leader, chosen) or (moved and not _good(leader, chosen, first)):
+            if moved:
                 continue
+            break
         chosen = replace(leader, fit=found_fit)
         tried[tried.index(leader)] = chosen
         singles.append(chosen)
@@ -167,12 +167,22 @@ def _good(leader: Explanation, before: Explanation, first: bool) -> bool:
     return better(leader, before, first) or (first and shown_in_turn(leader, before))
 
 
-def _beaten(leader: Explanation, first: bool, bare: Explanation) -> bool:
-    """Whether beside a fit without it nobody would name an effect.
+def _outdone(leader: Explanation, before: Explanation) -> bool:
+    """Whether pulls fit better without an effect than with it.
 
-    What fits better without an effect than with it has found a place where that was not looked for.
+    All its evidence is then of recordings kept back, and these may lie in hollows of their own.
     """
-    return not _good(leader, bare, first) or _cost(bare, bare) < _cost(leader, bare)
+    return slides(leader.fit) and _cost(before, before) < _cost(leader, before)
+
+
+def _shaken(stripped: JointFit, chosen: Explanation, leader: Explanation, kept: Sequence[Trial]) -> JointFit:
+    """The baseline of pulls after as many tries as the effects have had that stand against it."""
+
+    def beaten(base: JointFit) -> bool:
+        bare = explained(kept, base, leader.kept)
+        return _outdone(leader, bare) or not _good(leader, bare, True)
+
+    return challenged(leader.fit, chosen.fit.counted, (stripped, chosen.fit), beaten)
 
 
 def informed(setup: Setup, parameters: ParameterSet) -> Setup:

@@ -9,7 +9,7 @@ from scipy.stats import f as fisher
 from ssmr_ident.compare.recorded import follow
 from ssmr_ident.diagnose.accept import CHANCE, certain, harmless
 from ssmr_ident.diagnose.weigh import Explanation
-from ssmr_ident.identify.descent import descend
+from ssmr_ident.identify.descent import descend, slides
 from ssmr_ident.identify.joint import JointFit, evaluate
 
 FEWEST = 3
@@ -28,7 +28,7 @@ def shown_in_turn(leader: Explanation, before: Explanation) -> bool:
     a friction that falls by 0.4 % was shown in turn in two of three pulls of another plant that had none.
     """
     trials = leader.fit.trials
-    if len(trials) < FEWEST or any(t.searched for t in trials):
+    if len(trials) < FEWEST or slides(leader.fit):
         return False
     if not certain(leader, before) or not harmless(leader, before):
         return False
@@ -46,7 +46,7 @@ def left_elsewhere(baseline: Explanation) -> bool:
     nothing is missing promises nothing. Not where contacts slide: there no two runs are alike.
     """
     fitted, kept = baseline.fit, baseline.kept
-    if any(t.searched for t in fitted.trials):
+    if slides(fitted):
         return False
     left, other = (e.parts / [t.size for t in e.trials] for e in (fitted, kept))
     most, worst = int(np.argmax(left)), int(np.argmax(other))

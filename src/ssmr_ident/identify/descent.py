@@ -47,7 +47,7 @@ def search_again(fit: JointFit) -> JointFit:
                 return found, simulated, residual
         return kept, fit.simulated[index], fit.residuals[index]
 
-    if not any(trial.searched for trial in fit.trials):
+    if not slides(fit):
         return fit
     own, simulated, residuals = zip(*over(fit.trials, one), strict=True)
     return JointFit(fit.trials, fit.model, fit.point, own, simulated, residuals, fit.slopes)
@@ -114,6 +114,11 @@ def descend(
         if first:
             break
     return fit
+
+
+def slides(fit: JointFit) -> bool:
+    """Whether contacts slide in any recording, whose nuisances no descent finds."""
+    return any(t.searched for t in fit.trials)
 
 
 def chatters(fit: JointFit) -> bool:
