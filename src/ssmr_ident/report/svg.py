@@ -7,6 +7,7 @@ import re
 from html import escape
 
 from matplotlib import rc_context
+from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 
 from ssmr_ident.report.style import STYLE
@@ -18,8 +19,13 @@ _COLOUR = re.compile(r"#([0-9a-f]{6})\b")
 def drawn(figure: Figure) -> str:
     """SVG text of a figure, without the prologue and the metadata; the same figure gives the same text."""
     buffer = io.StringIO()
+    canvas, dpi = figure.canvas, figure.dpi
+    figure.set_dpi(STYLE["savefig.dpi"])
     with rc_context(STYLE):
-        figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": None})
+        # savefig draws twice, first to no file
+        FigureCanvasSVG(figure).print_svg(buffer, metadata={"Date": None, "Creator": None})
+    figure.set_canvas(canvas)
+    figure.set_dpi(dpi)
     text = buffer.getvalue()
     return re.sub(r"\s*<metadata>.*?</metadata>", "", text[text.index("<svg") :], flags=re.DOTALL)
 
