@@ -10,8 +10,9 @@ import numpy as np
 
 from ssmr_ident.core.kernel import kernel
 from ssmr_ident.core.recent import Recent
+from ssmr_ident.physics import slots
 from ssmr_ident.physics.effect import Site
-from ssmr_ident.physics.effects import CATALOGUE, ground_roughness
+from ssmr_ident.physics.effects import CATALOGUE, ground_roughness, unlisted
 from ssmr_ident.physics.robot import GRAVITY, Robot
 from ssmr_ident.physics.slots import (
     CUBIC,
@@ -35,6 +36,20 @@ _POSE = ("x", "y", "z", "roll", "pitch", "yaw")
 AWAY = (*_POSE, "brace_x", "brace_y", "sway_x", "sway_y", "loaded", "unseen")
 MOVING = (*_POSE, "sway_x", "sway_y")
 """Order of a scenario's ``offset`` and ``velocity`` as numbers in a row."""
+
+
+_SWITCHES = np.array(
+    [
+        slots.CUBIC, slots.KNEE_SHARE, slots.QUADRATIC, slots.FRICTION_FORCE, slots.SLIDER, slots.FRICTION_ROUNDING,
+        slots.ALPHA, slots.RELAXATION_STIFFNESS, slots.GAP, slots.GAP_SHARE_X, slots.KINETIC_SHARE, slots.LOAD_EXPONENT,
+        slots.ROLLING, slots.LIFT, slots.CORIOLIS, slots.MAST_HZ, slots.BELT_STIFFNESS,
+        *range(slots.UNLISTED, slots.UNLISTED + len(unlisted.TERMS)),
+    ]
+)  # fmt: skip
+"""What the loop asks of all lanes in common: whether these are off."""
+
+_OFF = effect_vector({})[_SWITCHES]
+_OFF[_SWITCHES == slots.GAP_SHARE_X] = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,10 +78,21 @@ class Body:
     beyond: bool
     read_otherwise: bool
 
-    @property
+    @cached_property
     def uneven(self) -> np.ndarray | None:
         """The floor, (n, n) float [m], where anything makes it uneven; None where it is flat."""
         return self.floor if np.any(self.e[_UNEVEN] != 0.0) else None
+
+    @cached_property
+    def switches(self) -> bytes:
+        """Which of the effects that the loop asks of all lanes in common are off."""
+        return (self.e[_SWITCHES] != _OFF).tobytes()
+
+    @cached_property
+    def scaled(self) -> np.ndarray | None:
+        """By what all outputs are read too large, (outputs,) float; None where they are read as they are."""
+        gain = self.robot.accelerometer.gain
+        return np.append(gain, np.ones(len(k.OUTPUTS) - 3)) if np.any(gain != 1.0) else None
 
     @cached_property
     def rest(self) -> np.ndarray:

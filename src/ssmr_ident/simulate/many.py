@@ -124,9 +124,8 @@ def _channels(
     for result, one in zip(out, runs, strict=True):
         if one is None:
             continue
-        gain = one.body.robot.accelerometer.gain
-        if np.any(gain != 1.0):
-            result *= np.append(gain, np.ones(len(layout.OUTPUTS) - 3))[kept]
+        if one.body.scaled is not None:
+            result *= one.body.scaled[kept]
         if one.body.read_otherwise:
             channels = {name: result[:, index] for index, name in enumerate(read)}
             result[:] = np.column_stack(list(sensed(time, channels, one.body.active).values()))

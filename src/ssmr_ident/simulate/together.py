@@ -9,10 +9,7 @@ import numpy as np
 
 from ssmr_ident.core.kernel import kernel
 from ssmr_ident.core.lanes import WIDTH, lane, lanes_of
-from ssmr_ident.physics import slots
-from ssmr_ident.physics.effects import unlisted
 from ssmr_ident.physics.sensor import low_pass_coefficients
-from ssmr_ident.physics.slots import effect_vector
 from ssmr_ident.simulate.body import Body
 from ssmr_ident.simulate.layout import OUTPUTS, POINTS, SLIDING_SPEED, SLIP_COUPLING
 from ssmr_ident.simulate.pulling import HELD, PULLED
@@ -25,19 +22,6 @@ FEWEST = 3
 
 LONGEST = 200_000
 """Samples up to which they are taken: eight runs of all outputs then fill 0.3 GB, and each thread has its own."""
-
-_SWITCHES = np.array(
-    [
-        slots.CUBIC, slots.KNEE_SHARE, slots.QUADRATIC, slots.FRICTION_FORCE, slots.SLIDER, slots.FRICTION_ROUNDING,
-        slots.ALPHA, slots.RELAXATION_STIFFNESS, slots.GAP, slots.GAP_SHARE_X, slots.KINETIC_SHARE, slots.LOAD_EXPONENT,
-        slots.ROLLING, slots.LIFT, slots.CORIOLIS, slots.MAST_HZ, slots.BELT_STIFFNESS,
-        *range(slots.UNLISTED, slots.UNLISTED + len(unlisted.TERMS)),
-    ]
-)  # fmt: skip
-"""What the loop asks of all lanes in common: whether these are off."""
-
-_OFF = effect_vector({})
-_OFF[slots.GAP_SHARE_X] = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,7 +54,7 @@ class Run:
         """What runs have in common that go in lanes."""
         return (
             self.beyond,
-            (self.body.e[_SWITCHES] != _OFF[_SWITCHES]).tobytes(),
+            self.body.switches,
             (self.p[POINTS + 1 : POINTS + 12 : 3] > 0.0).tobytes(),
             self.p[SLIDING_SPEED] > 0.0,
             self.p[SLIP_COUPLING] != 0.0,
