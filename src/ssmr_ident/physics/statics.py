@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -39,19 +40,28 @@ def _newton(points, mass, stiffness, cubic):
     sink = mass * GRAVITY / (4.0 * stiffness)
     height, roll, pitch = -points[:, 2].mean() - sink, 0.0, 0.0
     for _ in range(30):
-        cr, sr, cp, sp = np.cos(roll), np.sin(roll), np.cos(pitch), np.sin(pitch)
-        residual = np.array([-mass * GRAVITY, 0.0, 0.0])
-        jacobian = np.zeros((3, 3))
-        for x, y, z in points:
-            lateral = cr * y - sr * z
+        cr, sr, cp, sp = math.cos(roll), math.sin(roll), math.cos(pitch), math.sin(pitch)
+        up, about_x, about_y = -mass * GRAVITY, 0.0, 0.0
+        # how stiff the wheels are together: up, up by roll and pitch, roll, roll by pitch, pitch
+        uu, ux, uy, xx, xy, yy = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+        for i in range(len(points)):
+            x, y, z = points[i, 0], points[i, 1], points[i, 2]
             raised = sr * y + cr * z
-            levers = np.array([1.0, lateral, -(cp * x + sp * raised)])
-            depth = -(height - sp * x + cp * raised)
-            residual += levers * (stiffness * depth + cubic * depth**3)
-            jacobian -= np.outer(levers, levers) * (stiffness + 3.0 * cubic * depth**2)
-        change = np.linalg.solve(jacobian, residual)
-        height, roll, pitch = height - change[0], roll - change[1], pitch - change[2]
-        if np.abs(change).max() < 1e-13:  # Newton: what is left now is the square of that
+            lateral, along = cr * y - sr * z, -(cp * x + sp * raised)
+            depth = sp * x - cp * raised - height
+            force = stiffness * depth + cubic * depth**3
+            slope = stiffness + 3.0 * cubic * depth**2
+            up, about_x, about_y = up + force, about_x + lateral * force, about_y + along * force
+            uu, ux, uy = uu + slope, ux + lateral * slope, uy + along * slope
+            xx, xy, yy = xx + lateral**2 * slope, xy + lateral * along * slope, yy + along**2 * slope
+        # what is left, by Cramer's rule
+        a, b, c = xx * yy - xy * xy, uy * xy - ux * yy, ux * xy - uy * xx
+        whole = uu * a + ux * b + uy * c
+        higher = (a * up + b * about_x + c * about_y) / whole
+        rolled = (b * up + (uu * yy - uy * uy) * about_x + (ux * uy - uu * xy) * about_y) / whole
+        pitched = (c * up + (ux * uy - uu * xy) * about_x + (uu * xx - ux * ux) * about_y) / whole
+        height, roll, pitch = height + higher, roll + rolled, pitch + pitched
+        if max(abs(higher), abs(rolled), abs(pitched)) < 1e-13:  # Newton: what is left now is the square of that
             break
     return np.array([height, roll, pitch])
 
