@@ -33,11 +33,19 @@ class _Periodogram:
         count = len(samples)
         self.resolution = 1.0 / (count * step)
         self.highest = 0.45 / step - 2.0
-        self._centred = (samples - samples.mean(axis=0)) * np.hanning(count)[:, None]
-        self._times = step * (np.arange(count) - count / 2)
+        self._step, self._fine = step, math.isqrt(count) + 1
+        rows = -(-count // self._fine)
+        centred = np.zeros((rows * self._fine, samples.shape[1]))
+        centred[:count] = (samples - samples.mean(axis=0)) * np.hanning(count)[:, None]
+        # (channel, row, place): an exponential of all samples is the product of that of a row and that within it
+        self._centred = np.ascontiguousarray(centred.reshape(rows, self._fine, -1).transpose(2, 0, 1))
 
     def power(self, frequency: float) -> float:
-        return float(np.sum(np.abs(np.exp(-2j * np.pi * frequency * self._times) @ self._centred) ** 2))
+        turn = -2j * np.pi * frequency * self._step
+        within = np.exp(turn * np.arange(self._fine))
+        of_rows = self._centred @ np.column_stack([within.real, within.imag]) @ np.array([1.0, 1j])
+        rows = np.exp(turn * self._fine * np.arange(of_rows.shape[1]))
+        return float(np.sum(np.abs(of_rows @ rows) ** 2))
 
     def stands_out(self, frequency: float) -> bool:
         """Whether a line is far above the noise around it; False where the record is too short to tell."""
