@@ -155,17 +155,19 @@ class Trial:
         return tuple(np.linalg.qr(self._white(self.basis, index))[0] for index in range(len(self.channels)))
 
     @cached_property
-    def _drifts(self) -> tuple[tuple[Array, Array], ...]:
-        """What makes white again what drifts of uncertain size add to white noise, I − U (1 − (1 + S²)^−½) U', per
-        channel: U (N, d) and the rest of the product (d, N)."""
-        drift = self.drift
-        if drift is None:
-            return tuple((projector[:, :0], projector[:, :0].T) for projector in self._projectors)
+    def _removed(self) -> tuple[tuple[Array, Array], ...]:
+        """What the whitened basis, and drifts of uncertain size, add to white noise, as a product (N, r) (r, N) per
+        channel: drifts are made white again by I − U (1 − (1 + S²)^−½) U'."""
         found = []
         for index, projector in enumerate(self._projectors):
-            columns = self._white(drift, index)
+            if self.drift is None:
+                found.append((projector, projector.T))
+                continue
+            columns = self._white(self.drift, index)
             u, size, _ = np.linalg.svd(columns - projector @ (projector.T @ columns), full_matrices=False)
-            found.append((u, (1.0 - (1.0 + size**2) ** -0.5)[:, None] * u.T))
+            # u has nothing of the basis in it, so both go at once
+            along = (1.0 - (1.0 + size**2) ** -0.5)[:, None] * u.T
+            found.append((np.hstack([projector, u]), np.vstack([projector.T, along])))
         return tuple(found)
 
     def _white(self, columns: Array, index: int) -> Array:
@@ -178,10 +180,8 @@ class Trial:
     def whitened(self, signal: Array) -> Array:
         """(n, c) or (n, c, k) to whitened channels one after the other, basis projected out, (N,) or (N, k)."""
         parts = []
-        for index, projector in enumerate(self._projectors):
+        for index, (across, along) in enumerate(self._removed):
             white = self._white(signal[:, index], index)
-            white = white - projector @ (projector.T @ white)
-            across, along = self._drifts[index]
             parts.append(white - across @ (along @ white))
         return np.concatenate(parts)
 
