@@ -5,13 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
-import lmfit
 import numpy as np
 
 from ssmr_ident.core.shown import Shown
 from ssmr_ident.identify.lmfit_report import Variable, matrix_correlations, variables_report
 from ssmr_ident.identify.poles import Block, PoleFit, fit_poles, modelled
+
+if TYPE_CHECKING:
+    import lmfit
 
 
 @dataclass(frozen=True)
@@ -164,6 +167,8 @@ class DecayFit(Shown):
         Standard deviations and correlations are replaced by those of ``covariance``, which also holds where the
         residual is not white.
         """
+        import lmfit  # it brings pandas: what prints no report of it need not wait
+
         parameters = lmfit.Parameters()
         for number, mode in enumerate(self.modes, 1):
             parameters.add(f"omega_n_{number}", value=mode.omega_n, min=0.0)
@@ -190,7 +195,9 @@ class DecayFit(Shown):
 
     def report(self) -> str:
         """lmfit's printed report of :meth:`minimize`, units and eliminated amplitudes added."""
-        text = lmfit.fit_report(self.minimize(), min_correl=0.1)
+        from lmfit import fit_report
+
+        text = fit_report(self.minimize(), min_correl=0.1)
         head = text[: text.index("[[Variables]]")].rstrip()
         sizes = matrix_correlations(self.names, self.covariance)
         return "\n".join([head, *variables_report(self.variables(), sizes, least=0.1)])

@@ -5,9 +5,12 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-import lmfit
 import numpy as np
+
+if TYPE_CHECKING:
+    import lmfit
 
 LEAST_CORRELATION = 0.5
 
@@ -52,6 +55,8 @@ def as_parameters(
     -----
     lmfit names must be those of Python variables, so dots and blanks become underscores.
     """
+    import lmfit  # it brings pandas: what prints no report of it need not wait
+
     parameters = lmfit.Parameters()
     names = {variable.name: re.sub(r"\W", "_", variable.name) for variable in variables}
     for variable in variables:
@@ -82,7 +87,9 @@ def variables_report(
         Smallest correlation shown.
     """
     parameters, full = as_parameters(variables, correlations)
-    text = lmfit.fit_report(parameters, show_correl=True, min_correl=least, sort_pars=False)
+    from lmfit import fit_report
+
+    text = fit_report(parameters, show_correl=True, min_correl=least, sort_pars=False)
     if correlations and "[[Correlations]]" not in text:
         text += f"\n[[Correlations]] (unreported correlations are < {least:.3f})"
     by_name = {variable.name: variable for variable in variables}

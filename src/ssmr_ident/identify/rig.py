@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-import lmfit
 import numpy as np
 from scipy.stats import chi2
 from scipy.stats import t as student
@@ -18,6 +18,9 @@ from scipy.stats import t as student
 from ssmr_ident.core.shown import Shown
 from ssmr_ident.identify.lmfit_report import Variable, matrix_correlations, variables_report
 from ssmr_ident.identify.noise import long_run_variance, whiteness
+
+if TYPE_CHECKING:
+    import lmfit
 
 Array = np.ndarray
 
@@ -197,6 +200,8 @@ def fit_rig(
             residuals.append(weight * (target - own_gain * driven))
             drivens.append(weight * driven)
         return residuals, gain, drivens
+
+    import lmfit  # it brings pandas: who fits no rig need not wait
 
     mass, damping, stiffness = start
     origin = np.log([stiffness / mass, damping / mass])
