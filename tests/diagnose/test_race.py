@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from small_rigs import Run, campaign, fitted, prepared
 
-from ssmr_ident.diagnose import race
+from ssmr_ident.diagnose import explore, race
 from ssmr_ident.diagnose.explain import beside
 from ssmr_ident.diagnose.scan import Suspect, scan
 from ssmr_ident.identify.descent import descend
@@ -67,3 +67,18 @@ def test_of_a_race_over_whole_recordings_each_effects_best_goes_on() -> None:
     assert len(groups) > 2
     kept = race.HEATS[-1][0]
     assert len(found) <= 2 * kept
+
+
+def test_what_grows_while_a_recording_lasts_is_asked_for_on_whole_recordings(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A stiffness that drifts hardly shows on a first horizon, and a few steps there may lose it."""
+    runs = [Run(force=20.0), Run(force=40.0), Run(force=10.0)]
+    fit = fitted(prepared(campaign({"unlisted": {"c_ts_N_m_s": 300.0}}, runs, seed=3, duration=6.0)))
+    lost = [CATALOGUE["nonlinear_stiffness"], CATALOGUE["unlisted"]]
+
+    def misled(base, groups, lengths, progress):  # type: ignore[no-untyped-def]
+        return [race.started(base, group[0]) for group in groups if group[0].effect == "nonlinear_stiffness"]
+
+    monkeypatch.setattr(explore, "screened", misled)
+    monkeypatch.setattr(explore, "candidates", lambda base, baseline: lost)
+    best = race.ranked(explore.search(fit, "rigid6", (1.0, np.inf)).tried)[0]
+    assert best.model.split(best.point)[1]["unlisted"]["c_ts_N_m_s"] == pytest.approx(300.0, rel=0.05)

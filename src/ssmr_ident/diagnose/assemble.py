@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ssmr_ident.core.parameter import ParameterSet
+from ssmr_ident.diagnose.accept import left_over
 from ssmr_ident.diagnose.diagnosis import MISSING, NOTHING, UNDETERMINED, Conflict, Diagnosis, NamedEffect, Tried, Worth
 from ssmr_ident.diagnose.discriminate import next_experiment
 from ssmr_ident.diagnose.drift import drifts
@@ -13,6 +14,7 @@ from ssmr_ident.diagnose.evidence import Evidence
 from ssmr_ident.diagnose.exported import exported
 from ssmr_ident.diagnose.locate import located
 from ssmr_ident.diagnose.residual_map import residual_maps
+from ssmr_ident.diagnose.rivals import in_part
 from ssmr_ident.diagnose.surface import surfaces
 from ssmr_ident.diagnose.weigh import Explanation, shares
 from ssmr_ident.diagnose.within import REACH, measure_of
@@ -22,11 +24,11 @@ from ssmr_ident.identify.joint import JointFit, differentiate
 
 METRIC = "nrmse_percent"
 
-CONFLICT = 2.0
-"""Prior standard deviations from which a parameter counts as pulled away from what is known of it."""
-
 MOST_RIVALS = 2
 """Explanations beside the best with which an answer is still one."""
+
+CONFLICT = 2.0
+"""Prior standard deviations from which a parameter counts as pulled away from what is known of it."""
 
 UNEXPLAINED = 1.6
 """Error over the noise floor from which something is missing even if nothing names it, where what is left follows the
@@ -100,7 +102,7 @@ def assembled(outcome: Outcome, parameters: ParameterSet, everything: JointFit |
         before=exported(base.fit, parameters),
         after=after if named else exported(base.fit, parameters),
         summary=summary,
-        notes=(*outcome.setup.notes, *jolts, *_elsewhere(free, base, conflicts), *_notes(best, heldout)),
+        notes=(*outcome.setup.notes, *jolts, *_elsewhere(free, base, conflicts), *_notes(best, free, heldout)),
         evidence=evidence,
     )
 
@@ -170,7 +172,7 @@ def _elsewhere(free: Explanation, within: Explanation, conflicts: tuple[Conflict
     )
 
 
-def _notes(best: Explanation, heldout: Worth) -> tuple[str, ...]:
+def _notes(best: Explanation, free: Explanation, heldout: Worth) -> tuple[str, ...]:
     notes = []
     clipped = sum(t.facts.get("clipped", 0.0) for t in (*best.fit.trials, *best.kept.trials))
     if clipped:
@@ -183,6 +185,11 @@ def _notes(best: Explanation, heldout: Worth) -> tuple[str, ...]:
         notes.append(
             f"{readable(best.id)} still leaves {heldout.after / heldout.noise_floor:.1f} times the noise floor: the "
             "law's form, or a smaller effect beside it, is not quite the world's"
+        )
+    if in_part(best, free):
+        notes.append(
+            f"{readable(best.id)} leaves {100 * left_over(best, free):.0f} % of what the baseline leaves beyond noise, "
+            "and more of it where more moves: the world's law may be none that is listed"
         )
     return tuple(notes)
 

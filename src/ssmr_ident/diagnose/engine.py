@@ -11,11 +11,9 @@ from ssmr_ident.compare.recorded import follow
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.accept import (
     FORMULA,
-    as_near,
     better,
     certain,
     leading,
-    leaves_structure,
     left_over,
     mends,
     significant,
@@ -31,9 +29,10 @@ from ssmr_ident.diagnose.hollows import challenged
 from ssmr_ident.diagnose.pairs import backward, instead, partners_of, with_a_second
 from ssmr_ident.diagnose.polish import calmed, loud
 from ssmr_ident.diagnose.race import Progress
+from ssmr_ident.diagnose.rivals import rivals_of
 from ssmr_ident.diagnose.rotate import left_elsewhere, shown_in_turn
 from ssmr_ident.diagnose.setup import Setup
-from ssmr_ident.diagnose.weigh import TIE, Explanation, evidences
+from ssmr_ident.diagnose.weigh import Explanation, evidences
 from ssmr_ident.identify.descent import descend, slides
 from ssmr_ident.identify.joint import JointFit, differentiate
 from ssmr_ident.identify.scatter import covariance
@@ -153,13 +152,8 @@ def examine(setup: Setup, parameters: ParameterSet, progress: Progress | None = 
         chosen, tried = instead(chosen, tried, kept, setup.campaign.session.baseline, lengths, progress)
     if chosen is not baseline and not touches(chosen, baseline):
         chosen = baseline
+    rivals, tried = rivals_of(chosen, baseline, tried, searches[0].suspects if searches else (), kept)
     found = evidences(tried)
-    top, wrong = found[chosen.id], leaves_structure(chosen)
-    alike = [e for e in tried if e is not chosen and len(e.fit.model.ids) <= len(chosen.fit.model.ids)]
-    rivals = sorted(
-        (e for e in alike if e is not baseline and (top - found[e.id] < TIE or (wrong and as_near(e, chosen)))),
-        key=lambda e: -found[e.id],
-    )
     return Outcome(setup, baseline, tuple(tried), chosen, tuple(rivals), found, tuple(searches))
 
 

@@ -94,7 +94,7 @@ def search(
     elif loud:
         rough = raced(base, groups, progress)
     else:
-        chosen = [g for g in groups if g[0].gain > PROMISING + len(g[0].at)][: REFITTED if further else SCREENED]
+        chosen = [g for g in groups if _promises(g[0])][: REFITTED if further else SCREENED]
         alone = bent(base) and not further
         beyond = [g for g in groups if (alone or elsewhere) and _moves_beyond(g[0].effect) and len(lengths) > 1]
         same = [g[0] for g in groups if alone and g[0].own < SAME and not CATALOGUE[g[0].effect].sudden]
@@ -103,12 +103,26 @@ def search(
         field += [partial(_instead, base, s) for s in same]
         rough = run_on(list(side_by_side(lambda begin: begin(), field)))
     tried = _to_the_end(base, rough, rest, lengths, progress)
+    if loud and len(lengths) > 1 and not chatters(base) and groups and _promises(groups[0][0]):
+        # what grows while a recording lasts hardly shows on a first horizon, and is left behind there
+        first = groups[0][0]
+        tried += [] if _has(tried, first) else _to_the_end(base, [started(base, first)], [np.inf], lengths, progress)
     if loud and baseline == "sdof" and len(lengths) > 1 and tried and leaves_much(ranked(tried)[0]):
         # what a first horizon tells of two recordings had put something else in front; rigs are simulated in no time
         tried += _to_the_end(base, raced(base, groups, progress), [np.inf], lengths, progress)
     if progress:
         progress("refitting explanations", 1, 1)
     return Search(base, tuple(tuple(g) for g in groups), tuple(_each_once(tried)), tuple(lengths))
+
+
+def _promises(suspect: Suspect) -> bool:
+    return suspect.gain > PROMISING + len(suspect.at)
+
+
+def _has(fits: Sequence[JointFit], suspect: Suspect) -> bool:
+    """Whether a suspect's effect was refitted in its formula."""
+    forms = [(f.model.ids[-1], {c.parameter.name for c in f.model.free if c.effect == f.model.ids[-1]}) for f in fits]
+    return (suspect.effect, set(suspect.at)) in forms
 
 
 def _instead(base: JointFit, suspect: Suspect) -> JointFit:

@@ -1,0 +1,80 @@
+"""Explanations that cannot be told from the answer, and answers that are only part of one."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ssmr_ident.diagnose.accept import as_near, leaves_structure, left_over
+from ssmr_ident.diagnose.explain import beside
+from ssmr_ident.diagnose.followed import explained, joined
+from ssmr_ident.diagnose.scan import Suspect
+from ssmr_ident.diagnose.weigh import TIE, Explanation, evidences
+from ssmr_ident.diagnose.worth import BY_CHANCE, grows_with_motion, predictions
+from ssmr_ident.identify.descent import chatters, descend
+from ssmr_ident.identify.trials import Trial
+
+NONE_OF_THEM = "unlisted"
+
+MOST = 0.5
+"""Share of the baseline's error beyond which what an effect leaves, where more of it is left where more moves, is not
+its formula's doing: docs/theory/diagnosis.md."""
+
+STEPS = 10
+"""Gauss-Newton steps of a law that had not come so far as to be refitted."""
+
+
+def in_part(chosen: Explanation, baseline: Explanation) -> bool:
+    """Whether an effect leaves most of what the baseline left, and more of it where more moves, as no noise is."""
+    named = _named(chosen, baseline)
+    if len(named) != 1 or NONE_OF_THEM in named or chatters(chosen.fit):
+        return False
+    if left_over(chosen, baseline) < MOST:
+        return False
+    return grows_with_motion(predictions(chosen.fit) + predictions(chosen.kept)) < BY_CHANCE
+
+
+def rivals_of(
+    chosen: Explanation,
+    baseline: Explanation,
+    tried: Sequence[Explanation],
+    groups: Sequence[Sequence[Suspect]],
+    kept: Sequence[Trial],
+) -> tuple[list[Explanation], list[Explanation]]:
+    """Those with no more effects that fit as well as the chosen one, the likeliest first; and all that was tried.
+
+    Where the chosen one leaves structure, also those that are as near to the world; where that is most of what there
+    was, a law of no list as well, however it fits.
+
+    Parameters
+    ----------
+    groups : sequence of sequence of Suspect
+        Per effect, beside the baseline.
+    """
+    if chosen is baseline:
+        return [], list(tried)
+    none = _none_of_them(baseline, tried, groups, kept) if in_part(chosen, baseline) else []
+    tried = joined(tried, none)
+    found, wrong = evidences(tried), leaves_structure(chosen)
+    alike = [e for e in tried if e not in (chosen, baseline) and len(e.fit.model.ids) <= len(chosen.fit.model.ids)]
+    rivals = [e for e in alike if found[chosen.id] - found[e.id] < TIE or e in none or (wrong and as_near(e, chosen))]
+    return sorted(rivals, key=lambda e: -found[e.id]), tried
+
+
+def _none_of_them(
+    baseline: Explanation, tried: Sequence[Explanation], groups: Sequence[Sequence[Suspect]], kept: Sequence[Trial]
+) -> list[Explanation]:
+    """The best law of those that are in no list, where a session shows any."""
+    for explanation in tried:
+        if _named(explanation, baseline) == (NONE_OF_THEM,):
+            return [explanation]
+    for group in groups:
+        if group[0].effect == NONE_OF_THEM:
+            found = explained(kept, descend(beside(baseline.fit, group[0]), STEPS))
+            return [found] if np.isfinite(found.fit.rss + found.kept.rss) else []
+    return []
+
+
+def _named(explanation: Explanation, baseline: Explanation) -> tuple[str, ...]:
+    return tuple(name for name in explanation.fit.model.ids if name not in baseline.fit.model.ids)
