@@ -86,7 +86,8 @@ def instead(
 
     Of two effects that hide each other neither is in front alone: a force in no list had stood for hardening with a
     loop. So partners are looked for beside the next singles as well. Each effect of such a pair has to mend what the
-    other one leaves; that both are better than a third, which none of them is the formula of, evidence says.
+    other one leaves; that both are better than a third, which none of them is the formula of, evidence says. Where one
+    of them does not, the other one alone is asked.
     """
     tried = list(tried)
     if len(chosen.fit.model.ids) != 1 or not loud(chosen.fit) or chatters(chosen.fit):
@@ -107,4 +108,6 @@ def instead(
         return chosen, tried
     shown = replace(leader, fit=differentiate(leader.fit))
     left, tried = backward(kept, lengths, shown, [shown if e is leader else e for e in tried], ())
-    return (shown if left is shown and significant(shown.fit) else chosen), tried
+    # what the pair can do without may have shown the way to a single effect that no search had brought so far
+    better = left is shown or (certain(left, chosen) and harmless(left, chosen))
+    return (left if better and significant(left.fit) else chosen), tried
