@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from ssmr_ident.core.parameter import Estimate, ParameterSet
+from ssmr_ident.diagnose import accept
 from ssmr_ident.diagnose.accept import mends, relieves, touches, within_file
 from ssmr_ident.diagnose.weigh import Explanation
 from ssmr_ident.identify.coordinates import Model
@@ -92,3 +93,27 @@ def named(name: str, explanation: Explanation) -> Explanation:
     """With an id of its own, as evidence is told by id."""
     explanation.fit.model = SimpleNamespace(ids=(name,), physics=(), free=(), held={})  # type: ignore[misc, assignment]
     return explanation
+
+
+@pytest.mark.parametrize(
+    ("share", "before", "after", "taken"),
+    [
+        (0.76, 1e-4, 0.5, True),  # hardening under a tilted sensor: 0.76, and what follows the motion is gone
+        (0.76, 0.02, 0.5, False),  # what the first one leaves is as noise might leave it
+        (0.81, 2e-28, 1e-14, False),  # relaxation beside a hardening that is a sinh takes a part of that
+        (0.92, 6e-4, 0.5, False),
+        (0.65, 0.5, 0.5, True),
+    ],
+)
+def test_a_second_effect_that_takes_less_has_to_leave_nothing_that_follows_the_motion(
+    share: float, before: float, after: float, taken: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def explained(name: str, left: float, chance: float) -> Explanation:
+        trials = [SimpleNamespace(size=900, searched=False) for _ in range(6)]
+        fit = SimpleNamespace(parts=np.full(6, 900.0 * left), trials=trials, name=name, chance=chance)
+        return Explanation(fit, fit)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(accept, "certain", lambda pair, single: True)
+    monkeypatch.setattr(accept, "predictions", lambda fit: [fit.chance])
+    monkeypatch.setattr(accept, "grows_with_motion", lambda found: found[0])
+    assert mends(explained("pair", 1.4 * share, after), explained("single", 1.4, before)) is taken

@@ -12,7 +12,7 @@ from ssmr_ident.diagnose.coloured import told_by
 from ssmr_ident.diagnose.setup import BANDWIDTH, SHEET
 from ssmr_ident.diagnose.weigh import CERTAIN, Explanation, asked, evidences, surplus
 from ssmr_ident.diagnose.worth import BY_CHANCE, grows_with_motion, predictions, reddest, worth
-from ssmr_ident.identify.descent import LOUD, chatters
+from ssmr_ident.identify.descent import LOUD, chatters, slides
 from ssmr_ident.identify.joint import JointFit
 from ssmr_ident.identify.scatter import covariance
 
@@ -23,6 +23,11 @@ How large a part, and how much a true second effect takes: docs/theory/diagnosis
 
 BESIDES = 0.95
 """The same without the recording that shows it best: one alone may be an accident, a stick that lets go elsewhere."""
+
+SETTLED, BY_NOISE = 0.85, 0.05
+"""Share up to which a second effect counts as well that leaves nothing which follows the motion (probability by chance)
+where the first one leaves some (``BY_CHANCE``): what another formula takes of a wrong one is only a part of that.
+Calibrated, docs/theory/diagnosis.md."""
 
 FORMULA = 0.1
 """Share of the baseline's error below which what one effect leaves is put down to its own formula: a friction that is
@@ -106,7 +111,17 @@ def mends(pair: Explanation, single: Explanation) -> bool:
     if not certain(pair, single):
         return False
     found = [np.sort(changes(pair, single)) for changes in (_changes, _above_noise)]
-    return any(float(np.exp(c.mean())) < SECOND and float(np.exp(c[1:].mean())) < BESIDES for c in found)
+    shown = [c for c in found if float(np.exp(c[1:].mean())) < BESIDES]
+    most = min((float(np.exp(c.mean())) for c in shown), default=1.0)
+    return most < SECOND or (most < SETTLED and settles(pair, single))
+
+
+def settles(pair: Explanation, single: Explanation) -> bool:
+    """Whether what a single effect leaves follows the motion, and what a pair leaves does not. Not in pulls."""
+    if slides(single.fit):
+        return False
+    before, after = (grows_with_motion(predictions(e.fit) + predictions(e.kept)) for e in (single, pair))
+    return before < BY_CHANCE and after > BY_NOISE
 
 
 def _changes(one: Explanation, other: Explanation) -> np.ndarray:
