@@ -24,11 +24,11 @@ from ssmr_ident.identify.joint import JointFit, differentiate
 
 METRIC = "nrmse_percent"
 
-MOST_RIVALS = 2
-"""Explanations beside the best with which an answer is still one."""
-
 CONFLICT = 2.0
 """Prior standard deviations from which a parameter counts as pulled away from what is known of it."""
+
+MOST_RIVALS = 2
+"""Explanations beside the best with which an answer is still one."""
 
 UNEXPLAINED = 1.6
 """Error over the noise floor from which something is missing even if nothing names it, where what is left follows the
