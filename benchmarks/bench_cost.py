@@ -1,11 +1,13 @@
 """What a diagnosis costs: seconds over the number of recordings, with something missing and with nothing.
 
-python benchmarks/bench_cost.py
+python benchmarks/bench_cost.py            # how cost grows with recordings
+python benchmarks/bench_cost.py --whole    # one session of nine decays, one of eight driven runs of 8,000 samples
 """
 
 from __future__ import annotations
 
 import argparse
+import itertools
 import time
 from dataclasses import replace
 
@@ -14,7 +16,12 @@ from bank import draw
 from bank.truth import BankSession
 
 from ssmr_ident.campaign import Campaign
+from ssmr_ident.identify.parallel import processors
 from ssmr_ident.pipeline.diagnose import diagnose
+
+MULTIPLES = (1, 2, 4, 8)
+WHOLE = (("decays", "nonlinear_stiffness", 9, 4096, 20.0), ("forced", "nonlinear_stiffness", 8, 8000, 30.0))
+"""Family, effect, recordings (of decays those to be fitted), samples in each, and the seconds that it may take."""
 
 CASES = (("decays", "nonlinear_stiffness", 6), ("forced", "nonlinear_stiffness", 4), ("pulls", "cable_compliance", 4))
 
@@ -34,27 +41,58 @@ def first(drawn: BankSession, count: int) -> Campaign:
     return replace(drawn.campaign, session=session, measurements=tuple(measurements))
 
 
+def timed(campaign: Campaign) -> float:
+    """Seconds that one diagnosis takes."""
+    begin = time.perf_counter()
+    diagnose(campaign)
+    return time.perf_counter() - begin
+
+
+def samples(campaign: Campaign) -> int:
+    """In a recording, on average."""
+    return sum(len(m.recording.time) for m in campaign.measurements) // len(campaign.measurements)
+
+
+def whole(seed: int) -> None:
+    """Sessions as large as those for which a time is promised, with and without something missing."""
+    for family, effect, count, length, limit in WHOLE:
+        for kind in ("none", "one"):
+            seeds = (s for s in itertools.count(seed) if samples(_drawn(family, kind, s, effect).campaign) == length)
+            drawn = _drawn(family, kind, next(seeds), effect)
+            name = effect if kind == "one" else "nothing"
+            print(
+                f"{family:<8} {name:<20} {count} x {length} samples  {timed(drawn.campaign):5.1f} s "
+                f"(limit {limit:.0f} s)  on {processors()} processors, seed {drawn.seed}",
+                flush=True,
+            )
+
+
+def _drawn(family: str, kind: str, seed: int, effect: str) -> BankSession:
+    return draw(family, kind, seed, effect if kind == "one" else None, 0.7)
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--seed", type=int, default=7)
+    parser.add_argument("--whole", action="store_true", help="the sessions for which a time is promised, nothing else")
     arguments = parser.parse_args()
-    warm = draw("forced", "one", 1, short=True).campaign
-    diagnose(warm)  # compiles what is compiled once
+    for family in ("forced", "decays", "pulls"):  # compiles what is compiled once
+        diagnose(draw(family, "none", 1, short=True).campaign)
+    if arguments.whole:
+        whole(arguments.seed)
+        return
     for family, effect, least in CASES:
         for kind in ("none", "one"):
-            drawn = draw(family, kind, arguments.seed, effect if kind == "one" else None, 0.7)
-            counts = [least, 2 * least, 4 * least, 8 * least]
-            seconds = []
-            for count in counts:
-                campaign = first(drawn, count)
-                begin = time.perf_counter()
-                diagnose(campaign)
-                seconds.append(time.perf_counter() - begin)
+            drawn = _drawn(family, kind, arguments.seed, effect)
+            counts = [times * least for times in MULTIPLES]
+            seconds = [timed(first(drawn, count)) for count in counts]
             power = float(np.polyfit(np.log(counts), np.log(seconds), 1)[0])
-            samples = sum(len(m.recording.time) for m in campaign.measurements) // len(campaign.measurements)
             parts = ", ".join(f"{n}: {s:.1f} s" for n, s in zip(counts, seconds, strict=True))
             missing = effect if kind == "one" else "nothing"
-            print(f"{family:<8} {missing:<20} {samples:>6} samples each  {parts}  grows as N^{power:.2f}", flush=True)
+            print(
+                f"{family:<8} {missing:<20} {samples(drawn.campaign):>6} samples each  {parts}  grows as N^{power:.2f}",
+                flush=True,
+            )
 
 
 if __name__ == "__main__":

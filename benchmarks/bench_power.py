@@ -6,6 +6,7 @@ different effects, so the curve is also read against what the effect does: the h
 best over the noise floor.
 
     python benchmarks/bench_power.py --family forced --sessions 24 --out out/power.jsonl
+    python benchmarks/bench_power.py --family decays --short --sessions 12 --out out/power.jsonl
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from bank.rig_physics import LISTED
 from bank.robot_physics import BENCH, DECAYS, PULLS
 from scipy.optimize import brentq, minimize
 from scipy.special import expit
-from scoring import GOOD, append, engine, read, row_of
+from scoring import GOOD, Row, append, engine, read, row_of
 
 from ssmr_ident.pipeline.diagnose import diagnose
 
@@ -58,19 +59,20 @@ def main() -> None:
     parser.add_argument("--effects", help="comma-separated; all of the family otherwise")
     parser.add_argument("--sessions", type=int, default=24, help="per effect, sizes spread evenly")
     parser.add_argument("--first", type=int, default=500_000, help="first seed")
+    parser.add_argument("--short", action="store_true", help="fewer and shorter recordings, which show less")
     parser.add_argument("--out", type=Path, default=Path("out/power.jsonl"))
     parser.add_argument("--summary", action="store_true")
     arguments = parser.parse_args()
     effects = arguments.effects.split(",") if arguments.effects else EFFECTS[arguments.family]
-    done = {(row["family"], row["effect"], row["seed"]) for row in read(arguments.out)}
+    done = {(row["family"], row["effect"], row["seed"], row.get("short", False)) for row in read(arguments.out)}
     version = engine()
     for effect in () if arguments.summary else effects:
         for index in range(arguments.sessions):
             seed = arguments.first + index
-            if (arguments.family, effect, seed) in done:
+            if (arguments.family, effect, seed, arguments.short) in done:
                 continue
             size = (index + 0.5) / arguments.sessions
-            drawn = draw(arguments.family, "one", seed, effect, size)
+            drawn = draw(arguments.family, "one", seed, effect, size, arguments.short)
             row, _ = row_of(
                 f"{effect}-{seed}",
                 drawn.truth.ids,
@@ -82,6 +84,7 @@ def main() -> None:
                 effect=effect,
                 seed=seed,
                 size=size,
+                short=arguments.short,
                 strength=dict(drawn.truth.effects[effect]),
                 engine=version,
             )
@@ -93,10 +96,10 @@ def report(rows: list[dict]) -> str:
     """One line per effect."""
     lines = [
         "95 % named right (or in a tie) from …",
-        f"{'family':<10}{'effect':<26}{'n':>4}{'right':>7}{'size':>7}{'baseline/noise floor':>22}   parameter there",
+        f"{'family':<16}{'effect':<26}{'n':>4}{'right':>7}{'size':>7}{'baseline/noise floor':>22}   parameter there",
     ]
-    for family, effect in sorted({(row["family"], row["effect"]) for row in rows}):
-        part = [r for r in rows if (r["family"], r["effect"]) == (family, effect) and r["outcome"] != "failed"]
+    for family, effect, short in sorted({_asked(row) for row in rows}):
+        part = [r for r in rows if _asked(r) == (family, effect, short) and r["outcome"] != "failed"]
         if len(part) < 8:
             continue
         hit = np.array([r["outcome"] in GOOD for r in part])
@@ -109,8 +112,14 @@ def report(rows: list[dict]) -> str:
         )
         there = f"{name} {np.interp(at, size, np.abs(values)):.3g}" if name and np.isfinite(at) else ""
         shown = [f"{v:.2f}" if np.isfinite(v) else "beyond" for v in (at, ratio)]
-        lines.append(f"{family:<10}{effect:<26}{len(part):>4}{hit.sum():>7}{shown[0]:>7}{shown[1]:>22}   {there}")
+        of = f"{family}, short" if short else family
+        lines.append(f"{of:<16}{effect:<26}{len(part):>4}{hit.sum():>7}{shown[0]:>7}{shown[1]:>22}   {there}")
     return "\n".join(lines)
+
+
+def _asked(row: Row) -> tuple[str, str, bool]:
+    """Family and effect of a session, and whether its recordings are few and short."""
+    return row["family"], row["effect"], row.get("short", False)
 
 
 def _varies(part: list[dict], name: str, size: np.ndarray) -> bool:
