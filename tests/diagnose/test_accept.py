@@ -62,11 +62,36 @@ def test_an_effect_takes_back_what_the_baseline_bent(bent: float, left: float, r
 def test_an_answer_mends_what_the_baseline_leaves_wherever_it_shows(
     fitted: list[float], kept: list[float], answers: bool
 ) -> None:
-    def leaving(parts: list[float]) -> SimpleNamespace:
-        return SimpleNamespace(parts=np.array(parts) * 100.0, trials=[SimpleNamespace(size=100) for _ in parts])
+    assert touches(_leaving(fitted, kept), _leaving([1.23, 1.62, 2.23], [2.61, 9.01])) is answers
 
-    baseline = Explanation(leaving([1.23, 1.62, 2.23]), leaving([2.61, 9.01]))  # type: ignore[arg-type]
-    assert touches(Explanation(leaving(fitted), leaving(kept)), baseline) is answers  # type: ignore[arg-type]
+
+@pytest.mark.parametrize(
+    ("bent", "chance", "answers"),
+    [
+        (9.5, 0.2, True),  # contacts 47 mm off, and 2.6 times the noise of coloured noise everywhere
+        (9.5, 1e-8, False),  # something moves that the offset leaves as it is
+        (2.0, 0.2, False),
+    ],
+)
+def test_an_offset_that_only_the_priors_name_need_not_mend_what_noise_of_a_colour_leaves(
+    bent: float, chance: float, answers: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(accept, "predictions", lambda fit: [])
+    monkeypatch.setattr(accept, "worth", lambda *_: SimpleNamespace(before=2.0, noise_floor=1.0))
+    monkeypatch.setattr(accept, "reddest", lambda found: 5.7)
+    monkeypatch.setattr(accept, "grows_with_motion", lambda found: chance)
+    left = [2.6, 2.5, 2.7], [2.6, 2.6]
+    assert touches(_leaving(*left), _leaving(*left, bent)) is answers
+
+
+def _leaving(fitted: list[float], kept: list[float], bent: float = 0.0) -> Explanation:
+    model = Model((Unknown("contact_shift_x_m", "m", 0.0, 0.005, positive=False),))
+
+    def fit(parts: list[float]) -> SimpleNamespace:
+        trials = [SimpleNamespace(size=100, searched=False) for _ in parts]
+        return SimpleNamespace(parts=np.array(parts) * 100.0, trials=trials, model=model, point=np.array([bent]))
+
+    return Explanation(fit(fitted), fit(kept))  # type: ignore[arg-type]
 
 
 def test_what_lies_below_the_noise_does_not_speak_against_a_second_effect() -> None:

@@ -8,7 +8,7 @@ from made_pulls import made_pulls
 
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.exported import exported
-from ssmr_ident.diagnose.polish import gathered
+from ssmr_ident.diagnose.gathered import gathered
 from ssmr_ident.diagnose.setup import Setup
 from ssmr_ident.identify.joint import JointFit, differentiate, evaluate
 

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from made_pulls import made_pulls
 
-from ssmr_ident.diagnose import hollows
+from ssmr_ident.diagnose import engine, hollows
 from ssmr_ident.diagnose.hollows import ENOUGH, SHAKES, challenged, from_afar
 from ssmr_ident.diagnose.setup import Setup
 from ssmr_ident.diagnose.start import begin
+from ssmr_ident.diagnose.weigh import Explanation
 from ssmr_ident.identify.descent import descend
 from ssmr_ident.identify.joint import JointFit, evaluate
 
@@ -21,7 +23,7 @@ PULLS = (("lateral", 1.0, 6e-3), ("lateral", 0.5, 6e-3))
 @pytest.fixture(scope="module")
 def stuck() -> tuple[Setup, JointFit]:
     """A descent from a robot whose centre of mass lies three deviations off to a corner."""
-    setup, known = made_pulls(PULLS, {}, 7)
+    setup, known = made_pulls(PULLS, {}, 9)
     fit = begin(setup.fitted, setup, known)
     names = [unknown.name for unknown in fit.model.physics]
     point = fit.point.copy()
@@ -79,3 +81,19 @@ def _at(fit: JointFit, cost: float) -> JointFit:
     """A fit of that cost."""
     change = (cost - fit.cost(fit.counted)) / (2.0 * fit.counted.sum())
     return replace(fit, residuals=tuple(np.exp(change) * r for r in fit.residuals))
+
+
+@pytest.mark.parametrize(("explained", "outdone"), [(1.0, False), (3000.0, True)])
+def test_what_a_baseline_misses_altogether_counts_as_it_does_beside_the_effect(explained: float, outdone: bool) -> None:
+    """A drag that is left at 3,300 times the noise has few independent samples, and beside its cable all of them."""
+
+    def fit(parts: list[float], counted: list[float], penalty: float) -> JointFit:
+        size = 200
+        trials = [SimpleNamespace(size=size, searched=True) for _ in parts]
+        found = SimpleNamespace(trials=trials, parts=size * np.array(parts), counted=np.array(counted))
+        found.cost = lambda c: float(c @ np.log(parts)) + penalty
+        return found  # type: ignore[return-value]
+
+    before = Explanation(*[fit([1100.0, 9.0, 2.5, 1.1, 3300.0], [13.0, 7.0, 158.0, 155.0, 5.0], 9.0)] * 2)
+    beside = Explanation(*[fit([730.0, 11.0, 2.5, 1.1, explained], [18.0, 18.0, 158.0, 155.0, 168.0], 83.0)] * 2)
+    assert engine._outdone(beside, before) is outdone

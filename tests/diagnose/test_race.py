@@ -82,3 +82,47 @@ def test_what_grows_while_a_recording_lasts_is_asked_for_on_whole_recordings(mon
     monkeypatch.setattr(explore, "candidates", lambda base, baseline: lost)
     best = race.ranked(explore.search(fit, "rigid6", (1.0, np.inf)).tried)[0]
     assert best.model.split(best.point)[1]["unlisted"]["c_ts_N_m_s"] == pytest.approx(300.0, rel=0.05)
+
+
+def test_probes_that_lie_apart_all_go_on(first: JointFit, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Masts at five frequencies, each behind twenty stiffnesses after a third of a second."""
+    masts = [_suspect("flexible_mast", dict(probe)) for probe in CATALOGUE["flexible_mast"].probes]  # type: ignore[arg-type]
+    stiff = [_suspect("nonlinear_stiffness", {"k3_N_m3": 1e9 * (k + 1)}) for k in range(20)]
+    seconds: list[JointFit] = []
+
+    def begun(base: JointFit, suspect: Suspect) -> JointFit:
+        model, point = base.model.with_effect(suspect.effect, suspect.at, {})
+        worse = 3.0 if suspect.effect == "flexible_mast" else 1.0 + 1e-10 * suspect.at["k3_N_m3"]
+        left = tuple(worse * r for r in base.residuals)
+        return JointFit(
+            base.trials, model, np.concatenate([base.point, point]), base.nuisances, base.simulated, left, exact=True
+        )
+
+    def goes_on(trials, lengths, steps, fit):  # type: ignore[no-untyped-def]
+        if steps == race.HEATS[1][1]:
+            seconds.append(fit)
+        return fit
+
+    monkeypatch.setattr(race, "_begun", begun)
+    monkeypatch.setattr(race, "_led_on", goes_on)
+    race.screened(first, [masts, stiff], (0.3, 0.6, np.inf), None)
+    names = [fit.model.ids[-1] for fit in seconds]
+    assert names.count("flexible_mast") == len(masts)
+    assert names.count("nonlinear_stiffness") == race.HEATS[1][0]
+    assert len(set(map(id, seconds))) == len(seconds)
+
+
+@pytest.mark.parametrize(("far", "screens"), [(2, False), (3, True)])
+def test_beside_an_effect_that_leaves_much_in_many_recordings_no_straight_line_is_asked(
+    far: int, screens: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Two recordings of nine that stand out are the first effect's formula; three are what else is missing."""
+    fit = fitted(prepared(campaign({}, [Run(release=4e-3) for _ in range(9)], seed=4, duration=0.6)))
+    left = tuple((2.0 if k < far else 1.0) * r for k, r in enumerate(fit.residuals))
+    loud = JointFit(fit.trials, fit.model, fit.point, fit.nuisances, fit.simulated, left, fit.slopes, exact=True)
+    assert np.sort(loud.parts / [t.size for t in loud.trials])[-far] > explore.LOUD
+    asked: list[bool] = []
+    monkeypatch.setattr(explore, "scan", lambda base, effects, small: asked.append(small) or [])
+    monkeypatch.setattr(explore, "screened", lambda *_: [])
+    explore.search(loud, "sdof", (0.3, 0.6), further=True)
+    assert asked == [not screens]

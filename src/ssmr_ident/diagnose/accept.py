@@ -94,11 +94,14 @@ def touches(chosen: Explanation, baseline: Explanation) -> bool:
     """Whether an explanation takes anything from the recordings in which the baseline leaves more than noise.
 
     What is named beside a misfit that it leaves as it is, is not what is missing. A drift may show in one alone that
-    was kept back, which the baseline has not bent round.
+    was kept back, which the baseline has not bent round. Where the baseline leaves what noise of some colour may leave,
+    an offset that takes back what the baseline bent has nothing to take.
     """
     left = np.concatenate([f.parts / [t.size for t in f.trials] for f in (baseline.fit, baseline.kept)])
     loud = left > LOUD
-    return not loud.any() or float(np.mean(_changes(chosen, baseline)[loud])) < float(np.log(UNTOUCHED))
+    if not loud.any() or float(np.mean(_changes(chosen, baseline)[loud])) < float(np.log(UNTOUCHED)):
+        return True
+    return relieves(chosen, baseline) and not _beyond_noise(baseline)
 
 
 def certain(leader: Explanation, before: Explanation) -> bool:
@@ -154,18 +157,20 @@ def left_over(chosen: Explanation, baseline: Explanation) -> float:
 
 
 def leaves_structure(chosen: Explanation) -> bool:
-    """Whether an explanation errs by more than noise of any colour.
-
-    What it leaves is more than such noise can read, or larger where more moves. Sliding contacts chatter by themselves,
-    whatever moves.
-    """
+    """Whether an explanation errs by more than noise of any colour."""
     left = chosen.kept.parts / [t.size for t in chosen.kept.trials]
-    if float(np.median(left)) < LOUD:
-        return False
-    found = predictions(chosen.fit) + predictions(chosen.kept)
+    return float(np.median(left)) >= LOUD and _beyond_noise(chosen)
+
+
+def _beyond_noise(explanation: Explanation) -> bool:
+    """Whether what is left is more than noise of any colour can read, or larger where more moves.
+
+    Sliding contacts chatter by themselves, whatever moves.
+    """
+    found = predictions(explanation.fit) + predictions(explanation.kept)
     read = worth(found, found, ())
     beyond = read.before > reddest(found) * read.noise_floor
-    return chatters(chosen.fit) or beyond or grows_with_motion(found) < BY_CHANCE
+    return chatters(explanation.fit) or beyond or grows_with_motion(found) < BY_CHANCE
 
 
 def as_near(rival: Explanation, chosen: Explanation) -> bool:

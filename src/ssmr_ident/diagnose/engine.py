@@ -166,7 +166,16 @@ def _outdone(leader: Explanation, before: Explanation) -> bool:
 
     All its evidence is then of recordings kept back, and these may lie in hollows of their own.
     """
-    return slides(leader.fit) and _cost(before, before) < _cost(leader, before)
+    counted = _counted(leader, before)
+    return slides(leader.fit) and before.fit.cost(counted) < leader.fit.cost(counted)
+
+
+def _counted(leader: Explanation, before: Explanation) -> np.ndarray:
+    """Independent samples of each recording, in what the one leaves that leaves less.
+
+    A drag that a baseline misses altogether had 5 of them (bank 5086), and 168 beside the cable that explains it.
+    """
+    return min((leader.fit, before.fit), key=lambda fit: float(np.log(fit.parts).sum())).counted
 
 
 def _shaken(stripped: JointFit, chosen: Explanation, leader: Explanation, kept: Sequence[Trial]) -> JointFit:
@@ -176,7 +185,7 @@ def _shaken(stripped: JointFit, chosen: Explanation, leader: Explanation, kept: 
         bare = explained(kept, base, leader.kept)
         return _outdone(leader, bare) or not _good(leader, bare, True)
 
-    return challenged(leader.fit, chosen.fit.counted, (stripped, chosen.fit), beaten)
+    return challenged(leader.fit, _counted(leader, chosen), (stripped, chosen.fit), beaten)
 
 
 def informed(setup: Setup, parameters: ParameterSet) -> Setup:

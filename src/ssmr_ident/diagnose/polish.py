@@ -10,6 +10,7 @@ from ssmr_ident.compare.recorded import follow
 from ssmr_ident.diagnose.baseline import LAST, unsteady
 from ssmr_ident.diagnose.explore import mended
 from ssmr_ident.diagnose.formulas import other_formulas
+from ssmr_ident.diagnose.gathered import gathered
 from ssmr_ident.diagnose.race import FAR, ranked
 from ssmr_ident.diagnose.scan import combinations
 from ssmr_ident.identify.clouds import settled
@@ -52,31 +53,6 @@ def polish(fit: JointFit, lengths: tuple[float, ...]) -> JointFit:
     if len(lengths) == 1 or not (loud(further) or float(np.max(np.abs(further.point[:physics]), initial=0.0)) > FAR):
         return further
     return min((anew(further, lengths), further), key=lambda f: f.cost(further.counted))
-
-
-def gathered(fit: JointFit) -> JointFit:
-    """The same robot, with all that its centre of mass is off by in the offset that has no prior.
-
-    Contacts and sensor that the baseline had moved against what is known, and an offset, add up to one place. The
-    recordings know only that, and a descent does not go along a valley so flat.
-    """
-    if "com_offset" not in fit.model.held:
-        return fit
-    columns = {unknown.name: (k, unknown) for k, unknown in enumerate(fit.model.unknowns)}
-    best = fit
-    for moved in (("com_offset.offset_{}_m", "accelerometer.position_m.{}"), ("com_offset.offset_{}_m",)):
-        point = fit.point.copy()
-        for axis in "xy":
-            own = columns.get(f"contact_shift_{axis}_m")
-            if own is None:
-                continue
-            shift = own[1].value(float(fit.point[own[0]]))
-            others = [columns[n.format(axis)] for n in moved if n.format(axis) in columns]
-            for k, unknown in (own, *others):
-                point[k] = unknown.scaled(unknown.value(float(fit.point[k])) - shift)
-        other = evaluate(fit.trials, fit.model, point, fit.nuisances, fit.slopes)
-        best = min((best, other), key=lambda f: f.cost(fit.counted))
-    return best
 
 
 def anew(fit: JointFit, lengths: tuple[float, ...]) -> JointFit:

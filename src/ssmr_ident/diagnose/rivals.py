@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ssmr_ident.diagnose.accept import as_near, leaves_structure, left_over
+from ssmr_ident.diagnose.accept import FORMULA, as_near, leaves_structure, left_over
 from ssmr_ident.diagnose.explain import beside
 from ssmr_ident.diagnose.followed import explained, joined
 from ssmr_ident.diagnose.scan import Suspect
@@ -17,20 +17,16 @@ from ssmr_ident.identify.trials import Trial
 
 NONE_OF_THEM = "unlisted"
 
-MOST = 0.5
-"""Share of the baseline's error beyond which what an effect leaves, where more of it is left where more moves, is not
-its formula's doing: docs/theory/diagnosis.md."""
-
 STEPS = 10
 """Gauss-Newton steps of a law that had not come so far as to be refitted."""
 
 
 def in_part(chosen: Explanation, baseline: Explanation) -> bool:
-    """Whether an effect leaves most of what the baseline left, and more of it where more moves, as no noise is."""
+    """Whether an effect leaves more than its formula may, and more of it where more moves, as no noise is."""
     named = _named(chosen, baseline)
     if len(named) != 1 or NONE_OF_THEM in named or chatters(chosen.fit):
         return False
-    if left_over(chosen, baseline) < MOST:
+    if left_over(chosen, baseline) < FORMULA:
         return False
     return grows_with_motion(predictions(chosen.fit) + predictions(chosen.kept)) < BY_CHANCE
 
@@ -44,8 +40,8 @@ def rivals_of(
 ) -> tuple[list[Explanation], list[Explanation]]:
     """Those with no more effects that fit as well as the chosen one, the likeliest first; and all that was tried.
 
-    Where the chosen one leaves structure, also those that are as near to the world; where that is most of what there
-    was, a law of no list as well, however it fits.
+    Where the chosen one leaves structure, also those that are as near to the world; where that is more than a formula
+    leaves, a law of no list as well, however it fits.
 
     Parameters
     ----------

@@ -106,6 +106,9 @@ class Effect(Shown):
         Acts beyond a threshold alone, and is not proportional to anything.
     loosens : bool
         Takes away what holds a body near rest, so that it starts elsewhere than without the effect.
+    apart : bool
+        Its probes lie in valleys of their own, as those of a line at one frequency or another: how far each of them
+        comes on the first moments of a recording says nothing of where it ends.
     spans : mapping of str to tuple of float
         Values of its parameters, and after ``baseline.`` factors on a parameter that a fit without the effect moves:
         every combination is simulated where sliding contacts leave so much that no single probe leads anywhere.
@@ -127,6 +130,7 @@ class Effect(Shown):
     grows: tuple[str, ...] = ()
     sudden: bool = False
     loosens: bool = False
+    apart: bool = False
     spans: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
 
     @property

@@ -31,6 +31,7 @@ EFFECT = Effect(
     experiments=("free_response", "swivel"),
     acts={Site.BODY: force},
     grows=("mass_kg",),
+    apart=True,
     probes=(
         {"f_mast_Hz": 5.0, "mass_kg": 1.0, "height_above_com_m": 0.3, "damping_ratio": 0.03},
         {"f_mast_Hz": 7.0, "mass_kg": 1.0, "height_above_com_m": 0.3, "damping_ratio": 0.03},
