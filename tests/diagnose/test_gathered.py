@@ -9,10 +9,13 @@ from made_pulls import made_pulls
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.exported import exported
 from ssmr_ident.diagnose.gathered import gathered
+from ssmr_ident.diagnose.race import started
+from ssmr_ident.diagnose.scan import Suspect
 from ssmr_ident.diagnose.setup import Setup
 from ssmr_ident.identify.joint import JointFit, differentiate, evaluate
 
 PULLS = [("lateral", 2.0, 0.008), ("longitudinal", 2.0, 0.008)]
+SIZES = {"offset_x_m": 0.01, "offset_y_m": 0.01}
 
 
 @pytest.fixture(scope="module")
@@ -23,7 +26,7 @@ def pulled() -> tuple[Setup, ParameterSet]:
 def split(setup: Setup, shift: float, offset: float) -> JointFit:
     """Contacts 2 deviations from the file, and an offset beside them."""
     at = {"offset_x_m": offset, "offset_y_m": 0.004}
-    model, begin = setup.model.with_effect("com_offset", at, {"offset_x_m": 0.01, "offset_y_m": 0.01})
+    model, begin = setup.model.with_effect("com_offset", at, SIZES)
     point = np.concatenate([np.zeros(len(setup.model.physics)), begin])
     names = [u.name for u in model.physics]
     point[names.index("contact_shift_x_m")] = shift
@@ -54,3 +57,20 @@ def test_it_is_known_no_better_than_the_contacts(pulled: tuple[Setup, ParameterS
     std = exported(fit, known).effects["com_offset"]["offset_x_m"].std
     assert std is not None
     assert std >= known["contact_points_m"].std / np.sqrt(2.0)
+
+
+def test_an_offset_begun_beside_contacts_that_are_bent_takes_their_place() -> None:
+    """A centre of mass 36 mm off, which a baseline follows with its contacts at seven deviations."""
+    setup, _ = made_pulls(PULLS[:1], {"com_offset": {"offset_x_m": 0.0, "offset_y_m": -0.036}}, 3)
+    unknown = next(u for u in setup.model.physics if u.name == "contact_shift_y_m")
+    point = np.zeros(len(setup.model.physics))
+    point[setup.model.physics.index(unknown)] = unknown.scaled(0.036)
+    values, effects = setup.model.split(point)
+    trials = (*setup.fitted, *setup.kept)
+    bent = evaluate(trials, setup.model, point, [t.begin(values, effects) for t in trials])
+    offset = Suspect("com_offset", {"offset_x_m": 0.0, "offset_y_m": -5e-4}, {}, SIZES, 0.0, np.zeros(0))
+    found = started(bent, offset, plain=True)
+    held, effects = found.model.split(found.point)
+    assert effects["com_offset"]["offset_y_m"] == pytest.approx(-0.036, abs=0.01)
+    assert abs(held["contact_shift_y_m"]) < unknown.std(0.0, 1.0) * 3.0
+    assert found.penalty < 0.3 * bent.penalty
