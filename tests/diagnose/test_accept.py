@@ -84,11 +84,20 @@ def test_an_offset_that_only_the_priors_name_need_not_mend_what_noise_of_a_colou
     assert touches(_leaving(*left), _leaving(*left, bent)) is answers
 
 
-def _leaving(fitted: list[float], kept: list[float], bent: float = 0.0) -> Explanation:
+@pytest.mark.parametrize(("fitted", "answers"), [([5.1, 1.4, 0.6, 7.7], True), ([5.1, 2.4, 2.6, 7.7], False)])
+def test_an_offset_in_pulls_need_not_mend_one_or_two_that_lie_in_hollows(
+    fitted: list[float], answers: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(accept, "_beyond_noise", lambda explanation: True)
+    left = fitted, [1.0, 1.3]
+    assert touches(_leaving(*left, slides=True), _leaving(*left, 8.0, slides=True)) is answers
+
+
+def _leaving(fitted: list[float], kept: list[float], bent: float = 0.0, slides: bool = False) -> Explanation:
     model = Model((Unknown("contact_shift_x_m", "m", 0.0, 0.005, positive=False),))
 
     def fit(parts: list[float]) -> SimpleNamespace:
-        trials = [SimpleNamespace(size=100, searched=False) for _ in parts]
+        trials = [SimpleNamespace(size=100, searched=slides) for _ in parts]
         return SimpleNamespace(parts=np.array(parts) * 100.0, trials=trials, model=model, point=np.array([bent]))
 
     return Explanation(fit(fitted), fit(kept))  # type: ignore[arg-type]

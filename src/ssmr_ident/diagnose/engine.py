@@ -30,7 +30,7 @@ from ssmr_ident.diagnose.pairs import backward, instead, partners_of, with_a_sec
 from ssmr_ident.diagnose.polish import calmed, loud
 from ssmr_ident.diagnose.race import Progress
 from ssmr_ident.diagnose.rivals import rivals_of
-from ssmr_ident.diagnose.rotate import left_elsewhere, shown_in_turn
+from ssmr_ident.diagnose.rotate import left_elsewhere, shown_by_all, shown_in_turn
 from ssmr_ident.diagnose.setup import Setup
 from ssmr_ident.diagnose.weigh import Explanation, evidences
 from ssmr_ident.identify.descent import descend, slides
@@ -140,7 +140,8 @@ def examine(setup: Setup, parameters: ParameterSet, progress: Progress | None = 
             # the effect had only shown the way to a better fit without it
             tried[tried.index(chosen)], chosen = bare, bare
             baseline = bare if first else baseline
-        if _outdone(leader, chosen) or (moved and not _good(leader, chosen, first)):
+        refuted = _outdone(leader, chosen) or (first and not shown_by_all(leader, chosen))
+        if refuted or (moved and not _good(leader, chosen, first)):
             if moved:
                 continue
             break

@@ -75,9 +75,12 @@ def raced(base: JointFit, groups: Sequence[Sequence[Suspect]], progress: Progres
         progress("trying effects", 1, 1)
     ordered, kept = _few_unlisted(order(field)), HEATS[2][0]
     # after two steps the first few may all be of one effect
-    once = [] if plain else _each_form(ordered)[:kept]
+    once = ranked(field)[:1] if plain else _each_form(ordered)[:kept]
     once += [f for f in ordered[:kept] if f not in once]
-    return order(list(side_by_side(lambda fit: descend(fit, 2, plain=plain), once)))
+    further = order(list(side_by_side(lambda fit: descend(fit, 2, plain=plain), once)))
+    # an offset that takes back what the baseline had bent leaves as much, and is ahead in what the priors charge
+    best = ranked(further)[:1] if plain else []
+    return [*further[:1], *(f for f in best if f not in further[:1]), *(f for f in further[1:] if f not in best)]
 
 
 def run_on(started: Sequence[JointFit]) -> list[JointFit]:
