@@ -94,7 +94,7 @@ def _apart(chosen: Sequence[Experiment], best: JointFit, rival: JointFit) -> lis
     weight = best.independent / best.rss
     nuisances = [one.growth * rival.nuisances[one.index] for one in chosen]
     ahead = differentiate(evaluate([one.trial for one in chosen], rival.model, rival.point, nuisances))
-    known = np.linalg.inv(covariance(rival))
+    known = _precision(covariance(rival))
     found = []
     for experiment, slopes in zip(chosen, ahead.slopes, strict=True):
         difference = _difference(experiment, best, rival)
@@ -106,6 +106,17 @@ def _apart(chosen: Sequence[Experiment], best: JointFit, rival: JointFit) -> lis
         rest = difference - columns @ move
         found.append(float(np.sqrt(weight * (rest @ rest) + move @ held @ move)))
     return found
+
+
+def _precision(covariance: Array) -> Array:
+    """Inverse of a covariance, (p, p), which rounding must not make negative along what is hardly known.
+
+    >>> off = _precision(np.array([[1.0, 1.0], [1.0, 1.0 - 1e-15]]))
+    >>> bool(np.array([1.0, -1.0]) @ off @ np.array([1.0, -1.0]) > 0.0)
+    True
+    """
+    size, along = np.linalg.eigh(covariance)
+    return (along / np.maximum(size, np.finfo(float).eps * size[-1])) @ along.T
 
 
 def _sentence(experiment: Experiment, best: str, rivals: Sequence[str], distances: Sequence[float]) -> str:
