@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -14,6 +15,7 @@ from ssmr_ident.diagnose.experiments import experiments
 from ssmr_ident.diagnose.setup import Setup
 from ssmr_ident.identify.descent import descend
 from ssmr_ident.identify.joint import JointFit, differentiate, evaluate
+from ssmr_ident.physics.slots import Effects
 
 HARDENING = {"nonlinear_stiffness": {"k3_N_m3": 6e7}}
 
@@ -42,6 +44,18 @@ def test_where_a_rival_cannot_be_simulated_nothing_is_proposed(
     monkeypatch.setattr(discriminate, "_differ", lambda one, best, other: np.nan if other is failing else 5.0)
     assert next_experiment(setup, best, [rival]) != ""
     assert next_experiment(setup, best, [rival, failing]) == ""
+
+
+def test_a_simulation_that_has_burst_tells_nothing(alike: tuple[Setup, JointFit, JointFit]) -> None:
+    setup, best, rival = alike
+    one = experiments(setup, best)[0]
+    grown = np.geomspace(1.0, 1e200, len(one.trial.target))[:, None]
+
+    def bursting(values: Mapping[str, float], effects: Effects, own: np.ndarray) -> np.ndarray:
+        return (1.0 + len(effects)) * grown
+
+    assert np.isfinite(discriminate._differ(one, best, rival))
+    assert np.isnan(discriminate._differ(replace(one, trial=replace(one.trial, run=bursting)), best, rival))
 
 
 def test_distances_grow_with_the_amplitude_and_say_what_a_repeat_gives(

@@ -15,7 +15,7 @@ from scipy.stats import norm
 
 from ssmr_ident.diagnose.experiments import Experiment, experiments
 from ssmr_ident.diagnose.setup import Setup
-from ssmr_ident.identify.joint import JointFit, differentiate, evaluate
+from ssmr_ident.identify.joint import BURST, JointFit, differentiate, evaluate
 from ssmr_ident.identify.scatter import covariance
 
 Array = np.ndarray
@@ -86,7 +86,9 @@ def _difference(experiment: Experiment, best: JointFit, rival: JointFit) -> Arra
         trial.whitened(trial.run(*fit.model.split(fit.point), experiment.growth * fit.nuisances[experiment.index]))
         for fit in (best, rival)
     )
-    return first - second
+    difference = first - second
+    # an integration that has burst predicts nothing, and its square would overflow
+    return difference if np.all(np.abs(difference) < BURST) else np.full_like(difference, np.nan)
 
 
 def _apart(chosen: Sequence[Experiment], best: JointFit, rival: JointFit) -> list[float]:
