@@ -2,7 +2,7 @@ r"""Write docs/theory/diagnosis_scores.md from the result files of the benchmark
 
 python benchmarks/score_practice.py --out out/practice.jsonl
 python benchmarks/score_practice.py --real --out out/real.jsonl
-python benchmarks/bench_diagnosis.py --first 4900 --count 100 --out benchmarks/results/diagnosis.jsonl
+python benchmarks/bench_diagnosis.py --first 5100 --count 100 --out benchmarks/results/diagnosis.jsonl
 python benchmarks/bench_nulls.py --first 193000 --count 1000 --out benchmarks/results/nulls.jsonl --families \
     decays,forced,rig_decay,bench,decays,forced,rig_decay,pulls,decays,forced,rig_decay,block
 python benchmarks/bench_power.py --family forced --out out/power.jsonl
@@ -85,10 +85,10 @@ def page(folder: Path) -> str:
     """The whole page; a benchmark without results keeps what the page said of it, or is said to be missing."""
     parts, before = [HEAD], _sections()
 
-    def section(title: str, file: str, words: str, text: Callable[[list[Row]], str]) -> None:
+    def section(title: str, file: str, words: str, text: Callable[[list[Row]], str], dated: bool = True) -> None:
         rows = read(folder / file)
         if rows or title not in before:
-            body = versions(rows) + text(rows) if rows else "Not measured yet.\n"
+            body = (versions(rows) if dated else "") + text(rows) if rows else "Not measured yet.\n"
             parts.append(f"## {title}\n{words}\n{body}")
         else:
             parts.append(before[title])
@@ -106,8 +106,10 @@ def page(folder: Path) -> str:
     section(
         "Fresh random sessions",
         "diagnosis.jsonl",
-        "`bench_diagnosis.py`; by family, then by what was left out.\n",
-        lambda rows: block(summary(rows)) + "\n" + block(summary(rows, "kind").split("\n\n")[0]),
+        "`bench_diagnosis.py`; the last hundred seeds by family, then by what was left out, and the hundreds before "
+        "them as the engine of their day answered.\n",
+        _fresh,
+        dated=False,
     )
     section(
         "False alarms",
@@ -148,6 +150,20 @@ def _sections() -> dict[str, str]:
 COST = """`bench_cost.py`: seconds over the number of recordings, and of sessions for which a time is promised
 (`--whole`).
 """
+
+
+def _fresh(rows: Sequence[Row]) -> str:
+    """The last hundred seeds, which nobody had looked at, and in a line each those from which the engine was mended."""
+    hundreds: dict[int, list[Row]] = {}
+    for row in rows:
+        hundreds.setdefault(row["seed"] // 100, []).append(row)
+    last = hundreds.pop(max(hundreds))
+    text = versions(last) + block(summary(last)) + "\n" + block(summary(last, "kind").split("\n\n")[0])
+    for hundred, own in sorted(hundreds.items()):
+        told = summary(own).splitlines()
+        text += f"\nSeeds {100 * hundred} to {100 * hundred + 99}. {versions(own)}" + block("\n".join(told[:4]))
+    return text
+
 
 PEERS = """`bench_peers.py`, on driven rigs: those of the practice sessions and random ones with plain sizes (0.7),
 noise as above. *Least squares* is an output-error grey box of mass, damper and spring with the textbook's tests of its
