@@ -110,19 +110,3 @@ def test_probes_that_lie_apart_all_go_on(first: JointFit, monkeypatch: pytest.Mo
     assert names.count("flexible_mast") == len(masts)
     assert names.count("nonlinear_stiffness") == race.HEATS[1][0]
     assert len(set(map(id, seconds))) == len(seconds)
-
-
-@pytest.mark.parametrize(("far", "screens"), [(2, False), (3, True)])
-def test_beside_an_effect_that_leaves_much_in_many_recordings_no_straight_line_is_asked(
-    far: int, screens: bool, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Two recordings of nine that stand out are the first effect's formula; three are what else is missing."""
-    fit = fitted(prepared(campaign({}, [Run(release=4e-3) for _ in range(9)], seed=4, duration=0.6)))
-    left = tuple((2.0 if k < far else 1.0) * r for k, r in enumerate(fit.residuals))
-    loud = JointFit(fit.trials, fit.model, fit.point, fit.nuisances, fit.simulated, left, fit.slopes, exact=True)
-    assert np.sort(loud.parts / [t.size for t in loud.trials])[-far] > explore.LOUD
-    asked: list[bool] = []
-    monkeypatch.setattr(explore, "scan", lambda base, effects, small: asked.append(small) or [])
-    monkeypatch.setattr(explore, "screened", lambda *_: [])
-    explore.search(loud, "sdof", (0.3, 0.6), further=True)
-    assert asked == [not screens]

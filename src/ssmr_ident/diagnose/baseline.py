@@ -23,8 +23,8 @@ from ssmr_ident.identify.swings import led_through_slides
 from ssmr_ident.identify.trials import Trial
 
 WIDE = 4.0
-"""Variance over the noise's that the median recording may be left with where what pulls leave may be swings out of
-step: of sessions without missing physics it was left with up to 3.5."""
+"""Variance over the noise's that the median recording may be left with when an effect has been found already, or where
+what pulls leave may be swings out of step: of sessions without missing physics it was left with up to 3.5."""
 
 ASIDE = 1.5
 """Standard deviations of what is known of the centre of mass, where pulls are begun again."""

@@ -31,11 +31,6 @@ still overtake another: a factor of 4.5."""
 SCREENED, REFITTED = 8, 3
 """Effects that are refitted on the first horizons, and to the end."""
 
-MANY = 0.25
-"""Share of the recordings that an effect leaves with much, from which a straight line is no guide to a second one: a
-mast that had taken up half of a loop (bank 5040) left three of nine with more than three times the noise, and the line
-promised 4 of the loop that is 5,300 ahead."""
-
 SAME = 0.01
 """Share of a change's square below which the baseline makes it as well: steps of a tenth of a change leave so much."""
 
@@ -87,7 +82,7 @@ def search(
     misfit = base.parts / [t.size for t in base.trials]
     # one recording that stands out may be the only one in which a wheel lifts; beside an effect that explains the
     # others it is more likely the effect's own formula
-    loud = float(np.quantile(misfit, 1.0 - MANY) if further else np.max(misfit)) > LOUD
+    loud = float(np.median(misfit)) > WIDE if further else float(np.max(misfit)) > LOUD
     # pulls along one axis alone may show what tires do that go far; a small share of friction that falls, which a
     # straight line tells from less friction by nothing, is no saw-tooth yet
     loud = loud or (chatters(base) and float(np.max(misfit)) > (LOUD if further else WIDE))
