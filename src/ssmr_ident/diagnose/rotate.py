@@ -58,8 +58,8 @@ def shown_by_all(leader: Explanation, before: Explanation) -> bool:
     """Whether an effect of pulls that only recordings kept back show is certain as well where all of them are fitted.
 
     A baseline follows what was kept back with what the others have told, and where a wheel lets go that is sensitive: a
-    null session's pull was left at 16.4 times the noise's variance by it and at 3.6 with a loop (193995), at 2.0 and 2.2
-    once it was fitted as well, and the other recordings did not tell the two apart.
+    null session's pull was left at 16.4 times the noise's variance by it and at 3.6 with a loop (193995), at 2.0 and
+    2.2 once it was fitted as well, and the other recordings did not tell the two apart.
     """
     if not slides(leader.fit) or _by_fitted(leader.fit, before.fit) > CERTAIN:
         return True
