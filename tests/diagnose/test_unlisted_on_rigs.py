@@ -10,6 +10,7 @@ from small_rigs import Run, campaign, fitted, prepared
 from ssmr_ident.diagnose import explore
 from ssmr_ident.diagnose.race import ranked, started
 from ssmr_ident.diagnose.scan import PLACES, scan
+from ssmr_ident.identify.descent import LOUD
 from ssmr_ident.physics.effects import CATALOGUE
 from ssmr_ident.pipeline.diagnose import diagnose
 
@@ -53,8 +54,8 @@ def test_a_spring_that_touches_on_one_side_is_named_with_its_place(side: float) 
 
 
 def test_where_the_first_horizons_mislead_whole_recordings_are_asked(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A spring on one side looks like hardening for a while, and hardening leaves much of it."""
-    fit = fitted(prepared(campaign({"unlisted": STOP}, RUNS, seed=3, duration=6.0)))
+    """A mass that rides along looks like hardening for a while; no law along a path comes near it."""
+    fit = fitted(prepared(campaign({"unlisted": RIDER}, RUNS, seed=3, duration=6.0)))
 
     def misled(base, groups, lengths, progress):  # type: ignore[no-untyped-def]
         return [started(base, group[0]) for group in groups if group[0].effect == "nonlinear_stiffness"]
@@ -62,4 +63,23 @@ def test_where_the_first_horizons_mislead_whole_recordings_are_asked(monkeypatch
     monkeypatch.setattr(explore, "screened", misled)
     tried = explore.search(fit, "sdof", (1.0, math.inf)).tried
     assert [f.model.ids for f in ranked(tried)[:1]] == [("unlisted",)]
+    assert "rider_share" in {c.parameter.name for c in ranked(tried)[0].model.free}
     assert ("nonlinear_stiffness",) in [f.model.ids for f in tried]
+
+
+def test_where_a_law_explains_all_only_what_is_no_law_is_tried_beside_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    fit = fitted(prepared(campaign({"unlisted": STOP}, RUNS, seed=3, duration=6.0)))
+    asked: list[set[str]] = []
+
+    def screened(base, groups, lengths, progress):  # type: ignore[no-untyped-def]
+        asked.extend(set(suspect.at) for group in groups for suspect in group)
+        return []
+
+    monkeypatch.setattr(explore, "screened", screened)
+    found = explore.search(fit, "sdof", (1.0, math.inf))
+    assert ranked(found.tried)[0].model.ids == ("unlisted",)
+    assert max(ranked(found.tried)[0].parts / [t.size for t in fit.trials]) < LOUD
+    assert any("rider_share" in names for names in asked)
+    assert not any({"c_abs_s_N_m", "k3_N_m3", "gap_m"} & names for names in asked)
+    # what is reported of all suspects is as it was
+    assert {"nonlinear_stiffness", "free_play"} <= {group[0].effect for group in found.suspects}

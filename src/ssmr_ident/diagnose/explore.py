@@ -9,6 +9,7 @@ from functools import partial
 import numpy as np
 
 from ssmr_ident.compare.recorded import follow
+from ssmr_ident.diagnose.along import begun_along, without_laws
 from ssmr_ident.diagnose.baseline import LAST, WIDE, bent, far_off, leaves_much
 from ssmr_ident.diagnose.explain import from_what_is_known, in_its_place
 from ssmr_ident.diagnose.race import Progress, raced, ranked, run_on, screened, started, variants
@@ -88,28 +89,38 @@ def search(
     loud = loud or (chatters(base) and float(np.max(misfit)) > (LOUD if further else WIDE))
     groups = scan(base, candidates(base, baseline), small=not loud)
     rest = [np.inf]
+    tried: list[JointFit] = []
+    field = groups
+    if loud and baseline == "sdof":
+        begun = begun_along(base, [suspect for group in groups for suspect in group])
+        begun = ranked(list(side_by_side(lambda fit: descend(fit, 2), begun)))
+        tried = _led_on(base, [fit for fit in begun if _close(begun, fit)], rest, lengths, progress)
+        if tried and not leaves_much(ranked(tried)[0]):
+            # every law has been begun as well as it could be; what is none may do as much
+            field = without_laws(groups)
     if loud and len(lengths) > 1:
-        rough = screened(base, groups, lengths, progress)
+        rough = screened(base, field, lengths, progress) if field else []
         rest = list(lengths[1:])
     elif loud:
-        rough = raced(base, groups, progress)
+        rough = raced(base, field, progress) if field else []
     else:
         chosen = [g for g in groups if _promises(g[0])][: REFITTED if further else SCREENED]
         alone = bent(base) and not further
         beyond = [g for g in groups if (alone or elsewhere) and _moves_beyond(g[0].effect) and len(lengths) > 1]
         same = [g[0] for g in groups if alone and g[0].own < SAME and not CATALOGUE[g[0].effect].sudden]
-        field = [partial(started, base, s) for group in _each_group(chosen, beyond) for s in variants(group)]
-        field += [partial(from_what_is_known, base, s, lengths) for group in beyond for s in variants(group)]
-        field += [partial(_instead, base, s) for s in same]
-        rough = run_on(list(side_by_side(lambda begin: begin(), field)))
-    tried = _to_the_end(base, rough, rest, lengths, progress)
-    if loud and len(lengths) > 1 and not chatters(base) and groups and _promises(groups[0][0]):
+        starts = [partial(started, base, s) for group in _each_group(chosen, beyond) for s in variants(group)]
+        starts += [partial(from_what_is_known, base, s, lengths) for group in beyond for s in variants(group)]
+        starts += [partial(_instead, base, s) for s in same]
+        rough = run_on(list(side_by_side(lambda begin: begin(), starts)))
+    tried += _to_the_end(base, rough, rest, lengths, progress)
+    if loud and len(lengths) > 1 and not chatters(base) and field and _promises(field[0][0]):
         # what grows while a recording lasts hardly shows on a first horizon, and is left behind there
-        first = groups[0][0]
+        first = field[0][0]
         tried += [] if _has(tried, first) else _to_the_end(base, [started(base, first)], [np.inf], lengths, progress)
     if loud and baseline == "sdof" and len(lengths) > 1 and tried and leaves_much(ranked(tried)[0]):
-        # what a first horizon tells of two recordings had put something else in front; rigs are simulated in no time
-        tried += _to_the_end(base, raced(base, groups, progress), [np.inf], lengths, progress)
+        # what a first horizon tells of two recordings had put something else in front; laws have been begun elsewhere
+        others = without_laws(groups)
+        tried += _to_the_end(base, raced(base, others, progress), [np.inf], lengths, progress) if others else []
     if progress:
         progress("refitting explanations", 1, 1)
     return Search(base, tuple(tuple(g) for g in groups), tuple(_each_once(tried)), tuple(lengths))
@@ -137,8 +148,19 @@ def _to_the_end(
     progress: Progress | None,
 ) -> list[JointFit]:
     """The first few of what was tried, refitted to all recordings at their full length."""
+    few = _finalists([fit for fit in rough if _close(rough, fit)], starts=2 if chatters(base) else 1)
+    return _led_on(base, few, rest, lengths, progress)
+
+
+def _led_on(
+    base: JointFit,
+    rough: Sequence[JointFit],
+    rest: Sequence[float],
+    lengths: Sequence[float],
+    progress: Progress | None,
+) -> list[JointFit]:
+    """Fits refitted to all recordings at their full length, those that are ahead first."""
     tried: list[JointFit] = []
-    rough = _finalists([fit for fit in rough if _close(rough, fit)], starts=2 if chatters(base) else 1)
     for index, fit in enumerate(rough):
         if progress:
             progress("refitting explanations", index, len(rough))

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.fft import irfft, next_fast_len, rfft
 
 from ssmr_ident.identify.trials.trial import Trial
 
@@ -104,25 +105,39 @@ def filtered(signal: Array, step: float, operator: Callable[[Array], Array], low
 
     The ends are continued by their own mirror image turned about the end point, so that slopes go on smoothly.
     """
-    count = len(signal)
-    if lowest <= 0.0:
-        middle = signal
-    else:
-        ramp = np.linspace(-1.0, 1.0, count)
-        middle = signal - np.polynomial.polynomial.polyval(ramp, np.polynomial.polynomial.polyfit(ramp, signal, 1))
-    reach = count - 1
-    padded = np.concatenate([2 * middle[0] - middle[reach:0:-1], middle, 2 * middle[-1] - middle[-2 : -reach - 2 : -1]])
-    frequency = np.fft.rfftfreq(len(padded), step)
-    mask = _edge(frequency, highest, falling=True)
-    if lowest > 0.0:
-        mask = mask * _edge(frequency, lowest, falling=False)
-    gain = np.zeros(len(frequency), dtype=complex)
-    inside = mask > 0
-    with np.errstate(divide="ignore", invalid="ignore"):
-        gain[inside] = operator(2j * np.pi * frequency[inside]) * mask[inside]
-    if not np.isfinite(gain[0]):
-        gain[0] = 0.0
-    return np.fft.irfft(np.fft.rfft(padded) * gain, len(padded))[reach : reach + count]
+    return Band(len(signal), step, operator, lowest, highest)(signal)
+
+
+class Band:
+    """``filtered``, for many signals of one length."""
+
+    def __init__(
+        self, count: int, step: float, operator: Callable[[Array], Array], lowest: float, highest: float
+    ) -> None:
+        # no more mirror image than makes a length whose transform is quick
+        total = 3 * count - 2
+        while total > count + 2 and next_fast_len(total, real=True) != total:
+            total -= 2
+        self._count, self._reach = count, (total - count) // 2
+        frequency = np.fft.rfftfreq(count + 2 * self._reach, step)
+        mask = _edge(frequency, highest, falling=True)
+        if lowest > 0.0:
+            mask = mask * _edge(frequency, lowest, falling=False)
+        self._gain = np.zeros(len(frequency), dtype=complex)
+        inside = mask > 0
+        with np.errstate(divide="ignore", invalid="ignore"):
+            self._gain[inside] = operator(2j * np.pi * frequency[inside]) * mask[inside]
+        if not np.isfinite(self._gain[0]):
+            self._gain[0] = 0.0
+        ramp = np.vander(np.linspace(-1.0, 1.0, count), 2)
+        self._line = np.linalg.qr(ramp)[0] if lowest > 0.0 else ramp[:, :0]
+
+    def __call__(self, signal: Array) -> Array:
+        middle = signal - self._line @ (self._line.T @ signal)
+        reach = self._reach
+        before, after = middle[reach:0:-1], middle[-2 : -reach - 2 : -1]
+        padded = np.concatenate([2 * middle[0] - before, middle, 2 * middle[-1] - after])
+        return irfft(rfft(padded) * self._gain, len(padded))[reach : reach + self._count]
 
 
 def _edge(frequency: Array, corner: float, falling: bool) -> Array:

@@ -12,7 +12,7 @@ from ssmr_ident.diagnose.explore import mended
 from ssmr_ident.diagnose.formulas import other_formulas
 from ssmr_ident.diagnose.gathered import gathered
 from ssmr_ident.diagnose.race import FAR, ranked
-from ssmr_ident.diagnose.scan import combinations
+from ssmr_ident.diagnose.scan import held_at
 from ssmr_ident.identify.clouds import settled
 from ssmr_ident.identify.descent import LOUD, chatters, descend
 from ssmr_ident.identify.horizons import led
@@ -29,7 +29,7 @@ def turned(fit: JointFit, lengths: tuple[float, ...]) -> JointFit:
     effect_id = fit.model.ids[-1]
     own = fit.model.held[effect_id]
     best, rest = fit, lengths[1:] or lengths
-    for tried in combinations(CATALOGUE[effect_id].holds):
+    for tried in held_at(CATALOGUE[effect_id], fit.model):
         if tried != {name: own[name] for name in tried}:
             model = replace(fit.model, held={**fit.model.held, effect_id: {**own, **tried}})
             best = ranked((best, led(fit.trials, model, fit.point, rest, LAST, fit.nuisances)))[0]

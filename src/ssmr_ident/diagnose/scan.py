@@ -15,6 +15,7 @@ import numpy as np
 
 from ssmr_ident.core.parameter import Parameter
 from ssmr_ident.diagnose.sizes import sizes_of
+from ssmr_ident.identify.coordinates import Model
 from ssmr_ident.identify.joint import JointFit, over
 from ssmr_ident.identify.parallel import side_by_side
 from ssmr_ident.physics.effect import Effect, Sized
@@ -113,11 +114,10 @@ def scan(fit: JointFit, effects: Sequence[Effect], small: bool = False) -> list[
     """
     clear = Cleared(fit)
     sizes = sizes_of(fit)
-    on_rig = not {keys[-1] for keys in RIG_KEYS.values()}.isdisjoint(unknown.name for unknown in fit.model.unknowns)
     asked = []
     for effect in effects:
-        probes = (*effect.probes, *(effect.rig_probes if on_rig else ()))
-        for probe, held in itertools.product(probes, combinations(effect.holds)):
+        probes = (*effect.probes, *(effect.rig_probes if on_rig(fit.model) else ()))
+        for probe, held in itertools.product(probes, held_at(effect, fit.model)):
             at = {name: p.value(sizes) if isinstance(p, Sized) else float(p) for name, p in probe.items()}
             at = {p.name: float(np.clip(at[p.name], p.lower, p.upper)) for p in effect.parameters if p.name in at}
             if all(np.isfinite(list(at.values()))):
@@ -143,9 +143,15 @@ def _few_places(effect: Effect, suspects: Sequence[Suspect]) -> list[Suspect]:
     return kept
 
 
-def combinations(holds: Mapping[str, Sequence[float]]) -> list[dict[str, float]]:
-    """All values that are tried and not fitted, together."""
+def held_at(effect: Effect, model: Model) -> list[dict[str, float]]:
+    """All values of an effect that are tried and not fitted, together; they set a robot's axes apart, and a rig has
+    one."""
+    holds = {} if on_rig(model) else effect.holds
     return [dict(zip(holds, values, strict=True)) for values in itertools.product(*holds.values())]
+
+
+def on_rig(model: Model) -> bool:
+    return not {keys[-1] for keys in RIG_KEYS.values()}.isdisjoint(unknown.name for unknown in model.unknowns)
 
 
 def _suspect(

@@ -84,7 +84,7 @@ def forced_trial(measurement: Measurement, parameters: ParameterSet) -> Trial:
         No motion, or one that does not change.
     """
     builder = RigBuilder.of(parameters)
-    recording = measurement.recording
+    rig, recording = builder.nominal, measurement.recording
     outputs = tuple(name for name in (*MOTIONS, "acceleration_2") if name in recording and np.ptp(recording[name]) > 0)
     drive = next((name for name in INPUTS if name in recording), None)
     if not outputs:
@@ -166,6 +166,7 @@ def forced_trial(measurement: Measurement, parameters: ParameterSet) -> Trial:
             nuisances,
             scales,
             course,
+            facts=dict(zip(RIG_KEYS[rig.rotary], (rig.mass, rig.damping, rig.stiffness), strict=True)),
             shorten=lambda seconds: assembled(max(FEWEST, min(whole, round(seconds * rate / block))), ROUGH),
         )
         return trial
