@@ -82,8 +82,7 @@ class Along:
         effect = CATALOGUE[suspect.effect]
         sizes = [replace(suspect, at=smaller(effect, suspect.at, share)) for share in SHARES]
         starts = [np.concatenate([self.fit.point, self._of(model, one)]) for one in sizes]
-        rests = [self._rest(model, start, weights) for start in starts]
-        point = min(zip(rests, starts, strict=True), key=lambda pair: float(pair[0] @ pair[0]))[1]
+        point = min(starts, key=lambda start: float(np.sum(self._rest(model, start, weights) ** 2)))
         for _ in range(2):
             point = self._descended(model, point, own, weights)
             # then every recording by what is left of it
@@ -134,8 +133,10 @@ class Along:
         return np.concatenate([w * p.linear[:, self.columns] for w, p in zip(weights, self.paths, strict=True)])
 
     def _rest(self, model: Model, point: Array, weights: Sequence[float]) -> Array:
-        """What is left, mass and damping at their best."""
+        """What is left, mass and damping at their best; far more than anything where a law's force is no number."""
         rest = self._unexplained(model, point, weights)
+        if not np.isfinite(rest).all():
+            return np.full(len(rest), FARTHEST)
         q = np.linalg.qr(self._linear(weights))[0]
         return rest - q @ (q.T @ rest)
 

@@ -26,7 +26,7 @@ from ssmr_ident.diagnose.explain import without
 from ssmr_ident.diagnose.explore import Search, search
 from ssmr_ident.diagnose.followed import all_explained, at_its_best, each_set_once, explained, joined
 from ssmr_ident.diagnose.hollows import challenged
-from ssmr_ident.diagnose.pairs import backward, instead, partners_of, with_a_second
+from ssmr_ident.diagnose.pairs import backward, exchange, instead, partners_of, with_a_second
 from ssmr_ident.diagnose.polish import calmed, loud
 from ssmr_ident.diagnose.race import Progress
 from ssmr_ident.diagnose.rivals import rivals_of
@@ -83,8 +83,11 @@ def examine(setup: Setup, parameters: ParameterSet, progress: Progress | None = 
     tried, searches = [baseline], []
     singles: list[Explanation] = []
     chosen = baseline
-    for _ in range(MOST_EFFECTS):
-        if chosen is not baseline and left_over(chosen, baseline) < FORMULA:
+    exchanged = False
+    for _ in range(MOST_EFFECTS + 1):
+        if len(chosen.fit.model.ids) == MOST_EFFECTS or (
+            chosen is not baseline and left_over(chosen, baseline) < FORMULA
+        ):
             break
         if setup.decoupled and chosen is baseline:
             new = [coupled(setup, parameters, kept)]
@@ -127,7 +130,13 @@ def examine(setup: Setup, parameters: ParameterSet, progress: Progress | None = 
                 chosen = together[0]
                 break
         if not good or not significant(found_fit) or within_file(found_fit, parameters):
-            break
+            alone = None if first or exchanged or setup.decoupled else exchange(leader, chosen, kept, lengths, singles)
+            if alone is None:
+                break
+            chosen, exchanged = alone, True
+            singles.append(alone)
+            tried = joined(tried, [alone])
+            continue
         more = [name for name in leader.fit.model.ids if name not in chosen.fit.model.ids]
         stripped = without(leader.fit, more[-1])
         # the leader of pulls was led far, over hollows: what is without it begins where it ended, and is led as far

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from ssmr_ident.diagnose.accept import certain, harmless, leading, mends, significant
+from ssmr_ident.diagnose.accept import ahead, certain, harmless, leading, mends, significant
 from ssmr_ident.diagnose.explain import without
 from ssmr_ident.diagnose.explore import search
 from ssmr_ident.diagnose.followed import all_explained, at_its_best, each_set_once, explained, joined
@@ -47,6 +47,29 @@ def partners_of(
     alone = differentiate(polish(without(pair.fit, pair.fit.model.ids[0]), lengths))
     found = search(alone, baseline, lengths, True, progress)
     return all_explained(kept, (alone, *found.tried), pair.kept)
+
+
+def exchange(
+    pair: Explanation,
+    single: Explanation,
+    kept: Sequence[Trial],
+    lengths: tuple[float, ...],
+    singles: Sequence[Explanation],
+) -> Explanation | None:
+    """The second effect of a pair by itself, where it says certainly more than the first one.
+
+    Which of two is found first the start decides. Hardening that a baseline has bent round (bank 5224) showed first as
+    a mast of 0.24 kg with a damping ratio of 0.27, was turned down as its partner for the 0.70 of the variance that it
+    left, and is 2,600 units ahead of the mast alone.
+    """
+    if not certain(pair, single):
+        return None
+    first, *rest = pair.fit.model.ids
+    alone = next((e for e in singles if list(e.fit.model.ids) == rest), None)
+    if alone is None:
+        alone = explained(kept, differentiate(polish(without(pair.fit, first), lengths)), pair.kept)
+    better = ahead(alone, single) and harmless(alone, single)
+    return alone if better and significant(alone.fit) else None
 
 
 def backward(
@@ -104,10 +127,10 @@ def instead(
     pairs = each_set_once(pairs)
     leader = at_its_best(leading(chosen, pairs), pairs, kept, lengths)
     tried = joined(tried, pairs)
-    if not certain(leader, chosen) or not harmless(leader, chosen):
+    if not ahead(leader, chosen) or not harmless(leader, chosen):
         return chosen, tried
     shown = replace(leader, fit=differentiate(leader.fit))
     left, tried = backward(kept, lengths, shown, [shown if e is leader else e for e in tried], ())
     # what the pair can do without may have shown the way to a single effect that no search had brought so far
-    better = left is shown or (certain(left, chosen) and harmless(left, chosen))
+    better = left is shown or (ahead(left, chosen) and harmless(left, chosen))
     return (left if better and significant(left.fit) else chosen), tried

@@ -72,8 +72,9 @@ class Path:
     band: Callable[[Array], Array]
 
     def force(self, stiffness: float, effects: Mapping[str, Mapping[str, float]]) -> Array:
-        """Of effects, (n,) float [N], in the band."""
-        return self.band(force_along(self.displacement, self.velocity, self.step, stiffness, effects))
+        """Of effects, (n,) float [N], in the band; as it is where it is no number."""
+        force = force_along(self.displacement, self.velocity, self.step, stiffness, effects)
+        return self.band(force) if np.isfinite(force).all() else force
 
 
 def path_of(fit: JointFit, index: int, rig: Oscillator) -> Path:
