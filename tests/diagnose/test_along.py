@@ -8,7 +8,7 @@ from scipy.integrate import solve_ivp
 from small_rigs import ROUGH, Run, campaign, fitted, prepared
 
 from ssmr_ident.diagnose.along import begun_along, is_law, without_laws
-from ssmr_ident.diagnose.path import force_along, path_of
+from ssmr_ident.diagnose.path import LONGEST, force_along, loudest, path_of
 from ssmr_ident.diagnose.residual_force import oscillator
 from ssmr_ident.diagnose.scan import Suspect, candidates, scan
 from ssmr_ident.identify.joint import JointFit
@@ -48,6 +48,15 @@ def test_what_is_unexplained_along_a_path_is_the_hidden_force_and_what_the_rig_t
     assert np.std(rest[60:-60] - path.linear[60:-60] @ taken) < 0.15 * np.std(path.band(hidden)[60:-60])
     # the rig has 8 kg, 50 N s/m and 20 kN/m, whatever the fit has made of it
     assert values["stiffness_N_m"] + taken[2] == pytest.approx(20000.0, rel=0.02)
+
+
+def test_of_a_long_recording_the_part_is_taken_in_which_most_is_unexplained() -> None:
+    force = np.zeros(3 * LONGEST)
+    force[LONGEST + 100 : 2 * LONGEST] = np.sin(np.arange(LONGEST - 100))
+    part = loudest(force)
+    assert part.stop - part.start == LONGEST
+    assert LONGEST <= part.start <= LONGEST + 100
+    assert loudest(force[:500]) == slice(0, 500)
 
 
 @pytest.mark.parametrize(
