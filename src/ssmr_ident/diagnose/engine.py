@@ -83,11 +83,10 @@ def examine(setup: Setup, parameters: ParameterSet, progress: Progress | None = 
     tried, searches = [baseline], []
     singles: list[Explanation] = []
     chosen = baseline
-    exchanged = False
-    for _ in range(MOST_EFFECTS + 1):
-        if len(chosen.fit.model.ids) == MOST_EFFECTS or (
-            chosen is not baseline and left_over(chosen, baseline) < FORMULA
-        ):
+    rounds, exchanged = MOST_EFFECTS, False
+    while rounds:
+        rounds -= 1
+        if chosen is not baseline and left_over(chosen, baseline) < FORMULA:
             break
         if setup.decoupled and chosen is baseline:
             new = [coupled(setup, parameters, kept)]
@@ -130,10 +129,13 @@ def examine(setup: Setup, parameters: ParameterSet, progress: Progress | None = 
                 chosen = together[0]
                 break
         if not good or not significant(found_fit) or within_file(found_fit, parameters):
-            alone = None if first or exchanged or setup.decoupled else exchange(leader, chosen, kept, lengths, singles)
+            # not in pulls, where it was not counted: there the one effect may lie in a hollow of the other's
+            no_first = first or exchanged or setup.decoupled or slides(chosen.fit)
+            alone = None if no_first else exchange(leader, chosen, kept, lengths, singles)
             if alone is None:
                 break
-            chosen, exchanged = alone, True
+            # the second one is looked for anew
+            chosen, exchanged, rounds = alone, True, rounds + 1
             singles.append(alone)
             tried = joined(tried, [alone])
             continue
