@@ -94,7 +94,9 @@ def search(
     if loud and baseline == "sdof":
         begun = begun_along(base, [suspect for group in groups for suspect in group])
         begun = ranked(list(side_by_side(lambda fit: descend(fit, 2), begun)))
-        tried = _led_on(base, [fit for fit in begun if _close(begun, fit)], rest, lengths, progress)
+        effects = list(dict.fromkeys(fit.model.ids for fit in begun))[:REFITTED]
+        few = [fit for fit in begun if fit.model.ids in effects and _close(begun, fit)]
+        tried = _led_on(base, few, rest, lengths, progress)
         if tried and not leaves_much(ranked(tried)[0]):
             # every law has been begun as well as it could be; what is none may do as much
             field = without_laws(groups)
