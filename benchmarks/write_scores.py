@@ -106,7 +106,8 @@ def page(folder: Path) -> str:
     section(
         "Fresh random sessions",
         "diagnosis.jsonl",
-        "`bench_diagnosis.py`; the last hundred seeds, as far as they were run, by family, then by what was left out, and the hundreds before "
+        "`bench_diagnosis.py`; the last hundred seeds, as far as they were run, by family, then by what was left out, "
+        "and the hundreds before "
         "them as the engine of their day answered.\n",
         _fresh,
         dated=False,
