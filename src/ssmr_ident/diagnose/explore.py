@@ -89,6 +89,7 @@ def search(
     loud = loud or (chatters(base) and float(np.max(misfit)) > (LOUD if further else WIDE))
     groups = scan(base, candidates(base, baseline), small=not loud)
     rest = [np.inf]
+    begun: list[JointFit] = []
     tried: list[JointFit] = []
     field = groups
     if loud and baseline == "sdof":
@@ -120,8 +121,9 @@ def search(
         first = field[0][0]
         tried += [] if _has(tried, first) else _to_the_end(base, [started(base, first)], [np.inf], lengths, progress)
     if loud and baseline == "sdof" and len(lengths) > 1 and tried and leaves_much(ranked(tried)[0]):
-        # what a first horizon tells of two recordings had put something else in front; laws have been begun elsewhere
-        others = without_laws(groups)
+        # what a first horizon tells of two recordings had put something else in front; laws have been begun along the
+        # paths, unless nothing holds the mass
+        others = without_laws(groups) if begun else groups
         tried += _to_the_end(base, raced(base, others, progress), [np.inf], lengths, progress) if others else []
     if progress:
         progress("refitting explanations", 1, 1)
