@@ -161,7 +161,9 @@ def begun_along(fit: JointFit, suspects: Sequence[Suspect]) -> list[JointFit]:
         return []
     rig = Oscillator(*(values[key] for key in keys))
     laws = [suspect for suspect in suspects if is_law(suspect)]
-    along = Along(fit, keys, rig, tuple(path_of(fit, index, rig) for index in range(len(fit.trials))))
+    # in an order of their own: sums over recordings in another one round differently
+    paths = sorted((path_of(fit, k, rig) for k in range(len(fit.trials))), key=lambda p: float(np.std(p.unexplained)))
+    along = Along(fit, keys, rig, tuple(paths))
 
     best: dict[tuple[object, ...], tuple[float, Model, Array]] = {}
     for suspect, found in zip(laws, side_by_side(along.begun, laws), strict=True):
