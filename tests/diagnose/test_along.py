@@ -8,7 +8,7 @@ from scipy.integrate import solve_ivp
 from small_rigs import ROUGH, Run, campaign, fitted, prepared
 
 from ssmr_ident.diagnose.along import begun_along, is_law, without_laws
-from ssmr_ident.diagnose.path import LONGEST, force_along, loudest, path_of
+from ssmr_ident.diagnose.path import LONGEST, Path, force_along, loudest, path_of
 from ssmr_ident.diagnose.residual_force import oscillator
 from ssmr_ident.diagnose.scan import Suspect, candidates, scan
 from ssmr_ident.identify.joint import JointFit
@@ -30,8 +30,8 @@ def test_the_force_along_a_path_is_that_of_the_laws_formula() -> None:
     loop = {"alpha": 0.7, "yield_m": 4e-4}
     path = force_along(x, v, 1e-3, 1e4, {"hysteresis": loop})
 
-    def wen(_: float, z: np.ndarray, t: float = 0.0) -> np.ndarray:
-        speed = 2e-2 * np.cos(20.0 * _)
+    def wen(t: float, z: np.ndarray) -> np.ndarray:
+        speed = 2e-2 * np.cos(20.0 * t)
         return speed - np.abs(z / 4e-4) ** 2 * 0.5 * (speed + np.abs(speed) * np.sign(z))
 
     solved = solve_ivp(wen, (0.0, time[-1]), [0.0], t_eval=time, max_step=5e-4, rtol=1e-8, atol=1e-12)
@@ -90,6 +90,16 @@ def test_each_formula_is_begun_once_and_what_is_no_law_is_left_to_others() -> No
     assert {s.effect for s in rest} >= {"unlisted"}
     assert not any(is_law(s) for s in rest)
     assert all(is_law(s) for group in groups for s in group if s not in rest)
+
+
+def test_a_law_whose_force_is_no_number_is_not_begun(monkeypatch: pytest.MonkeyPatch) -> None:
+    fit = fitted(prepared(campaign({"free_play": {"gap_m": 6e-4, "rounding": 0.1}}, SHAKEN, seed=6)))
+    monkeypatch.setattr(
+        Path, "force", lambda path, _, effects: path.unexplained * (np.nan if "free_play" in effects else 1.0)
+    )
+    begun = _begun(fit)
+    assert begun
+    assert all("free_play" not in f.model.ids for f in begun)
 
 
 def _begun(fit: JointFit) -> list[JointFit]:

@@ -75,7 +75,8 @@ class Along:
         return tuple(k for k in (0, 1) if self.keys[k] in known and (driven or k > 0))
 
     def begun(self, suspect: Suspect) -> tuple[float, Model, Array]:
-        """A model with a suspect's effect, at the point that explains the paths best, after how much is left there."""
+        """A model with a suspect's effect, at the point that explains the paths best, after how much is left there:
+        infinitely much where its force is no number."""
         model, _ = with_suspect(self.fit, suspect)
         own = self._moved(model)
         weights = [1.0 / max(float(np.std(path.unexplained)), 1e-300) for path in self.paths]
@@ -83,6 +84,8 @@ class Along:
         sizes = [replace(suspect, at=smaller(effect, suspect.at, share)) for share in SHARES]
         starts = [np.concatenate([self.fit.point, self._of(model, one)]) for one in sizes]
         point = min(starts, key=lambda start: float(np.sum(self._rest(model, start, weights) ** 2)))
+        if not np.isfinite(self._unexplained(model, point, weights)).all():
+            return np.inf, model, point
         for _ in range(2):
             point = self._descended(model, point, own, weights)
             # then every recording by what is left of it
@@ -168,7 +171,7 @@ def begun_along(fit: JointFit, suspects: Sequence[Suspect]) -> list[JointFit]:
     best: dict[tuple[object, ...], tuple[float, Model, Array]] = {}
     for suspect, found in zip(laws, side_by_side(along.begun, laws), strict=True):
         form = (suspect.effect, *sorted(suspect.at))
-        if form not in best or found[0] < best[form][0]:
+        if found[0] < (best[form][0] if form in best else np.inf):
             best[form] = found
     ordered = sorted(best.items(), key=lambda item: item[1][0])
     crowd = [form for form, _ in ordered if form[0] == "unlisted"][FEW:]

@@ -22,8 +22,8 @@ from ssmr_ident.physics.slots import UNLISTED, checked, effect_vector
 Array = np.ndarray
 
 LONGEST = 4096
-"""Samples of a path: of a longer recording the part in which most is unexplained, 340 periods or more. A recording of
-half a minute at 600 Hz says no more of where to begin."""
+"""Samples of a path: of a longer recording the part in which most is unexplained. Chosen, for time; a start needs no
+more."""
 
 _unlisted = unlisted.force
 

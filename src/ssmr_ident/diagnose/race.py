@@ -44,7 +44,7 @@ def _each_form(ranked: Sequence[JointFit]) -> list[JointFit]:
     return list(best.values())
 
 
-def few_unlisted(ordered: Sequence[JointFit]) -> list[JointFit]:
+def _few_unlisted(ordered: Sequence[JointFit]) -> list[JointFit]:
     """Fits without all terms of `unlisted` but the best two, which would crowd out every effect that shows later."""
     terms = [fit for fit in ordered if fit.model.ids[-1] == "unlisted"]
     return [fit for fit in ordered if fit not in terms[2:]]
@@ -73,7 +73,7 @@ def raced(base: JointFit, groups: Sequence[Sequence[Suspect]], progress: Progres
         field += side_by_side(lambda fit: descend(fit, HEATS[1][1], plain=True), combined(base, group[0]))
     if progress:
         progress("trying effects", 1, 1)
-    ordered, kept = few_unlisted(order(field)), HEATS[2][0]
+    ordered, kept = _few_unlisted(order(field)), HEATS[2][0]
     # after two steps the first few may all be of one effect
     once = ranked(field)[:1] if plain else _each_form(ordered)[:kept]
     once += [f for f in ordered[:kept] if f not in once]
@@ -90,7 +90,7 @@ def run_on(started: Sequence[JointFit]) -> list[JointFit]:
     and they ended 940 and 370 ahead.
     """
     kept, steps = HEATS[-1]
-    field = few_unlisted(_each_form(ranked(started)))[:kept]
+    field = _few_unlisted(_each_form(ranked(started)))[:kept]
     return ranked(list(side_by_side(lambda fit: descend(fit, steps), field)))
 
 
@@ -160,7 +160,7 @@ def screened(
         ordered = ranked(field)
         # after a step or two the first dozen may all be of two effects
         once = [] if heat else [*(f for f in _each_form(ordered) if f not in apart), *apart]
-        field = [*once, *(f for f in few_unlisted(ordered)[:kept] if f not in once)]
+        field = [*once, *(f for f in _few_unlisted(ordered)[:kept] if f not in once)]
         field = list(side_by_side(partial(_led_on, few.trials, second, steps), field))
         if progress:
             progress("trying effects", len(starts) + heat, rounds)
