@@ -25,17 +25,19 @@ def made_pulls(
     effects: Mapping[str, Mapping[str, float]],
     seed: int,
     aside: float = 0.0,
+    real: Mapping[str, float] | None = None,
 ) -> tuple[Setup, ParameterSet]:
     """Pulls of given direction, speed [mm/s] and travel [m]; the robot slides along both axes together.
 
-    Its contacts lie ``aside`` [m] of where its file has them.
+    Its contacts lie ``aside`` [m] of where its file has them, and its ``real`` values differ from those in its file.
     """
     random = np.random.default_rng(seed)
     known = read_parameters("p3at-extended")
     together = {"tire.mu_kinetic": known["tire.mu_static"], "tire.sliding_speed_m_s": Estimate(0.01, None, "m/s")}
     known = known.updated(together)
     moved = Estimate(known["contact_points_m"].value + np.array([0.0, aside, 0.0]), None, "m")
-    robot = robot_from_parameters(known.updated({"contact_points_m": moved}))
+    own = {path: Estimate(value) for path, value in (real or {}).items()}
+    robot = robot_from_parameters(known.updated({"contact_points_m": moved, **own}))
     measurements = []
     for k, (direction, speed, travel) in enumerate(pulls):
         head = speed * 1e-3 / RATE * np.arange(round(travel / speed * 1e3 * RATE) + 1)

@@ -1,0 +1,22 @@
+"""A robot that slides swings on its tires: a pull depends on what damps that and on what it turns."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from made_pulls import made_pulls
+
+from ssmr_ident.diagnose.baseline import best_baseline
+
+PULLS = (("lateral", 1.0, 6e-3), ("lateral", 2.0, 7e-3), ("longitudinal", 2.0, 30e-3), ("longitudinal", 3.0, 30e-3))
+
+
+def test_a_robot_that_its_file_has_too_much_damping_of_is_found_with_its_own() -> None:
+    file = made_pulls(PULLS, {}, 3)[1]
+    names = ("tire.damping_x_N_s_m", "tire.damping_y_N_s_m")
+    real = {name: file[name].value - 1.2 * file[name].std for name in names}
+    setup, known = made_pulls(PULLS, {}, 3, real=real)
+    base, _ = best_baseline(setup.fitted, setup, known)
+    found = base.model.split(base.point)[0]
+    assert {name: found[name] for name in names} == pytest.approx(real, abs=8.0)
+    assert np.max(base.parts / [t.size for t in base.trials]) < 1.25
