@@ -183,3 +183,24 @@ def test_coloured_noise_is_whitened_with_and_without_a_drift() -> None:
     assert np.linalg.norm(drifting.whitened(column[:, None])) == pytest.approx(size / np.sqrt(1.0 + size**2))
     beside = target - column * (plain.whitened(column[:, None]) @ plain.white_target) / size**2
     np.testing.assert_allclose(drifting.whitened(beside[:, None]), plain.whitened(beside[:, None]), atol=1e-9)
+
+
+def test_a_step_into_a_burst_is_no_slope() -> None:
+    """A run that has grown to 1e200 beside one that has not says nothing, and its square would overflow."""
+    fit, *_ = _linear()
+
+    def bursting(trial: Trial) -> Trial:
+        def run(values: dict[str, float], effects: object, nuisance: np.ndarray) -> np.ndarray:
+            grown = 1e200 if values["b"] != 0.0 else 1.0
+            return grown * trial.run(values, effects, nuisance)
+
+        return replace(trial, run=run)
+
+    trials = [bursting(trial) for trial in fit.trials]
+    begun = differentiate(evaluate(trials, fit.model, np.zeros(3), fit.nuisances))
+    for slopes in begun.slopes:
+        assert np.all(slopes.shared[:, 1] == 0.0)
+        assert np.all(np.any(slopes.shared[:, [0, 2]] != 0.0, axis=0))
+    ended = descend(begun, 4)
+    assert np.all(np.isfinite(ended.point))
+    assert ended.rss < begun.rss

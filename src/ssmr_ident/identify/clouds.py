@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from ssmr_ident.identify.descent import best_step, search_again
-from ssmr_ident.identify.joint import JointFit, Slopes, over
+from ssmr_ident.identify.joint import BURST, JointFit, Slopes, over
 
 Array = np.ndarray
 
@@ -52,7 +52,7 @@ def averaged(fit: JointFit, width: float, random: np.random.Generator) -> JointF
         ]
         for move, aside, white in zip(moved, own[index], trial.whitened(trial.runs(asked)).T, strict=True):
             change = white - centre
-            if np.all(np.isfinite(change)):
+            if np.all(np.abs(change) < BURST):
                 rows.append(change)
                 moves.append(np.concatenate([[1.0], move[seen], aside]))
         shared, beside = np.zeros((len(centre), len(names))), np.zeros((len(centre), len(nuisance)))

@@ -225,12 +225,12 @@ def differentiate(fit: JointFit, shared: bool = True) -> JointFit:
         for column in seen:
             slope = (next(found) - centre) / moved[trial.coarse][column][0]
             # where a step leaves what can be simulated, the fit stays along this coordinate
-            columns[:, column] = slope if np.all(np.isfinite(slope)) else 0.0
+            columns[:, column] = slope if np.all(np.abs(slope) < BURST) else 0.0
         for column in own_columns:
             ahead = next(found)
             even = trial.nuisances[column] in trial.even
             own[:, column] = (ahead - next(found)) / (2.0 * width) if even else (ahead - centre) / width
-        return Slopes(columns, np.where(np.isfinite(own), own, 0.0))
+        return Slopes(columns, np.where(np.abs(own) < BURST, own, 0.0))
 
     return replace(fit, slopes=tuple(over(fit.trials, one)), exact=shared)
 
