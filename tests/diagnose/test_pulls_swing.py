@@ -20,3 +20,12 @@ def test_a_robot_that_its_file_has_too_much_damping_of_is_found_with_its_own() -
     found = base.model.split(base.point)[0]
     assert {name: found[name] for name in names} == pytest.approx(real, abs=8.0)
     assert np.max(base.parts / [t.size for t in base.trials]) < 1.25
+
+
+def test_a_pull_takes_a_tire_for_passive_whatever_decays_ask_for() -> None:
+    trial = made_pulls(PULLS[2:3], {}, 3)[0].fitted[0].as_it_is()
+    own = np.zeros(1)
+    none, less = ({"tire.damping_x_N_s_m": value} for value in (0.0, -40.0))
+    assert np.array_equal(trial.run(none, {}, own), trial.run(less, {}, own))
+    assert np.all(np.isfinite(trial.course.run(less, {}, own)))
+    assert np.max(np.abs(trial.run(none, {}, own) - trial.run({}, {}, own))) > 0.5

@@ -15,6 +15,9 @@ PULLS = (("longitudinal", 1.5, 21e-3), ("lateral", 1.0, 7e-3))
 
 def test_all_combinations_show_the_falling_friction_and_the_limit_that_was_hidden() -> None:
     setup, known = made_pulls(PULLS, {"stribeck": TRUE}, 4)
+    told = {trial.name: trial.sees("tire.damping_y_N_s_m") for trial in setup.fitted}
+    assert told == {trial.name: trial.facts["teeth"] == 0.0 for trial in setup.fitted}
+    assert not all(told.values())
     base = fit_baseline(setup.fitted, setup, known)
     probe = Suspect("stribeck", {"kinetic_share": 0.8, "stribeck_velocity_m_s": 0.01}, {}, {}, 0.0, np.zeros(1))
     found = combined(base, probe)

@@ -54,7 +54,7 @@ def force_model(entry: Entry, parameters: ParameterSet, held: bool = False, unse
     def pulled(asked: Sequence[Head], step: float, inner: float | None) -> Array:
         pulls = []
         for values, effects, head in asked:
-            seen = {name: value for name, value in values.items() if name not in unseen}
+            seen = {name: _passive(name, value) for name, value in values.items() if name not in unseen}
             pulls.append((builder(seen), effects, _scenario(entry, head, step)))
         if inner is None:  # each has a step of its own
             return np.array([_by_its_own_step(*one, step) for one in pulls])
@@ -62,6 +62,11 @@ def force_model(entry: Entry, parameters: ParameterSet, held: bool = False, unse
         return simulate_pulls(pulls, 1.0 / step, longest, ("force",))[:, :, 0]
 
     return pulled
+
+
+def _passive(name: str, value: float) -> float:
+    """A tire's value, its damping at least none: decays may ask for less, and a robot that slides on it runs away."""
+    return max(value, 0.0) if name.startswith("tire.damping_") else value
 
 
 def _by_its_own_step(robot: Robot, effects: Effects, scenario: Scenario, step: float) -> Array:

@@ -48,11 +48,13 @@ wide one: a percent of a stiffness, and a thousandth of the travel."""
 
 BLIND = {
     "pull": ("accelerometer.",),
+    "teeth": ("inertia_", "accelerometer.", "tire.damping_"),
     "wheel": ("inertia_", "accelerometer.", "contact_shift", "height", "tire.damping_"),
 }
 """What no recording depends on. A pull depends on the body's inertia and on the tires' damping as well: a robot that
 slides swings on its tires, and one deviation of either changes what a load cell reads by 0.3 to 1.5 of its noise. Held
-at the file's values they left up to 7 times the noise's variance of a robot that nothing was missing from."""
+at the file's values they left up to 7 times the noise's variance of a robot that nothing was missing from. Of teeth,
+which are compared by their sizes, no swing is left; tires without any damping make teeth of their own."""
 
 SIDEWAYS = ("contact_shift_y_m", "inertia_kg_m2.xy", "inertia_kg_m2.yz")
 """What a pull lengthwise is first taken not to depend on. The wheels of a robot that is alike left and right to the
@@ -163,7 +165,10 @@ def _trial(measurement: Measurement, parameters: ParameterSet, unseen: tuple[str
         Course(start + elapsed, measured[:, None], whole, ("N",), None),
         counts,
         {"travel_m": size, "teeth": 0.0 if teeth is None else float(teeth.count)},
-        (*BLIND["pull" if measurement.entry.experiment == "pull" else "wheel"], *unseen),
+        (
+            *BLIND[("pull" if teeth is None else "teeth") if measurement.entry.experiment == "pull" else "wheel"],
+            *unseen,
+        ),
         SMOOTH if teeth is None and parameters.number("tire.sliding_speed_m_s", 0.0) > 0.0 else COARSE,
         searched=True,
         quiet=teeth is not None,
