@@ -2,7 +2,7 @@ r"""Write docs/theory/diagnosis_scores.md from the result files of the benchmark
 
 python benchmarks/score_practice.py --out out/practice.jsonl
 python benchmarks/score_practice.py --real --out out/real.jsonl
-python benchmarks/bench_diagnosis.py --first 5200 --count 100 --out benchmarks/results/diagnosis.jsonl
+python benchmarks/bench_diagnosis.py --first 5300 --count 100 --out benchmarks/results/diagnosis.jsonl
 python benchmarks/bench_nulls.py --first 193000 --count 1000 --out benchmarks/results/nulls.jsonl --families \
     decays,forced,rig_decay,bench,decays,forced,rig_decay,pulls,decays,forced,rig_decay,block
 python benchmarks/bench_power.py --family forced --out out/power.jsonl
