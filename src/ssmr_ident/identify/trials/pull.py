@@ -165,10 +165,7 @@ def _trial(measurement: Measurement, parameters: ParameterSet, unseen: tuple[str
         Course(start + elapsed, measured[:, None], whole, ("N",), None),
         counts,
         {"travel_m": size, "teeth": 0.0 if teeth is None else float(teeth.count)},
-        (
-            *BLIND[("pull" if teeth is None else "teeth") if measurement.entry.experiment == "pull" else "wheel"],
-            *unseen,
-        ),
+        (*BLIND[_kind(measurement.entry.experiment, teeth is not None)], *unseen),
         SMOOTH if teeth is None and parameters.number("tire.sliding_speed_m_s", 0.0) > 0.0 else COARSE,
         searched=True,
         quiet=teeth is not None,
@@ -194,6 +191,13 @@ def travelled(measurement: Measurement) -> tuple[Array, Array, float, float]:
     else:
         raise InputError(recording.provenance.file, "has no position, and session.yaml no speed_mm_s", "Give one")
     return even.samples[:, 0], travel, 1.0 / even.sample_rate, even.start
+
+
+def _kind(experiment: str, toothed: bool) -> str:
+    """The key of ``BLIND``."""
+    if experiment != "pull":
+        return "wheel"
+    return "teeth" if toothed else "pull"
 
 
 def holds(force: Array, travel: Array) -> bool:
