@@ -118,7 +118,8 @@ def search(
         same = [g[0] for g in groups if alone and g[0].own < SAME and not CATALOGUE[g[0].effect].sudden]
         suspects = [s for group in _each_group(chosen, beyond) for s in variants(group)]
         starts = [partial(started, base, s) for s in suspects]
-        starts += [partial(started, base, s, plain=True) for s in strides(suspects)] if slides(base) else []
+        most = [s for s in suspects if chosen and s.effect == chosen[0][0].effect and slides(base)]
+        starts += [partial(started, base, s, plain=True) for s in strides(most)]
         starts += [partial(from_what_is_known, base, s, lengths) for group in beyond for s in variants(group)]
         starts += [partial(_instead, base, s) for s in same]
         rough = run_on(list(side_by_side(lambda begin: begin(), starts)))
