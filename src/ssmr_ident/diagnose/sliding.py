@@ -73,7 +73,7 @@ def of_those_that_stand(laws: Sequence[tuple[Setup, ParameterSet]], turning: set
 
     The cone takes grip away from a turning wheel by itself. From a relay that lacks ``slip_coupling``, which does so
     too, it is the nearer of two wrong laws, and beside it that effect has nothing to do: 8,457 times the noise against
-    18,121 (bank 5337), of which the relay with the effect leaves one.
+    18,121 (bank 5337), where the relay with the true values leaves about one.
     """
     standing = [[t for t in setup.fitted if t.name not in turning] for setup, _ in laws]
     if not all(standing):
