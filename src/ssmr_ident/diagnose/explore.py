@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
@@ -13,8 +13,8 @@ from ssmr_ident.diagnose.along import begun_along, without_laws
 from ssmr_ident.diagnose.baseline import LAST, WIDE, bent, far_off, leaves_much
 from ssmr_ident.diagnose.explain import from_what_is_known, in_its_place
 from ssmr_ident.diagnose.race import Progress, raced, ranked, run_on, screened, started, variants
-from ssmr_ident.diagnose.scan import Suspect, candidates, scan, smaller
-from ssmr_ident.identify.descent import LOUD, chatters, descend, slides
+from ssmr_ident.diagnose.scan import Suspect, candidates, scan
+from ssmr_ident.identify.descent import LOUD, chatters, descend
 from ssmr_ident.identify.horizons import led
 from ssmr_ident.identify.joint import JointFit
 from ssmr_ident.identify.parallel import side_by_side
@@ -31,11 +31,6 @@ still overtake another: a factor of 4.5."""
 
 SCREENED, REFITTED = 8, 3
 """Effects that are refitted on the first horizons, and to the end."""
-
-STRIDES = (3.0, 10.0)
-"""Times what a straight line promises at which an effect is begun where contacts let go: the line passes over corners,
-and a fit hardly moves along the effect. Play of 0.076 mm in pulls (bank 5340), promised at 0.013, gains 114 from
-0.058 mm, 59 from 0.019, and nothing from where it was promised."""
 
 SAME = 0.01
 """Share of a change's square below which the baseline makes it as well: steps of a tenth of a change leave so much."""
@@ -116,10 +111,7 @@ def search(
         alone = bent(base) and not further
         beyond = [g for g in groups if (alone or elsewhere) and _moves_beyond(g[0].effect) and len(lengths) > 1]
         same = [g[0] for g in groups if alone and g[0].own < SAME and not CATALOGUE[g[0].effect].sudden]
-        suspects = [s for group in _each_group(chosen, beyond) for s in variants(group)]
-        starts = [partial(started, base, s) for s in suspects]
-        most = [s for s in suspects if chosen and s.effect == chosen[0][0].effect and slides(base)]
-        starts += [partial(started, base, s, plain=True) for s in strides(most)]
+        starts = [partial(started, base, s) for group in _each_group(chosen, beyond) for s in variants(group)]
         starts += [partial(from_what_is_known, base, s, lengths) for group in beyond for s in variants(group)]
         starts += [partial(_instead, base, s) for s in same]
         rough = run_on(list(side_by_side(lambda begin: begin(), starts)))
@@ -136,18 +128,6 @@ def search(
     if progress:
         progress("refitting explanations", 1, 1)
     return Search(base, tuple(tuple(g) for g in groups), tuple(_each_once(tried)), tuple(lengths))
-
-
-def strides(suspects: Sequence[Suspect]) -> list[Suspect]:
-    """Suspects, and the same several times as large, but for what has a sign of its own or begins at once."""
-    found = []
-    for suspect in suspects:
-        effect = CATALOGUE[suspect.effect]
-        found.append(suspect)
-        if not suspect.sizes and not effect.sudden:
-            larger = [replace(suspect, at=smaller(effect, suspect.at, stride)) for stride in STRIDES]
-            found += [other for other in larger if other.at != suspect.at]
-    return found
 
 
 def _promises(suspect: Suspect) -> bool:
