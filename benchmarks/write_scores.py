@@ -59,7 +59,8 @@ true values, has no more log evidence over the truth without what was not named 
 that nobody could gain by knowing (`visible.py`). Wheels that lift slide by the thesis' relay in the bank and by
 Coulomb's cone in fits of decays, so for them this is judged under a law that they were not made with;
 *part* and *extra*: some of the right names, or right names and more;
-the rest speaks for itself. The noise floor is that of the true
+the rest speaks for itself. Rows of engines bddf8ee and b347682 (pulls and blocks) began small effects in pulls at three
+sizes, which was taken back. The noise floor is that of the true
 signals, not the one that the diagnosis states.
 """
 
