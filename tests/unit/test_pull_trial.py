@@ -8,12 +8,10 @@ import pytest
 from ssmr_ident.campaign import Measurement
 from ssmr_ident.core.parameter import Estimate
 from ssmr_ident.core.recording import Channel, Provenance, Recording
-from ssmr_ident.identify.trials.machine import QUICK
 from ssmr_ident.identify.trials.pull import falls, find_slack, holds, pull_trial, tightening
 from ssmr_ident.physics.robot import robot_from_parameters
 from ssmr_ident.session import Entry, read_parameters
 from ssmr_ident.simulate import Scenario, simulate
-from ssmr_ident.simulate.bench import drag_wheel
 
 STEP, SPEED, STIFFNESS = 0.01, 1e-3, 2e4
 
@@ -106,26 +104,6 @@ def test_a_slack_is_found_while_wheels_spin() -> None:
     assert found[0] == pytest.approx(slack, abs=2.5e-5)
     left = trial.white_target - trial.whitened(trial.run({}, slip, found / trial.scales))
     assert float(left @ left) < 50.0 * trial.size
-
-
-def test_a_dragged_wheel_that_swings_back_is_simulated_in_steps_that_let_it() -> None:
-    """A stick that lets go falls to half of its force in a few thousandths of a second."""
-    known = read_parameters("p3at-extended")
-    known = known.updated({"tire.mu_kinetic": known["tire.mu_static"]})
-    stretching = {"cable_compliance": {"K_cable_N_m": 7e4}}
-    travel = ramp_and_hold(12.0, 0.0)
-    robot = robot_from_parameters(known)
-    force, coarse = (drag_wheel(robot, travel, STEP, True, stretching, inner) for inner in (None, QUICK))
-    assert falls(force, travel)
-    assert not falls(coarse, travel)
-    measured = force + 0.2 * np.random.default_rng(7).standard_normal(len(force))
-    time = STEP * np.arange(len(force))
-    log = Recording(
-        time, (Channel("force", measured, "N"), Channel("position", travel, "m")), Provenance("made", "", "test")
-    )
-    trial = pull_trial(Measurement(Entry("drag.csv", "wheel_drag", speed_mm_s=1.0, free_normal=True), log), known)
-    left = trial.white_target - trial.whitened(trial.run({}, stretching, np.zeros(1)))
-    assert float(left @ left) < 2.0 * trial.size
 
 
 def test_a_contact_that_lets_go_once_near_the_end_does_not_hold() -> None:

@@ -37,6 +37,18 @@ def grip_shares(rim_speed, slip_x, slip_y, lambda_max):
 
 
 @kernel
+def release_share(mu_static, mu_kinetic, dropped):
+    """Share of the kinetic friction that acts while a contact slides: ``dropped`` (0 in the thesis' form, 1 with the
+    term it leaves out of (6.4)) where mu_k < mu_s, and all of it where both are one number.
+
+    A release without friction ends on mu_k N. Where it began there as well it is no release but sliding, which
+    Coulomb's law opposes with mu N; without that a contact let go and stuck in turn at every step, and carried D·v less
+    than mu N on average.
+    """
+    return where(mu_kinetic < mu_static, dropped, 1.0)
+
+
+@kernel
 def contact_force(deflection, sliding, velocity, hub, beside, stiffness, damping, mass, breakaway, grip, drag, step):
     """Relay (6.4) and tire force (4.9) of one contact axis at a whole step.
 
@@ -44,7 +56,7 @@ def contact_force(deflection, sliding, velocity, hub, beside, stiffness, damping
     on the contact exceeds ``breakaway`` (mu_s N) it lets go; it then obeys m_t dv_c/dt + D v_c = F' - drag, taken
     implicitly because m_t/D is about a millisecond or none at all, and sticks again once the force has fallen
     to ``grip`` (mu_k N). A step that would take the force below ``grip`` is slowed to end exactly on it: the depth
-    of a release then does not depend on the step size, and mu_k = mu_s is plain Coulomb sliding.
+    of a release then does not depend on the step size. mu_k = mu_s with ``drag`` = mu N is plain Coulomb sliding.
 
     Parameters
     ----------
@@ -60,7 +72,7 @@ def contact_force(deflection, sliding, velocity, hub, beside, stiffness, damping
     stiffness, damping, mass : float
         K, D, m_t of this axis.
     breakaway, grip, drag : float [N]
-        mu_s N, mu_k N, and the friction that acts during release (0 in the thesis' form).
+        mu_s N, mu_k N, and the friction that acts during release (``release_share`` of mu_k N).
     step : float [s]
 
     Returns

@@ -21,7 +21,7 @@ from ssmr_ident.physics.slots import (
     checked_for_robot,
     effect_vector,
 )
-from ssmr_ident.physics.tire import contact_force
+from ssmr_ident.physics.tire import contact_force, release_share
 from ssmr_ident.simulate.sensed import sensed
 
 LONGEST_STEP = 2e-4
@@ -151,6 +151,7 @@ def _drag(stiffness, damping, mass, breakaway, grip, load, cable, e, head, step,
     hidden, free = np.zeros(STATES), e[UNLISTED:]
     h = step / substeps
     series, falling = math.isfinite(cable), e[KINETIC_SHARE] != 1.0 and math.isfinite(grip)
+    drag = grip * release_share(breakaway, grip, 0.0) if math.isfinite(grip) else 0.0
     for n in range(out.shape[0]):
         rate = (head[n + 1] - head[n]) / step if n + 1 < out.shape[0] else 0.0
         for m in range(substeps):
@@ -164,7 +165,6 @@ def _drag(stiffness, damping, mass, breakaway, grip, load, cable, e, head, step,
                     cable * (target - hub_position) - stiffness * deflection - beside
                     + (stiffness * h + damping) * velocity
                 ) / (cable * h + stiffness * h + damping)  # fmt: skip
-            drag = 0.0
             if falling:
                 mu = _friction_law(
                     breakaway / load, e[KINETIC_SHARE], abs(velocity), e[STRIBECK_SPEED], e[STRIBECK_EXPONENT]

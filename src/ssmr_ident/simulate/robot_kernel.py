@@ -38,7 +38,7 @@ from ssmr_ident.physics.slots import (
     STRIBECK_EXPONENT,
     STRIBECK_SPEED,
 )
-from ssmr_ident.physics.tire import combined_share, contact_force, grip_shares, sliding_force, weakened
+from ssmr_ident.physics.tire import combined_share, contact_force, grip_shares, release_share, sliding_force, weakened
 from ssmr_ident.simulate.angles import sin_cos
 from ssmr_ident.simulate.belts import take_up
 from ssmr_ident.simulate.floor import contact_speed, floor_height, rough_height
@@ -134,7 +134,8 @@ def run(
     mass, gravity = p[MASS], p[GRAVITY_G]
     kx, ky, kz, dx, dy, dz = p[KX], p[KY], p[KZ], p[DX], p[DY], p[DZ]
     patch, radius, lambda_max, gain = p[PATCH_MASS], p[RADIUS], p[LAMBDA_MAX], p[MOTOR_GAIN]
-    coupling, drag_share, nominal_load = p[SLIP_COUPLING], p[RELEASE_DRAG], 0.25 * p[MASS] * p[GRAVITY_G]
+    coupling, nominal_load = p[SLIP_COUPLING], 0.25 * p[MASS] * p[GRAVITY_G]
+    drag_share = release_share(p[MU_STATIC], p[MU_KINETIC], p[RELEASE_DRAG])
     sliding_speed, together = p[SLIDING_SPEED], first(p[SLIDING_SPEED]) > 0.0
     inv, tensor = INVERSE_INERTIA, INERTIA
     beside = remembers = patterned = rough = falling = load_law = swaying = stretching = lift = smooth = pulled = (
@@ -333,9 +334,10 @@ def run(
             tx -= hz * along_y * tension
             ty += hz * along_x * tension
             tz += (hx * along_y - hy * along_x) * tension
-        if held:  # a fixture that keeps the robot from driving off and from turning, not from being pulled sideways
-            fx -= 1e6 * x + 2e4 * ue
-            tz -= 1e5 * yaw + 2e3 * oz
+        if held:  # a fixture that keeps the robot from driving off and from turning, not from being pulled sideways;
+            # implicit, for it is stiffer than all else and would ask for steps that nothing else does
+            fx = (fx - 1e6 * x - 2e4 * ue) / (1.0 + step * (2e4 + step * 1e6) / mass)
+            tz = (tz - 1e5 * yaw - 2e3 * oz) / (1.0 + step * (2e3 + step * 1e5) * p[inv + 8])
 
         # accelerations; torque and rates in body axes
         body_x, body_y, body_z = cp * tx - sp * tz, r01 * tx + cr * ty + r21 * tz, r02 * tx + r12 * ty + r22 * tz

@@ -99,8 +99,8 @@ def simulate(
     effects : mapping of effect id to mapping of parameter to value
         Physics beyond the baseline; parameters left out take their nominal values.
     release_drag : float
-        Share of the kinetic friction that acts while a contact slides: 0 is the thesis' (6.4), 1 is (6.4) with the
-        term that the thesis drops.
+        Share of the kinetic friction that acts while a contact slides, where that is less than the static one: 0 is the
+        thesis' (6.4), 1 is (6.4) with the term that the thesis drops. Where both are one number all of it acts.
 
     Raises
     ------

@@ -29,9 +29,9 @@ QUICK = 2e-3
 simulator's own choice (the body's swing after the start), of a dragged wheel by less than 0.1 N; a load cell's noise is
 some 0.5 N."""
 
-
-FIXTURE_STEP = 2e-4
-"""The same where a stiff fixture holds the robot while its wheels spin: its own vibration would burst beyond 4e-4 s."""
+SPINNING_STEP = 5e-4
+"""The same where wheels spin, whose grip (4.12) changes with their slip: 2 ms would leave up to 0.8 N and a mean of 2 N,
+these leave less than 0.1 N."""
 
 
 def force_model(entry: Entry, parameters: ParameterSet, held: bool = False, unseen: tuple[str, ...] = ()) -> Forces:
@@ -58,7 +58,7 @@ def force_model(entry: Entry, parameters: ParameterSet, held: bool = False, unse
             pulls.append((builder(seen), effects, _scenario(entry, head, step)))
         if inner is None:  # each has a step of its own
             return np.array([_by_its_own_step(*one, step) for one in pulls])
-        longest = min(inner, FIXTURE_STEP) if pulls[0][2].held else inner
+        longest = min(inner, SPINNING_STEP) if entry.wheel_rate_rad_s else inner
         return simulate_pulls(pulls, 1.0 / step, longest, ("force",))[:, :, 0]
 
     return pulled

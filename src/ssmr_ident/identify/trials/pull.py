@@ -39,12 +39,11 @@ contact holds: a sliding one keeps its force, and a carcass that creeps or softe
 
 FALLS = 0.2
 """Share of a drag's range of forces that a wheel loses while the head goes on, from which it has let go: what holds
-loses none. A stick that lets go swings back within a few of the simulator's own steps, and not at all in ``QUICK``
-ones: a wheel dragged at 62 N fell to 30 every 2 s in its log, and slid at 62 in a fit (bank 5199)."""
+loses none."""
 
 SMOOTH, COARSE = 2.0, 10.0
-"""On the steps of differences. Where teeth come at other times after every step, or a relay chatters, slopes want a
-wide one: a percent of a stiffness, and a thousandth of the travel."""
+"""On the steps of differences. Where teeth come at other times after every step, as they do where friction falls when a
+contact lets go, slopes want a wide one: a percent of a stiffness, and a thousandth of the travel."""
 
 BLIND = {
     "pull": ("accelerometer.",),
@@ -93,8 +92,6 @@ def _trial(measurement: Measurement, parameters: ParameterSet, unseen: tuple[str
     """A recording that does not depend on some parameters, whatever their values."""
     measured, travel, step, start = travelled(measurement)
     forces = force_model(measurement.entry, parameters, holds(measured, travel), unseen)
-    swings_back = measurement.entry.experiment == "wheel_drag" and falls(measured, travel)
-    longest = None if swings_back else QUICK
     elapsed = step * np.arange(len(travel))
     speed = float(np.polyfit(elapsed, travel, 1)[0])
     size = float(travel.max())
@@ -117,7 +114,7 @@ def _trial(measurement: Measurement, parameters: ParameterSet, unseen: tuple[str
         averages = signal[: count * block].reshape(count, block).mean(axis=1)[:, None]
         return share * (averages if teeth is None else teeth.ordered(averages))
 
-    def simulated(asked: Sequence[Asked], inner: float | None = longest) -> Array:
+    def simulated(asked: Sequence[Asked], inner: float | None = QUICK) -> Array:
         heads = [
             (values, effects, np.maximum(head - float(np.clip(nuisance[0], 0.0, 0.5)) * size, 0.0))
             for values, effects, nuisance in asked
@@ -166,7 +163,7 @@ def _trial(measurement: Measurement, parameters: ParameterSet, unseen: tuple[str
         counts,
         {"travel_m": size, "teeth": 0.0 if teeth is None else float(teeth.count)},
         (*BLIND[_kind(measurement.entry.experiment, teeth is not None)], *unseen),
-        SMOOTH if teeth is None and parameters.number("tire.sliding_speed_m_s", 0.0) > 0.0 else COARSE,
+        SMOOTH if teeth is None and _steady(parameters) else COARSE,
         searched=True,
         quiet=teeth is not None,
         jolt=(tightened + JOLT[0], tightened + JOLT[1]),
@@ -191,6 +188,12 @@ def travelled(measurement: Measurement) -> tuple[Array, Array, float, float]:
     else:
         raise InputError(recording.provenance.file, "has no position, and session.yaml no speed_mm_s", "Give one")
     return even.samples[:, 0], travel, 1.0 / even.sample_rate, even.start
+
+
+def _steady(parameters: ParameterSet) -> bool:
+    """Whether what is known has contacts slide at the force at which they let go, or along both axes together."""
+    static, kinetic = (parameters.number(f"tire.mu_{name}", 0.0) for name in ("static", "kinetic"))
+    return static == kinetic or parameters.number("tire.sliding_speed_m_s", 0.0) > 0.0
 
 
 def _kind(experiment: str, toothed: bool) -> str:
