@@ -64,18 +64,22 @@ def test_where_the_cable_tightens_is_read_from_the_log_alone() -> None:
         assert found == pytest.approx(slack / SPEED, abs=0.04)
 
 
-@pytest.mark.parametrize("direction", ["lateral", "longitudinal"])
-def test_a_pull_of_one_friction_coefficient_moves_smoothly_with_what_it_hardly_depends_on(direction: str) -> None:
+@pytest.mark.parametrize("sliding_speed", [0.0, 0.3])
+@pytest.mark.parametrize(("direction", "turning"), [("lateral", 0.0), ("longitudinal", 0.0), ("lateral", 0.1)])
+def test_a_pull_of_one_friction_coefficient_moves_smoothly_with_what_it_hardly_depends_on(
+    direction: str, turning: float, sliding_speed: float
+) -> None:
     """Chatter, and wheels that let go at one moment by symmetry alone, once made jumps of half a newton of this."""
     known = read_parameters("p3at-extended")
-    together = {"tire.mu_kinetic": known["tire.mu_static"], "tire.sliding_speed_m_s": Estimate(0.3, None, "m/s")}
-    known = known.updated(together)
+    law = Estimate(sliding_speed, None, "m/s")
+    known = known.updated({"tire.mu_kinetic": known["tire.mu_static"], "tire.sliding_speed_m_s": law})
     time = np.arange(900) / 100.0
     log = Recording(time, (Channel("force", 8.0 * time, "N"),), Provenance("made", "", "test"))
-    entry = Entry("pull.csv", "pull", direction=direction, speed_mm_s=1.0 if direction == "lateral" else 2.0)
+    speed = 1.0 if direction == "lateral" else 2.0
+    entry = Entry("pull.csv", "pull", direction=direction, speed_mm_s=speed, wheel_rate_rad_s=turning or None)
     trial = pull_trial(Measurement(entry, log), known)
     plain = trial.run({}, {}, np.array([0.02]))
-    assert plain.max() > 180.0  # all wheels slide
+    assert turning or plain.max() > 180.0  # all wheels slide
     for name, value in (("tire.damping_x_N_s_m", 50.1), ("inertia_kg_m2.zz", 0.925), ("contact_shift_y_m", 1e-6)):
         moved = trial.run({name: value}, {}, np.array([0.02]))
         assert 0.0 <= np.std(moved - plain) < 0.01, name

@@ -16,7 +16,7 @@ from ssmr_ident.physics.motor import wheel_rates
 from ssmr_ident.physics.robot import GRAVITY, Robot, robot_from_parameters
 from ssmr_ident.physics.slots import effect_vector
 from ssmr_ident.physics.statics import rest_loads, rest_pose
-from ssmr_ident.physics.tire import contact_force
+from ssmr_ident.physics.tire import contact_force, release_share
 from ssmr_ident.session import read_parameters
 from ssmr_ident.simulate import Scenario, simulate
 from ssmr_ident.simulate.scenarios import pull, swivel
@@ -245,6 +245,29 @@ def test_equal_frictions_slide_without_a_tooth(robot: Robot) -> None:
     for step in (2e-4, 5e-5):
         force = simulate(smooth, pull("lateral", 1.0, 8.0), 100.0, step=step)["force"][600:]
         assert force == pytest.approx(0.8 * robot.mass * GRAVITY, rel=0.01)
+
+
+@pytest.mark.parametrize("step", [2e-4, 1e-3])
+def test_a_contact_of_one_friction_slides_with_all_of_it(step: float) -> None:
+    """Coulomb's law: a hub that moves on evenly carries mu N, however fast it is, and whatever the step."""
+    limit, hub, deflection, velocity, slides = 60.0, 0.05, 0.0, 0.0, False
+    drag = release_share(0.8, 0.8, 0.0) * limit
+    carried = []
+    for _ in range(round(0.5 / step)):
+        slides, velocity, force = contact_force(
+            deflection, slides, velocity, hub, 0.0, 18000.0, 42.0, 0.035, limit, limit, drag, step
+        )
+        deflection += step * (hub - velocity)
+        carried.append(-force)
+    assert carried[-100:] == pytest.approx(np.full(100, limit), rel=1e-6)
+
+
+def test_friction_that_falls_by_next_to_nothing_is_friction_that_does_not_fall(robot: Robot) -> None:
+    smooth = robot.with_changes(mu_static=0.8, mu_kinetic=0.8)
+    for scenario in (pull("lateral", 1.0, 8.0), pull("longitudinal", 2.0, 8.0)):
+        falling = {"stribeck": {"kinetic_share": 1.0 - 1e-6, "stribeck_velocity_m_s": 0.003}}
+        without, beside = (simulate(smooth, scenario, 100.0, 2e-4, e)["force"] for e in (None, falling))
+        assert beside == pytest.approx(without, abs=0.05)
 
 
 def test_a_run_away_names_time_and_parameters(robot: Robot) -> None:

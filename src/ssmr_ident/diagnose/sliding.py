@@ -54,7 +54,7 @@ def with_law_of_sliding(
     begun = [(fit, lengths) for fit, (_, lengths) in zip(fits, found, strict=True)]
     turning = {m.name for m in campaign.measurements if m.entry.wheel_rate_rad_s}
     first = _best(fits)
-    if first == 1 and _unexplained(fits[1], turning):
+    if first == 1 and unexplained(fits[1], turning):
         first = of_those_that_stand(laws, turning)
     if first == 1:
         note = "contacts slide along both axes together (Coulomb's cone), which fits better than a relay on each"
@@ -62,14 +62,14 @@ def with_law_of_sliding(
     return replace(relay, begun=begun[0]), known
 
 
-def _unexplained(fit: JointFit, names: set[str]) -> bool:
+def unexplained(fit: JointFit, names: set[str]) -> bool:
     """Whether any of some recordings is left with more than noise."""
     return any(part > LOUD * t.size for t, part in zip(fit.trials, fit.parts, strict=True) if t.name in names)
 
 
 def of_those_that_stand(laws: Sequence[tuple[Setup, ParameterSet]], turning: set[str]) -> int:
     """The law of pulls on wheels that stand, where those on wheels that turn obey neither: the relay, unless they are
-    certain of the cone.
+    certain of the cone, and where none stands.
 
     The cone takes grip away from a turning wheel by itself. From a relay that lacks ``slip_coupling``, which does so
     too, it is the nearer of two wrong laws, and beside it that effect has nothing to do: 8,457 times the noise against

@@ -30,8 +30,8 @@ simulator's own choice (the body's swing after the start), of a dragged wheel by
 some 0.5 N."""
 
 SPINNING_STEP = 5e-4
-"""The same where wheels spin, whose grip (4.12) changes with their slip: 2 ms would leave up to 0.8 N and a mean of 2 N,
-these leave less than 0.1 N."""
+"""The same where wheels spin, whose grip (4.12) changes with their slip: 2 ms would leave up to 0.8 N and a mean of
+2 N, this leaves less than 0.1 N."""
 
 
 def force_model(entry: Entry, parameters: ParameterSet, held: bool = False, unseen: tuple[str, ...] = ()) -> Forces:

@@ -192,7 +192,7 @@ def travelled(measurement: Measurement) -> tuple[Array, Array, float, float]:
 
 def _steady(parameters: ParameterSet) -> bool:
     """Whether what is known has contacts slide at the force at which they let go, or along both axes together."""
-    static, kinetic = (parameters.number(f"tire.mu_{name}", 0.0) for name in ("static", "kinetic"))
+    static, kinetic = (parameters.number(f"tire.mu_{name}", np.nan) for name in ("static", "kinetic"))
     return static == kinetic or parameters.number("tire.sliding_speed_m_s", 0.0) > 0.0
 
 
