@@ -56,8 +56,8 @@ spinning pull holds what it would do), and nulls of the baseline `decoupled`, wh
 at most; *clean*: nothing missing, nothing named; *unseen*: missed where the baseline explains even recordings it never
 saw to within 2 % of what the true signals leave, or missed, or named in part, where the truth itself, refitted from the
 true values, has no more log evidence over the truth without what was not named than the 6.9 that an effect needs, so
-that nobody could gain by knowing (`visible.py`). Wheels that lift slide by the thesis' relay in the bank and by
-Coulomb's cone in fits of decays, so for them this is judged under a law that they were not made with;
+that nobody could gain by knowing (`visible.py`). Wheels that lift slide axis by axis in the bank and
+along both axes together in fits of decays, so for them this is judged under a law that they were not made with;
 *part* and *extra*: some of the right names, or right names and more;
 the rest speaks for itself. Rows of engines bddf8ee and b347682 (pulls and blocks) began small effects in pulls at three
 sizes, which was taken back. The noise floor is that of the true

@@ -9,9 +9,13 @@ from bank import draw
 from ssmr_ident.compare.recorded import follow
 from ssmr_ident.diagnose import explore
 from ssmr_ident.diagnose.baseline import bent, best_baseline
+from ssmr_ident.diagnose.explain import SETTLING, beside, with_suspect
 from ssmr_ident.diagnose.explore import PROMISING, search
+from ssmr_ident.diagnose.scan import out_of_reach, scan
 from ssmr_ident.diagnose.setup import set_up
+from ssmr_ident.identify.descent import descend
 from ssmr_ident.identify.joint import JointFit
+from ssmr_ident.physics.effects import CATALOGUE
 
 
 def test_a_belt_that_no_straight_line_promises_is_tried_beside_it(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -46,6 +50,22 @@ def test_what_acts_beyond_some_value_is_tried_where_kept_recordings_alone_leave_
     monkeypatch.setattr(explore, "run_on", lambda field: tried.append([fit.model.ids for fit in field]) or field[:1])
     for elsewhere in (False, True):
         search(base, "rigid6", lengths, elsewhere=elsewhere)
-    without, with_it = (ids.count(("motor_belt",)) for ids in tried)
-    assert without == 0
-    assert with_it >= 2  # from the baseline, and from what is known
+    assert not scan(base, [CATALOGUE["wheel_lift"]], small=True)  # no wheel lifts where the baseline is
+    for effect in ("motor_belt", "wheel_lift"):
+        without, with_it = (ids.count((effect,)) for ids in tried)
+        assert without == 0
+        assert with_it >= 2  # from the baseline, and from what is known
+
+
+def test_releases_are_begun_anew_beside_wheels_that_lift() -> None:
+    """What was fitted with all wheels on the floor holds them there, though small motions lead to a better fit."""
+    drawn = draw("decays", "one", 5464)
+    assert set(drawn.truth.effects) == {"wheel_lift"}
+    setup = set_up(drawn.campaign, drawn.campaign.parameters)
+    base, _ = best_baseline(setup.fitted, setup, drawn.campaign.parameters)
+    assert bent(base)
+    ((lift,),) = out_of_reach(base, [CATALOGUE["wheel_lift"]], [])
+    model, _ = with_suspect(base, lift)
+    held = descend(follow(base.trials, model, base.point, base.nuisances), SETTLING)
+    begun = beside(base, lift)
+    assert held.cost(base.counted) - begun.cost(base.counted) > 50.0

@@ -13,12 +13,11 @@ from ssmr_ident.diagnose.along import begun_along, without_laws
 from ssmr_ident.diagnose.baseline import LAST, WIDE, bent, far_off, leaves_much
 from ssmr_ident.diagnose.explain import from_what_is_known, in_its_place
 from ssmr_ident.diagnose.race import Progress, raced, ranked, run_on, screened, started, variants
-from ssmr_ident.diagnose.scan import Suspect, candidates, scan
+from ssmr_ident.diagnose.scan import Suspect, candidates, moves_beyond, out_of_reach, scan
 from ssmr_ident.identify.descent import LOUD, chatters, descend
 from ssmr_ident.identify.horizons import led
 from ssmr_ident.identify.joint import JointFit
 from ssmr_ident.identify.parallel import side_by_side
-from ssmr_ident.physics.effect import Site
 from ssmr_ident.physics.effects import CATALOGUE
 
 PROMISING = 6.0
@@ -87,7 +86,10 @@ def search(
     # pulls along one axis alone may show what tires do that go far; a small share of friction that falls, which a
     # straight line tells from less friction by nothing, is no saw-tooth yet
     loud = loud or (chatters(base) and float(np.max(misfit)) > (LOUD if further else WIDE))
-    groups = scan(base, candidates(base, baseline), small=not loud)
+    alone = bent(base) and not further
+    asked = candidates(base, baseline)
+    groups = scan(base, asked, small=not loud)
+    groups += out_of_reach(base, asked, groups) if alone or elsewhere else []
     rest = [np.inf]
     begun: list[JointFit] = []
     tried: list[JointFit] = []
@@ -108,8 +110,9 @@ def search(
         rough = raced(base, field, progress) if field else []
     else:
         chosen = [g for g in groups if _promises(g[0])][: REFITTED if further else SCREENED]
-        alone = bent(base) and not further
-        beyond = [g for g in groups if (alone or elsewhere) and _moves_beyond(g[0].effect) and len(lengths) > 1]
+        beyond = [
+            g for g in groups if (alone or elsewhere) and moves_beyond(CATALOGUE[g[0].effect]) and len(lengths) > 1
+        ]
         same = [g[0] for g in groups if alone and g[0].own < SAME and not CATALOGUE[g[0].effect].sudden]
         starts = [partial(started, base, s) for group in _each_group(chosen, beyond) for s in variants(group)]
         starts += [partial(from_what_is_known, base, s, lengths) for group in beyond for s in variants(group)]
@@ -178,12 +181,6 @@ def _led_on(
 
 def _each_group(*lists: Sequence[Sequence[Suspect]]) -> list[Sequence[Suspect]]:
     return list({group[0].effect: group for groups in lists for group in groups}.values())
-
-
-def _moves_beyond(effect_id: str) -> bool:
-    """Whether an effect changes motions, and that only beyond some value."""
-    effect = CATALOGUE[effect_id]
-    return effect.sudden and Site.OUTPUT not in effect.acts
 
 
 def mended(fit: JointFit) -> JointFit:

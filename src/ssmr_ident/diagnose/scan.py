@@ -14,11 +14,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ssmr_ident.core.parameter import Parameter
+from ssmr_ident.diagnose.cleared import Cleared
 from ssmr_ident.diagnose.sizes import sizes_of
 from ssmr_ident.identify.coordinates import Model
 from ssmr_ident.identify.joint import JointFit, over
 from ssmr_ident.identify.parallel import side_by_side
-from ssmr_ident.physics.effect import Effect, Sized
+from ssmr_ident.physics.effect import Effect, Site, Sized
 from ssmr_ident.physics.effects import CATALOGUE
 from ssmr_ident.physics.rig import RIG_KEYS
 
@@ -113,21 +114,52 @@ def scan(fit: JointFit, effects: Sequence[Effect], small: bool = False) -> list[
         stiffness that turns a decay by a radian points nowhere, a hundredth of it points home.
     """
     clear = Cleared(fit)
-    sizes = sizes_of(fit)
-    asked = []
+    found: dict[str, list[Suspect]] = {}
+    for suspect in side_by_side(lambda one: _suspect(fit, clear, *one, small), _probes(fit, effects)):
+        if suspect is not None:
+            found.setdefault(suspect.effect, []).append(suspect)
+    groups = [_few_places(CATALOGUE[name], sorted(some, key=lambda s: -s.gain)) for name, some in found.items()]
+    return sorted(groups, key=lambda group: -group[0].gain)
+
+
+def out_of_reach(fit: JointFit, effects: Sequence[Effect], groups: Sequence[Sequence[Suspect]]) -> list[list[Suspect]]:
+    """Probes of what changes motions beyond some value alone, and nothing at all where a fit has ended.
+
+    A baseline that is bent round wheels that lift is one from which they do not, and a scan about it has no word for
+    them.
+
+    Parameters
+    ----------
+    fit : JointFit
+    effects : sequence of Effect
+    groups : sequence of sequence of Suspect
+        What a scan about the fit has found.
+    """
+    seen = {group[0].effect for group in groups}
+    hidden = [effect for effect in effects if moves_beyond(effect) and effect.id not in seen]
+    nowhere = np.zeros(sum(len(r) for r in fit.residuals))
+    found: dict[str, list[Suspect]] = {}
+    for effect, at, held in _probes(fit, hidden):
+        found.setdefault(effect.id, []).append(Suspect(effect.id, at, held, {}, 0.0, nowhere))
+    return list(found.values())
+
+
+def moves_beyond(effect: Effect) -> bool:
+    """Whether an effect changes motions, and that only beyond some value."""
+    return effect.sudden and Site.OUTPUT not in effect.acts
+
+
+def _probes(fit: JointFit, effects: Sequence[Effect]) -> list[tuple[Effect, dict[str, float], dict[str, float]]]:
+    """Every probe of some effects in a session's own units, at each value of what is tried and not fitted."""
+    sizes, found = sizes_of(fit), []
     for effect in effects:
         probes = (*effect.probes, *(effect.rig_probes if on_rig(fit.model) else ()))
         for probe, held in itertools.product(probes, held_at(effect, fit.model)):
             at = {name: p.value(sizes) if isinstance(p, Sized) else float(p) for name, p in probe.items()}
             at = {p.name: float(np.clip(at[p.name], p.lower, p.upper)) for p in effect.parameters if p.name in at}
             if all(np.isfinite(list(at.values()))):
-                asked.append((effect, at, held))
-    found: dict[str, list[Suspect]] = {}
-    for suspect in side_by_side(lambda one: _suspect(fit, clear, *one, small), asked):
-        if suspect is not None:
-            found.setdefault(suspect.effect, []).append(suspect)
-    groups = [_few_places(CATALOGUE[name], sorted(some, key=lambda s: -s.gain)) for name, some in found.items()]
-    return sorted(groups, key=lambda group: -group[0].gain)
+                found.append((effect, at, held))
+    return found
 
 
 def _few_places(effect: Effect, suspects: Sequence[Suspect]) -> list[Suspect]:
@@ -229,57 +261,3 @@ def _change(fit: JointFit, effect_id: str, parameters: dict[str, float]) -> Arra
 
     change = np.concatenate(over(fit.trials, one))
     return change if np.all(np.isfinite(change)) else None
-
-
-class Cleared:
-    """What the baseline's parameters and nuisances leave of a change, all of them refitted within their priors.
-
-    The posterior about the fit is a quadratic form; the Schur complement of everything that the baseline can move is
-    what a further coordinate has to itself. Where a prior holds a parameter back against the recordings, a direction
-    like its own gains what the prior charges: an offset far beyond what the file says of it is an effect.
-    """
-
-    def __init__(self, fit: JointFit) -> None:
-        self.weights = fit.weights
-        self._own: list[tuple[Array, Array, Array]] = []
-        shared: list[Array] = []
-        ends = np.cumsum([len(r) for r in fit.residuals])
-        self._cuts = ends[:-1]
-        self.residual = np.concatenate(fit.residuals)
-        count = len(fit.point)
-        matrix, right = np.eye(count), -fit.point.copy()
-        for w, slopes, residual, nuisance in zip(self.weights, fit.slopes, fit.residuals, fit.nuisances, strict=True):
-            a, b = slopes.shared, slopes.own
-            gram = np.linalg.inv(w * (b.T @ b) + np.eye(b.shape[1]))
-            side = w * (b.T @ residual) - nuisance
-            self._own.append((b, gram, side))
-            cross = w * (b.T @ a)
-            matrix += w * (a.T @ a) - cross.T @ gram @ cross
-            right += w * (a.T @ residual) - cross.T @ gram @ side
-            shared.append(a)
-        self._shared, self._matrix, self._right = shared, matrix, right
-
-    def size_of(self, columns: Array) -> Array:
-        """Squares of changes, (k,), every recording as it counts."""
-        parts = np.split(columns, self._cuts)
-        return np.sum([w * np.sum(part**2, axis=0) for w, part in zip(self.weights, parts, strict=True)], axis=0)
-
-    def __call__(self, columns: Array) -> tuple[Array, Array, Array]:
-        """Curvature and slope of the log posterior (times two) along new coordinates, and their cleared columns."""
-        parts = np.split(columns, self._cuts)
-        size = columns.shape[1]
-        gram, slope = np.zeros((size, size)), np.zeros(size)
-        mixed = np.zeros((len(self._matrix), size))
-        residuals = np.split(self.residual, self._cuts)
-        together = zip(self.weights, parts, self._shared, residuals, self._own, strict=True)
-        for w, part, a, residual, (b, inverse, side) in together:
-            cross = w * (b.T @ part)
-            gram += w * (part.T @ part) - cross.T @ inverse @ cross
-            slope += w * (part.T @ residual) - cross.T @ inverse @ side
-            mixed += w * (a.T @ part) - w * (a.T @ b) @ inverse @ cross
-        solved = np.linalg.solve(self._matrix, mixed)
-        cleared = []
-        for w, part, a, (b, inverse, _) in zip(self.weights, parts, self._shared, self._own, strict=True):
-            rest = part - a @ solved
-            cleared.append(rest - b @ (inverse @ (w * (b.T @ rest))))
-        return gram - mixed.T @ solved, slope - solved.T @ self._right, np.concatenate(cleared)

@@ -1,6 +1,6 @@
 """Pulls led on from the moment at which the robot lets go.
 
-A robot that slides swings on its tires, and no relay damps that. Over a long slide a swing that is a period off fits
+A robot that slides swings on its tires, and constant friction does not damp that. Over a long slide a swing that is a period off fits
 better than one a quarter off, as in a decay: the cost has a valley for every period, and kinks beside. Over the first
 few swings there is but one valley; what is found there is near enough for twice as many, and so on. Which parameters
 set the beat does not matter: most of them do, a little each.
