@@ -36,7 +36,7 @@ def true_evidence(drawn: BankSession) -> dict[str, float] | None:
     baseline = explained(kept, fit)
     begun = fit
     for effect_id, values in truth.effects.items():
-        model, point = with_suspect(begun, Suspect(effect_id, dict(values), {}, {}, 0.0, np.zeros(0)))
+        model, point = with_suspect(begun, Suspect(effect_id, dict(values), {}, {}, 0.0))
         begun = evaluate(fit.trials, model, point, fit.nuisances)
     true = begun.point.copy()
     for k, unknown in enumerate(begun.model.physics):

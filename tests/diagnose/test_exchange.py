@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
 import pytest
 from small_rigs import Run, campaign, fitted, prepared
 
@@ -22,8 +21,8 @@ from ssmr_ident.identify.trials import Trial
 
 RUNS = [Run(force=60.0), Run(force=30.0), Run(force=90.0)]
 SUSPECTS = {
-    "nonlinear_stiffness": Suspect("nonlinear_stiffness", {"k3_N_m3": 1e6}, {}, {"k3_N_m3": 1e6}, 0.0, np.zeros(0)),
-    "dry_friction": Suspect("dry_friction", {"F_c_N": 1.0, "element_stiffness_N_m": 2e5}, {}, {}, 0.0, np.zeros(0)),
+    "nonlinear_stiffness": Suspect("nonlinear_stiffness", {"k3_N_m3": 1e6}, {}, {"k3_N_m3": 1e6}, 0.0),
+    "dry_friction": Suspect("dry_friction", {"F_c_N": 1.0, "element_stiffness_N_m": 2e5}, {}, {}, 0.0),
 }
 
 

@@ -68,7 +68,7 @@ def test_an_offset_begun_beside_contacts_that_are_bent_takes_their_place() -> No
     values, effects = setup.model.split(point)
     trials = (*setup.fitted, *setup.kept)
     bent = evaluate(trials, setup.model, point, [t.begin(values, effects) for t in trials])
-    offset = Suspect("com_offset", {"offset_x_m": 0.0, "offset_y_m": -5e-4}, {}, SIZES, 0.0, np.zeros(0))
+    offset = Suspect("com_offset", {"offset_x_m": 0.0, "offset_y_m": -5e-4}, {}, SIZES, 0.0)
     found = started(bent, offset, plain=True)
     held, effects = found.model.split(found.point)
     assert effects["com_offset"]["offset_y_m"] == pytest.approx(-0.036, abs=0.01)

@@ -35,7 +35,7 @@ def judged(effects: dict[str, dict[str, float]]) -> tuple[dict[str, Explanation]
     kept = follow(setup.kept, base.model, base.point).trials
     found = {"baseline": explained(kept, base)}
     for name, at in BEGUN.items():
-        model, point = with_suspect(base, Suspect(name, at, {}, {"k3_N_m3": 1e6}, 0.0, np.zeros(0)))
+        model, point = with_suspect(base, Suspect(name, at, {}, {"k3_N_m3": 1e6}, 0.0))
         fit = descend(evaluate(base.trials, model, point, base.nuisances), 12)
         found[name] = explained(kept, differentiate(fit))
     return found, kept

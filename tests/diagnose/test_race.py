@@ -17,7 +17,7 @@ PLAY = {"gap_m": 2e-3, "rounding": 0.2}
 
 
 def _suspect(effect: str, at: dict[str, float]) -> Suspect:
-    return Suspect(effect, at, {}, {}, 0.0, None)  # type: ignore[arg-type]
+    return Suspect(effect, at, {}, {}, 0.0)
 
 
 @pytest.fixture(scope="module")

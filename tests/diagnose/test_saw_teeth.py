@@ -19,7 +19,7 @@ def test_all_combinations_show_the_falling_friction_and_the_limit_that_was_hidde
     assert told == {trial.name: trial.facts["teeth"] == 0.0 for trial in setup.fitted}
     assert not all(told.values())
     base = fit_baseline(setup.fitted, setup, known)
-    probe = Suspect("stribeck", {"kinetic_share": 0.8, "stribeck_velocity_m_s": 0.01}, {}, {}, 0.0, np.zeros(1))
+    probe = Suspect("stribeck", {"kinetic_share": 0.8, "stribeck_velocity_m_s": 0.01}, {}, {}, 0.0)
     found = combined(base, probe)
     hidden = known.number("tire.mu_static") / base.model.split(base.point)[0]["tire.mu_static"]
     assert hidden > 1.03
@@ -27,4 +27,4 @@ def test_all_combinations_show_the_falling_friction_and_the_limit_that_was_hidde
     assert effects["stribeck"]["kinetic_share"] in (0.7, 0.8)
     assert values["tire.mu_static"] > base.model.split(base.point)[0]["tire.mu_static"]
     assert np.log(found[-1].parts / base.parts).mean() < -0.5
-    assert combined(base, Suspect("motor_belt", {}, {}, {}, 0.0, np.zeros(1))) == []
+    assert combined(base, Suspect("motor_belt", {}, {}, {}, 0.0)) == []

@@ -42,8 +42,8 @@ class Cleared:
         parts = np.split(columns, self._cuts)
         return np.sum([w * np.sum(part**2, axis=0) for w, part in zip(self.weights, parts, strict=True)], axis=0)
 
-    def __call__(self, columns: Array) -> tuple[Array, Array, Array]:
-        """Curvature and slope of the log posterior (times two) along new coordinates, and their cleared columns."""
+    def __call__(self, columns: Array) -> tuple[Array, Array]:
+        """Curvature and slope of the log posterior (times two) along new coordinates."""
         parts = np.split(columns, self._cuts)
         size = columns.shape[1]
         gram, slope = np.zeros((size, size)), np.zeros(size)
@@ -56,8 +56,4 @@ class Cleared:
             slope += w * (part.T @ residual) - cross.T @ inverse @ side
             mixed += w * (a.T @ part) - w * (a.T @ b) @ inverse @ cross
         solved = np.linalg.solve(self._matrix, mixed)
-        cleared = []
-        for w, part, a, (b, inverse, _) in zip(self.weights, parts, self._shared, self._own, strict=True):
-            rest = part - a @ solved
-            cleared.append(rest - b @ (inverse @ (w * (b.T @ rest))))
-        return gram - mixed.T @ solved, slope - solved.T @ self._right, np.concatenate(cleared)
+        return gram - mixed.T @ solved, slope - solved.T @ self._right

@@ -56,8 +56,6 @@ class Suspect:
         Natural sizes of those that may change sign.
     gain : float
         Fall of n ln(RSS) that the straight line promises.
-    direction : (N,) float
-        Whitened change, cleared of the baseline's own directions.
     grown : tuple of str
         Parameters that the effect is proportional to while it is small.
     own : float
@@ -69,7 +67,6 @@ class Suspect:
     held: Mapping[str, float]
     sizes: Mapping[str, float]
     gain: float
-    direction: Array
     grown: tuple[str, ...] = ()
     own: float = 1.0
 
@@ -137,10 +134,9 @@ def out_of_reach(fit: JointFit, effects: Sequence[Effect], groups: Sequence[Sequ
     """
     seen = {group[0].effect for group in groups}
     hidden = [effect for effect in effects if moves_beyond(effect) and effect.id not in seen]
-    nowhere = np.zeros(sum(len(r) for r in fit.residuals))
     found: dict[str, list[Suspect]] = {}
     for effect, at, held in _probes(fit, hidden):
-        found.setdefault(effect.id, []).append(Suspect(effect.id, at, held, {}, 0.0, nowhere))
+        found.setdefault(effect.id, []).append(Suspect(effect.id, at, held, {}, 0.0))
     return list(found.values())
 
 
@@ -206,7 +202,7 @@ def _suspect(
                 return None
         columns.append(change / size)
     raw = np.column_stack(columns)
-    gram, slope, cleared = clear(raw)
+    gram, slope = clear(raw)
     # a direction that the baseline makes as well, and may, is rounding once it is cleared
     if np.any(np.diag(gram) < ROUNDING * float(np.min(clear.weights)) * np.sum(raw**2, axis=0)):
         return None
@@ -228,7 +224,7 @@ def _suspect(
     names = tuple(p.name for p in (*grown, *signed))
     natural = {p.name: abs(at[p.name]) for p in signed}
     own = float(np.max(np.diag(gram) / clear.size_of(raw)))
-    return Suspect(effect.id, start, held, natural, gain, cleared @ shares, names, own)
+    return Suspect(effect.id, start, held, natural, gain, names, own)
 
 
 def smaller(effect: Effect, at: Mapping[str, float], share: float) -> dict[str, float]:
