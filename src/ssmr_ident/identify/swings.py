@@ -1,9 +1,9 @@
 """Pulls led on from the moment at which the robot lets go.
 
-A robot that slides swings on its tires, and constant friction does not damp that. Over a long slide a swing that is a period off fits
-better than one a quarter off, as in a decay: the cost has a valley for every period, and kinks beside. Over the first
-few swings there is but one valley; what is found there is near enough for twice as many, and so on. Which parameters
-set the beat does not matter: most of them do, a little each.
+A robot that slides swings on its tires, and constant friction does not damp that. Over a long slide a swing that is a
+period off fits better than one a quarter off, as in a decay: the cost has a valley for every period, and kinks beside.
+Over the first few swings there is but one valley; what is found there is near enough for twice as many, and so on.
+Which parameters set the beat does not matter: most of them do, a little each.
 """
 
 from __future__ import annotations
