@@ -69,3 +69,17 @@ def test_releases_are_begun_anew_beside_wheels_that_lift() -> None:
     held = descend(follow(base.trials, model, base.point, base.nuisances), SETTLING)
     begun = beside(base, lift)
     assert held.cost(base.counted) - begun.cost(base.counted) > 50.0
+
+
+def test_a_slow_sensor_on_a_rig_is_asked_where_anything_else_is() -> None:
+    """A quick sensor's straight line promises nothing, for a little of its delay is a little damping."""
+    drawn = draw("rig_decay", "one", 5435)
+    setup = set_up(drawn.campaign, drawn.campaign.parameters)
+    base, lengths = best_baseline(setup.fitted, setup, drawn.campaign.parameters)
+    found = search(base, "sdof", lengths)
+    (sensor,) = [group for group in found.suspects if group[0].effect == "sensor_bandwidth"]
+    assert sensor[0].gain < PROMISING
+    best = min(found.tried, key=lambda fit: fit.cost(base.counted))
+    assert best.model.ids == ("sensor_bandwidth",)
+    true = drawn.truth.effects["sensor_bandwidth"]["bandwidth_hz"]
+    assert best.model.split(best.point)[1]["sensor_bandwidth"]["bandwidth_hz"] == pytest.approx(true, rel=0.05)

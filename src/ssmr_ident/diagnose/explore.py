@@ -114,7 +114,9 @@ def search(
             g for g in groups if (alone or elsewhere) and moves_beyond(CATALOGUE[g[0].effect]) and len(lengths) > 1
         ]
         same = [g[0] for g in groups if alone and g[0].own < SAME and not CATALOGUE[g[0].effect].sudden]
-        starts = [partial(started, base, s) for group in _each_group(chosen, beyond) for s in variants(group)]
+        # a straight line from a sensor that is quick enough points nowhere, and on a rig it costs little not to ask it
+        cheap = [g for g in groups if chosen and baseline == "sdof" and CATALOGUE[g[0].effect].sudden]
+        starts = [partial(started, base, s) for group in _each_group(chosen, beyond, cheap) for s in variants(group)]
         starts += [partial(from_what_is_known, base, s, lengths) for group in beyond for s in variants(group)]
         starts += [partial(_instead, base, s) for s in same]
         rough = run_on(list(side_by_side(lambda begin: begin(), starts)))
