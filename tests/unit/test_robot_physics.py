@@ -262,6 +262,14 @@ def test_a_contact_of_one_friction_slides_with_all_of_it(step: float) -> None:
     assert carried[-100:] == pytest.approx(np.full(100, limit), rel=1e-6)
 
 
+def test_a_fixture_takes_steps_that_are_long_for_it(robot: Robot) -> None:
+    """It is stiffer than all else: explicit, its own vibration burst beyond 0.4 ms."""
+    smooth = robot.with_changes(mu_static=0.8, mu_kinetic=0.8)
+    turning = replace(pull("lateral", 1.0, 6.0), wheel_rates=np.full((1, 2), 0.2), held=True)
+    fine, coarse = (simulate(smooth, turning, 50.0, step)["force"][50:] for step in (5e-5, 5e-4))
+    assert np.sqrt(np.mean((coarse - fine) ** 2)) < 0.2 < 0.05 * np.ptp(fine)
+
+
 def test_friction_that_falls_by_next_to_nothing_is_friction_that_does_not_fall(robot: Robot) -> None:
     smooth = robot.with_changes(mu_static=0.8, mu_kinetic=0.8)
     for scenario in (pull("lateral", 1.0, 8.0), pull("longitudinal", 2.0, 8.0)):

@@ -53,12 +53,14 @@ def beside(fit: JointFit, suspect: Suspect) -> JointFit:
     if not CATALOGUE[suspect.effect].sudden or not np.isfinite(begun.rss):
         return begun
     frozen = _held(fit, suspect, model, point)
-    starts = [evaluate(fit.trials, frozen, fit.point, fit.nuisances)]
-    if Site.OUTPUT not in CATALOGUE[suspect.effect].acts:
+    if Site.OUTPUT in CATALOGUE[suspect.effect].acts:
+        starts = [evaluate(fit.trials, frozen, fit.point, fit.nuisances)]
+    else:
         starts = [follow(fit.trials, frozen, fit.point, fit.nuisances)]
         if not any(trial.searched for trial in fit.trials):
             starts.append(follow(fit.trials, frozen, fit.point))
-    settled = min((descend(start, SETTLING) for start in starts), key=lambda f: f.cost(fit.counted))
+    ends = [descend(start, SETTLING) for start in starts]
+    settled = min(ends, key=lambda f: f.cost(fit.counted) if np.isfinite(f.rss) else np.inf)
     return evaluate(fit.trials, model, np.concatenate([settled.point, point[len(fit.point) :]]), settled.nuisances)
 
 
