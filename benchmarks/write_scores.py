@@ -59,11 +59,11 @@ true values, has no more log evidence over the truth without what was not named 
 that nobody could gain by knowing (`visible.py`). Wheels that lift slide axis by axis in the bank and
 along both axes together in fits of decays, so for them this is judged under a law that they were not made with;
 *part* and *extra*: some of the right names, or right names and more;
-the rest speaks for itself. Rows of engines bddf8ee and b347682 (pulls and blocks) began small effects in pulls at three
-sizes, which was taken back. From b4ee2cc on contacts of one friction coefficient slide by Coulomb's law, in the bank as in
-the engine ([decision 2](../decisions/0002-relay-lands-on-its-limit.md)): pulls of earlier engines, and decays in which wheels
-lift, are other recordings than the same seeds make now. The noise floor is that of the true signals, not the one that the
-diagnosis states.
+the rest speaks for itself. Rows of engines bddf8ee and b347682 (pulls and blocks) began small effects in pulls at
+three sizes, which was taken back. From b4ee2cc on contacts of one friction coefficient slide by Coulomb's law, in the
+bank as in the engine ([decision 2](../decisions/0002-relay-lands-on-its-limit.md)): pulls of earlier engines, and
+decays in which wheels lift, are other recordings than the same seeds make now. The noise floor is that of the true
+signals, not the one that the diagnosis states.
 """
 
 
