@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -26,29 +27,40 @@ def made_pulls(
     seed: int,
     aside: float = 0.0,
     real: Mapping[str, float] | None = None,
+    turning: Sequence[float] = (),
 ) -> tuple[Setup, ParameterSet]:
     """Pulls of given direction, speed [mm/s] and travel [m]; the robot slides along both axes together.
 
     Its contacts lie ``aside`` [m] of where its file has them, and its ``real`` values differ from those in its file.
+    Where wheels turn at rates of ``turning`` [rad/s], one per pull, each axis slides by itself, and the file does not
+    say how turning takes grip away.
     """
     random = np.random.default_rng(seed)
     known = read_parameters("p3at-extended")
-    together = {"tire.mu_kinetic": known["tire.mu_static"], "tire.sliding_speed_m_s": Estimate(0.01, None, "m/s")}
-    known = known.updated(together)
+    known = known.updated({"tire.mu_kinetic": known["tire.mu_static"]})
+    if turning:
+        known = replace(known, estimates={path: e for path, e in known.items() if path != "tire.lambda_max"})
+    else:
+        known = known.updated({"tire.sliding_speed_m_s": Estimate(0.01, None, "m/s")})
     moved = Estimate(known["contact_points_m"].value + np.array([0.0, aside, 0.0]), None, "m")
     own = {path: Estimate(value) for path, value in (real or {}).items()}
     robot = robot_from_parameters(known.updated({"contact_points_m": moved, **own}))
     measurements = []
     for k, (direction, speed, travel) in enumerate(pulls):
+        rate = turning[k] if turning else 0.0
         head = speed * 1e-3 / RATE * np.arange(round(travel / speed * 1e3 * RATE) + 1)
         scenario = Scenario(
             "pull", len(head) / RATE, head=np.append(head, 2.0 * head[-1] - head[-2]), head_step=1.0 / RATE,
-            direction=direction, height=0.05, wheels_gripping=(1, 2, 3, 4), wheel_rates=np.zeros((1, 2)),
+            direction=direction, height=0.05, wheels_gripping=(1, 2, 3, 4), wheel_rates=np.full((1, 2), rate),
+            held=rate > 0.0,
         )  # fmt: skip
         force = simulate(robot, scenario, RATE, effects=effects)["force"]
         seen = force + NOISE * random.standard_normal(len(head))
         channels = Channel("force", seen, "N"), Channel("position", head, "m")
-        entry = Entry(f"pull-{k}.csv", "pull", direction=direction, speed_mm_s=speed, height_m=0.05, cable="steel")
+        entry = Entry(
+            f"pull-{k}.csv", "pull", direction=direction, speed_mm_s=speed, height_m=0.05, cable="steel",
+            wheel_rate_rad_s=rate or None,
+        )  # fmt: skip
         log = Recording(np.arange(len(head)) / RATE, channels, Provenance("made", "", "test"))
         measurements.append(Measurement(entry, log))
     session = Session("pulled", Path(), "robot", "rigid6", tuple(m.entry for m in measurements))

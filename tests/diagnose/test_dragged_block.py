@@ -110,7 +110,7 @@ def test_a_drift_is_named_unless_the_baseline_is_shaken_to_where_it_fits_better(
         return found
 
     monkeypatch.setattr(engine, "challenged", challenged)
-    found = diagnose(dragged(drift=0.05))
+    found = diagnose(dragged(drift=0.005))
     assert costs
     assert all((cost < 0.0) is deeper for cost in costs)
     assert [e.id for e in found.effects] == ([] if deeper else ["load_cell_drift"])

@@ -20,7 +20,7 @@ from ssmr_ident.diagnose.accept import (
     touches,
     within_file,
 )
-from ssmr_ident.diagnose.baseline import LAST, alike_in, best_baseline, prepared, unsteady
+from ssmr_ident.diagnose.baseline import LAST, alike_in, best_baseline, prepared, swings_alone, unsteady
 from ssmr_ident.diagnose.coupling import coupled
 from ssmr_ident.diagnose.explain import without
 from ssmr_ident.diagnose.explore import Search, search
@@ -143,7 +143,7 @@ def examine(setup: Setup, parameters: ParameterSet, progress: Progress | None = 
         stripped = without(leader.fit, more[-1])
         # the leader of pulls was led far, over hollows: what is without it begins where it ended, and is led as far
         stripped = descend(calmed(stripped) if unsteady(stripped) else stripped, LAST // 2)
-        if first and slides(stripped):
+        if first and slides(stripped) and (swings_alone(stripped) or swings_alone(chosen.fit)):
             stripped = _shaken(stripped, chosen, leader, kept)
         bare = explained(kept, differentiate(stripped), leader.kept)
         moved = bare.id == chosen.id and _cost(bare, chosen) < _cost(chosen, chosen)

@@ -98,25 +98,29 @@ def combined(base: JointFit, suspect: Suspect) -> list[JointFit]:
     """An effect at the best of all combinations of its spans, by squares and by recordings, each in its own noise.
 
     A saw-tooth that comes at the wrong time is worse than none, in squares: from a baseline through its middle no
-    descent leads there. The recordings in which teeth are told by their sizes show which combination is near.
+    descent leads there. The recordings in which teeth are told by their sizes show which combination is near. All else
+    begins as the fit has it, and as it is known: a robot that is bent round the grip that its turning wheels lose is
+    none from which a descent comes back.
     """
     spans = CATALOGUE[suspect.effect].spans
     names = [unknown.name.rpartition(".")[2] for unknown in base.model.physics]
 
-    def at_values(values: tuple[float, ...]) -> JointFit:
+    def at_values(known: bool, values: tuple[float, ...]) -> JointFit:
         at = dict(zip(spans, values, strict=True))
         own = {name: value for name, value in at.items() if not name.startswith(BASELINE)}
         model, point = with_suspect(base, replace(suspect, at=own))
+        if known:
+            point[: len(names)] = 0.0
         for name in at.keys() - own.keys():
             for k in (k for k, other in enumerate(names) if other == name.removeprefix(BASELINE)):
                 point[k] += np.log(at[name]) / model.physics[k].spread
         return evaluate(base.trials, model, point, base.nuisances)
 
-    found = side_by_side(at_values, list(itertools.product(*spans.values()))) if spans else ()
-    finite = [fit for fit in found if np.isfinite(fit.rss)]
-    if not finite:
-        return []
-    best = {id(order[0]): order[0] for order in (_by_squares(finite), ranked(finite))}
+    best: dict[int, JointFit] = {}
+    for known in (False, True) if spans else ():
+        found = side_by_side(partial(at_values, known), list(itertools.product(*spans.values())))
+        finite = [fit for fit in found if np.isfinite(fit.rss)]
+        best |= {id(order[0]): order[0] for order in (_by_squares(finite), ranked(finite)) if order}
     return list(best.values())
 
 

@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 from scipy.signal import lfilter
 
+from ssmr_ident.identify.cell_noise import Blocks
 from ssmr_ident.identify.decay_record import spread
 from ssmr_ident.identify.decay_start import nuisance_columns
 from ssmr_ident.identify.mains import any_mains_lines
@@ -238,6 +239,12 @@ class Trial:
             std = spread(lfilter(noise.filter, [1.0], column)[noise.order :])
             found.append(replace(noise, std=max(std, noise.least)))
         return self.with_noises(tuple(found))
+
+    def blocks(self, simulated: Array) -> Blocks:
+        """What a simulation leaves of the force after the jolt of a cable that tightens, as a load cell's noise is told
+        from it."""
+        after = self.times > (-np.inf if self.jolt is None else self.jolt[1])
+        return Blocks(self.colour(simulated)[after if after.mean() >= 0.5 else slice(None), 0], self.step)
 
     def with_lines(self, residual: Array) -> Trial:
         """The same with the mains lines that stand out of a residual, (n, c), added to the basis."""

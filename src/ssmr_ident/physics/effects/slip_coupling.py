@@ -29,4 +29,6 @@ EFFECT = Effect(
     experiments=("pull", "swivel"),
     acts={Site.ROBOT: change},
     probes=({"weight": 1.0, "lambda_max": 0.1},),
+    # with all of it a wheel that spins has no grip left, and from there nothing says how much it has
+    spans={"weight": (0.05, 0.1, 0.2, 0.35, 0.5, 0.75), "lambda_max": (0.1,)},
 )
