@@ -12,7 +12,7 @@ import pytest
 from ssmr_ident.campaign import Campaign, Measurement
 from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.core.recording import Channel, Provenance, Recording
-from ssmr_ident.diagnose import engine
+from ssmr_ident.diagnose import stripped
 from ssmr_ident.identify.joint import JointFit
 from ssmr_ident.physics.rig import Block
 from ssmr_ident.pipeline.diagnose import diagnose
@@ -109,7 +109,7 @@ def test_a_drift_is_named_unless_the_baseline_is_shaken_to_where_it_fits_better(
         assert beaten(found) is deeper
         return found
 
-    monkeypatch.setattr(engine, "challenged", challenged)
+    monkeypatch.setattr(stripped, "challenged", challenged)
     found = diagnose(dragged(drift=0.005))
     assert costs
     assert all((cost < 0.0) is deeper for cost in costs)

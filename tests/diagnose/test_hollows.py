@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from made_pulls import made_pulls
 
-from ssmr_ident.diagnose import engine, hollows
+from ssmr_ident.diagnose import hollows, stripped
 from ssmr_ident.diagnose.hollows import ENOUGH, SHAKES, challenged, from_afar
 from ssmr_ident.diagnose.setup import Setup
 from ssmr_ident.diagnose.start import begin
@@ -96,4 +96,4 @@ def test_what_a_baseline_misses_altogether_counts_as_it_does_beside_the_effect(e
 
     before = Explanation(*[fit([1100.0, 9.0, 2.5, 1.1, 3300.0], [13.0, 7.0, 158.0, 155.0, 5.0], 9.0)] * 2)
     beside = Explanation(*[fit([730.0, 11.0, 2.5, 1.1, explained], [18.0, 18.0, 158.0, 155.0, 168.0], 83.0)] * 2)
-    assert engine._outdone(beside, before) is outdone
+    assert stripped.outdone(beside, before) is outdone

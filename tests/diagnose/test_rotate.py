@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from small_rigs import Run, campaign, fitted, prepared, quiet
 
-from ssmr_ident.diagnose import engine, rotate
+from ssmr_ident.diagnose import rotate, stripped
 from ssmr_ident.diagnose.accept import better, certain
 from ssmr_ident.diagnose.followed import explained
 from ssmr_ident.diagnose.rotate import left_elsewhere, shown_by_all, shown_in_turn
@@ -29,7 +29,7 @@ def test_it_is_shown_by_a_loud_recording_in_its_turn(monkeypatch: pytest.MonkeyP
         asked.append((better(leader, before, True), certain(leader, before), shown))
         return shown
 
-    monkeypatch.setattr(engine, "shown_in_turn", watched)
+    monkeypatch.setattr(stripped, "shown_in_turn", watched)
     found = diagnose(campaign({"nonlinear_stiffness": {"k3_N_m3": 5e5}}, LOUD_ONCE, seed=3, duration=4.0))
     assert asked[0] == (False, True, True)
     (effect,) = found.effects
@@ -50,8 +50,8 @@ def test_what_one_recording_alone_has_is_not_shown_by_it(monkeypatch: pytest.Mon
         asked.append(shown_in_turn(leader, before))
         return asked[-1]
 
-    monkeypatch.setattr(engine, "better", lambda leader, before, first: False)
-    monkeypatch.setattr(engine, "shown_in_turn", watched)
+    monkeypatch.setattr(stripped, "better", lambda leader, before, first: False)
+    monkeypatch.setattr(stripped, "shown_in_turn", watched)
     runs = [Run(force=3.0), Run(force=3.5), Run(force=34.0), Run(force=3.0)]
     diagnose(campaign({"nonlinear_stiffness": {"k3_N_m3": 5e5}}, runs, seed=3, duration=4.0))
     assert asked

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from small_rigs import Run, campaign
 
-from ssmr_ident.diagnose import engine
+from ssmr_ident.diagnose import stripped
 from ssmr_ident.diagnose.accept import better
 from ssmr_ident.diagnose.weigh import Explanation
 from ssmr_ident.pipeline.diagnose import diagnose
@@ -19,8 +19,8 @@ def alone_no_better(monkeypatch: pytest.MonkeyPatch) -> None:
     def judged(leader: Explanation, before: Explanation, first: bool) -> bool:
         return len(leader.fit.model.ids) == 2 and better(leader, before, first)
 
-    monkeypatch.setattr(engine, "better", judged)
-    monkeypatch.setattr(engine, "shown_in_turn", lambda leader, before: False)
+    monkeypatch.setattr(stripped, "better", judged)
+    monkeypatch.setattr(stripped, "shown_in_turn", lambda leader, before: False)
 
 
 def test_they_are_found_together() -> None:

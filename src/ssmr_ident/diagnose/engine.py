@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,7 +10,6 @@ from ssmr_ident.compare.recorded import follow
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.accept import (
     FORMULA,
-    better,
     certain,
     leading,
     left_over,
@@ -20,23 +18,21 @@ from ssmr_ident.diagnose.accept import (
     touches,
     within_file,
 )
-from ssmr_ident.diagnose.baseline import LAST, alike_in, best_baseline, prepared, swings_alone, unsteady
+from ssmr_ident.diagnose.baseline import alike_in, best_baseline, prepared, swings_alone, unsteady
 from ssmr_ident.diagnose.coupling import coupled
-from ssmr_ident.diagnose.explain import without
 from ssmr_ident.diagnose.explore import Search, search
 from ssmr_ident.diagnose.followed import all_explained, at_its_best, each_set_once, explained, joined
-from ssmr_ident.diagnose.hollows import challenged
 from ssmr_ident.diagnose.pairs import backward, exchange, instead, partners_of, with_a_second
 from ssmr_ident.diagnose.polish import calmed, loud
 from ssmr_ident.diagnose.race import Progress
 from ssmr_ident.diagnose.rivals import rivals_of
-from ssmr_ident.diagnose.rotate import left_elsewhere, shown_by_all, shown_in_turn
+from ssmr_ident.diagnose.rotate import left_elsewhere, shown_by_all
 from ssmr_ident.diagnose.setup import Setup
+from ssmr_ident.diagnose.stripped import good_enough, outdone, shaken, stripped_of, way_home
 from ssmr_ident.diagnose.weigh import Explanation, evidences
-from ssmr_ident.identify.descent import descend, slides
-from ssmr_ident.identify.joint import JointFit, differentiate
+from ssmr_ident.identify.descent import slides
+from ssmr_ident.identify.joint import differentiate
 from ssmr_ident.identify.scatter import covariance
-from ssmr_ident.identify.trials import Trial
 
 MOST_EFFECTS = 2
 """Effects that are looked for together."""
@@ -114,17 +110,17 @@ def examine(setup: Setup, parameters: ParameterSet, progress: Progress | None = 
         found_fit = differentiate(leader.fit)
         first = chosen is baseline
         others = [e for e in new if e is not leader]
-        good = _good(leader, chosen, first)
+        good = good_enough(leader, chosen, first)
         if first and others and good and not significant(found_fit):
             # a law whose size the recordings do not give stands in for another
             leader = at_its_best(leading(chosen, others), new, kept, lengths)
             found_fit = differentiate(leader.fit)
-            good = _good(leader, chosen, first)
+            good = good_enough(leader, chosen, first)
         tried = joined(tried, new)
         if first and not good and certain(leader, chosen) and loud(chosen.fit):
             together = with_a_second(leader, chosen, kept, setup.campaign.session.baseline, lengths, progress)
             tried = joined(tried, together)
-            if together and _good(together[0], chosen, first) and significant(together[0].fit):
+            if together and good_enough(together[0], chosen, first) and significant(together[0].fit):
                 singles.append(leader)
                 chosen = together[0]
                 break
@@ -139,20 +135,17 @@ def examine(setup: Setup, parameters: ParameterSet, progress: Progress | None = 
             singles.append(alone)
             tried = joined(tried, [alone])
             continue
-        more = [name for name in leader.fit.model.ids if name not in chosen.fit.model.ids]
-        stripped = without(leader.fit, more[-1])
-        # the leader of pulls was led far, over hollows: what is without it begins where it ended, and is led as far
-        stripped = descend(calmed(stripped) if unsteady(stripped) else stripped, LAST // 2)
+        stripped = stripped_of(leader, chosen)
         if first and slides(stripped) and (swings_alone(stripped) or swings_alone(chosen.fit)):
-            stripped = _shaken(stripped, chosen, leader, kept)
+            stripped = shaken(stripped, chosen, leader, kept)
         bare = explained(kept, differentiate(stripped), leader.kept)
         moved = bare.id == chosen.id and _cost(bare, chosen) < _cost(chosen, chosen)
         if moved:
             # the effect had only shown the way to a better fit without it
             tried[tried.index(chosen)], chosen = bare, bare
             baseline = bare if first else baseline
-        refuted = _outdone(leader, chosen) or (first and not shown_by_all(leader, chosen))
-        if refuted or (moved and not _good(leader, chosen, first)):
+        refuted = outdone(leader, chosen) or (first and not shown_by_all(leader, chosen))
+        if refuted or (moved and not good_enough(leader, chosen, first)):
             if moved:
                 continue
             break
@@ -162,42 +155,16 @@ def examine(setup: Setup, parameters: ParameterSet, progress: Progress | None = 
     chosen, tried = backward(kept, lengths, chosen, tried, singles)
     if chosen is not baseline and not setup.decoupled:
         chosen, tried = instead(chosen, tried, kept, setup.campaign.session.baseline, lengths, progress)
+    home = None if chosen is baseline or setup.decoupled else way_home(chosen, baseline, tried, kept, parameters)
+    if home is not None:
+        answered = good_enough(chosen, home, True)
+        tried[tried.index(baseline)] = home
+        baseline, chosen = home, chosen if answered else home
     if chosen is not baseline and not touches(chosen, baseline):
         chosen = baseline
     rivals, tried = rivals_of(chosen, baseline, tried, searches[0].suspects if searches else (), kept)
     found = evidences(tried)
     return Outcome(setup, baseline, tuple(tried), chosen, tuple(rivals), found, tuple(searches))
-
-
-def _good(leader: Explanation, before: Explanation, first: bool) -> bool:
-    return better(leader, before, first) or (first and shown_in_turn(leader, before))
-
-
-def _outdone(leader: Explanation, before: Explanation) -> bool:
-    """Whether pulls fit better without an effect than with it.
-
-    All its evidence is then of recordings kept back, and these may lie in hollows of their own.
-    """
-    counted = _counted(leader, before)
-    return slides(leader.fit) and before.fit.cost(counted) < leader.fit.cost(counted)
-
-
-def _counted(leader: Explanation, before: Explanation) -> np.ndarray:
-    """Independent samples of each recording, in what the one leaves that leaves less.
-
-    A drag that a baseline misses altogether had 5 of them (bank 5086), and 168 beside the cable that explains it.
-    """
-    return min((leader.fit, before.fit), key=lambda fit: float(np.log(fit.parts).sum())).counted
-
-
-def _shaken(stripped: JointFit, chosen: Explanation, leader: Explanation, kept: Sequence[Trial]) -> JointFit:
-    """The baseline of pulls after as many tries as the effects have had that stand against it."""
-
-    def beaten(base: JointFit) -> bool:
-        bare = explained(kept, base, leader.kept)
-        return _outdone(leader, bare) or not _good(leader, bare, True)
-
-    return challenged(leader.fit, _counted(leader, chosen), (stripped, chosen.fit), beaten)
 
 
 def informed(setup: Setup, parameters: ParameterSet) -> Setup:
