@@ -70,7 +70,10 @@ def examine(setup: Setup, parameters: ParameterSet, progress: Progress | None = 
     """Look for what a session's baseline leaves out."""
     if progress:
         progress("fitting the baseline", 0, 1)
-    setup = informed(setup, parameters)
+    return _examined(informed(setup, parameters), parameters, progress)
+
+
+def _examined(setup: Setup, parameters: ParameterSet, progress: Progress | None) -> Outcome:
     fit, lengths = setup.begun or best_baseline(setup.fitted, setup, parameters)
     kept = tuple(prepared(follow(alike_in(setup.kept, fit.trials), fit.model, fit.point)))
     if progress:
@@ -157,9 +160,7 @@ def examine(setup: Setup, parameters: ParameterSet, progress: Progress | None = 
         chosen, tried = instead(chosen, tried, kept, setup.campaign.session.baseline, lengths, progress)
     home = None if chosen is baseline or setup.decoupled else way_home(chosen, baseline, tried, kept, parameters)
     if home is not None:
-        answered = good_enough(chosen, home, True)
-        tried[tried.index(baseline)] = home
-        baseline, chosen = home, chosen if answered else home
+        return _examined(replace(setup, begun=(home.fit, lengths)), parameters, progress)
     if chosen is not baseline and not touches(chosen, baseline):
         chosen = baseline
     rivals, tried = rivals_of(chosen, baseline, tried, searches[0].suspects if searches else (), kept)
