@@ -76,3 +76,14 @@ def test_a_force_that_bends_slowly_is_no_noise() -> None:
     clean = pulls(random)
     bent = [Blocks(b.left + 4.0 * b.left.std() * np.linspace(-1.0, 1.0, len(b.left)) ** 3, b.length) for b in clean]
     assert block_noises(bent) == pytest.approx(block_noises(clean), rel=0.15)
+
+
+def test_a_louder_recording_keeps_its_own_noise_and_one_that_leaves_nothing_is_no_trouble() -> None:
+    random = np.random.default_rng(6)
+    clean = pulls(random)
+    loud = Blocks(3.0 * clean[1].left, clean[1].length)
+    silent = Blocks(np.zeros(160), 0.1)
+    found, alone = block_noises([clean[0], loud, *clean[2:], silent]), block_noises(clean)
+    assert found[1] == pytest.approx(3.0 * alone[1], rel=0.25)
+    assert np.delete(found[:-1], 1) == pytest.approx(np.delete(alone, 1), rel=0.12)
+    assert 0.0 < found[-1] < 1e-100

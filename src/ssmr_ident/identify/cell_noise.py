@@ -70,13 +70,13 @@ def block_noises(recordings: Sequence[Blocks]) -> Array:
     is louder or quieter than the others.
     """
     rows = [
-        (index, k * one.length, spread(together) ** 2, len(together) - 2)
+        (index, k * one.length, 2.0 * np.log(spread(together)), max(len(together) - 2, 1))
         for index, one in enumerate(recordings)
         for k in TOGETHER
         if len(together := _averages(one.left, k)) - 2 >= FEWEST or k == 1
     ]
-    which, lengths, variances, counts = (np.array(column) for column in zip(*rows, strict=True))
-    logs, weights = np.log(variances), counts / SCATTER**2
+    which, lengths, logs, counts = (np.array(column) for column in zip(*rows, strict=True))
+    weights = counts / SCATTER**2
     shapes = [(0.0, 1.0), *((share, time) for time in TIMES for share in SHARES)]
     fits = [_level(logs - np.log(_differences(lengths, *shape)), weights) for shape in shapes]
     best = int(np.argmin([cost for _, cost in fits]))
