@@ -9,6 +9,7 @@ import numpy as np
 
 from ssmr_ident.identify.joint import JointFit
 from ssmr_ident.identify.trials import Trial
+from ssmr_ident.physics.effects.sensor_saturation import ACCELERATIONS
 
 _SHOWS = {"position": 0, "angle": 0, "velocity": 1, "angular_rate": 1}
 
@@ -47,7 +48,10 @@ def sizes_of(fit: JointFit) -> dict[str, float]:
         time = deflection / speed
         slopes = [_along(trial, values) or stiffness for trial in fit.trials]
         reach, slope = max((float(np.ptp(t.target)) / (wheels * k), k) for t, k in zip(fit.trials, slopes, strict=True))
+    weight, beyond = _gravity(fit)
     return {
+        "weight": weight,
+        "beyond_weight": beyond,
         "deflection": deflection,
         "stiffness": stiffness,
         "force": stiffness * deflection,
@@ -59,6 +63,19 @@ def sizes_of(fit: JointFit) -> dict[str, float]:
         "reach": reach,
         "slope": slope,
     }
+
+
+def _gravity(fit: JointFit) -> tuple[float, float]:
+    """What the axis that reads most reads at rest [m/s^2], and how far it is seen to go beyond; NaN where that is more
+    than the rest, and no gravity."""
+    largest = (math.nan, math.nan)
+    for trial, simulated in zip(fit.trials, fit.simulated, strict=True):
+        for column, name in enumerate(trial.channels):
+            rest = float(np.mean(simulated[:, column]))
+            swing = float(np.max(math.copysign(1.0, rest) * (trial.target[:, column] - trial.target[:, column].mean())))
+            if name in ACCELERATIONS and abs(rest) > swing and not swing <= largest[1]:
+                largest = abs(rest), swing
+    return largest
 
 
 def _along(trial: Trial, values: Mapping[str, float]) -> float:

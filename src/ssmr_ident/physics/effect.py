@@ -46,17 +46,22 @@ class Sized:
     of : str
         ``deflection`` [m], ``stiffness`` [N/m], ``force`` [N], ``time`` [s] (one radian of the motion), ``speed``
         [m/s], ``duration`` [s], ``acceleration`` [m/s^2], ``load`` [N] (largest reading of a load cell), ``reach`` [m]
-        and ``slope`` [N/m] (deflection and stiffness in the direction that goes farthest), or a combination as in
-        ``force/deflection^3``.
+        and ``slope`` [N/m] (deflection and stiffness in the direction that goes farthest), ``weight`` and
+        ``beyond_weight`` [m/s^2] (what an accelerometer reads of gravity at rest, and how far the largest reading goes
+        beyond it), or a combination as in ``force/deflection^3``.
+    above : str
+        A size on which it stands.
     """
 
     share: float
     of: str
+    above: str = ""
 
     def value(self, sizes: Mapping[str, float]) -> float:
         """In SI, for given sizes."""
         over, _, under = self.of.partition("/")
-        return self.share * _product(over, sizes) / _product(under, sizes)
+        value = self.share * _product(over, sizes) / _product(under, sizes)
+        return value + sizes[self.above] if self.above else value
 
 
 def _product(text: str, sizes: Mapping[str, float]) -> float:
