@@ -111,9 +111,8 @@ def page(folder: Path) -> str:
     section(
         "Fresh random sessions",
         "diagnosis.jsonl",
-        "`bench_diagnosis.py`; the last hundred seeds, as far as they were run, by family, then by what was left out, "
-        "and the hundreds before "
-        "them as the engine of their day answered.\n",
+        "`bench_diagnosis.py`; the last hundred seeds that were all run, by family, then by what was left out, and the "
+        "other hundreds, as far as they were run, as the engine of their day answered.\n",
         _fresh,
         dated=False,
     )
@@ -159,11 +158,12 @@ COST = """`bench_cost.py`: seconds over the number of recordings, and of session
 
 
 def _fresh(rows: Sequence[Row]) -> str:
-    """The last hundred seeds, which nobody had looked at, and in a line each those from which the engine was mended."""
+    """The last hundred seeds that were all run, which nobody had looked at, and in a line each the others."""
     hundreds: dict[int, list[Row]] = {}
     for row in rows:
         hundreds.setdefault(row["seed"] // 100, []).append(row)
-    last = hundreds.pop(max(hundreds))
+    whole = [hundred for hundred, own in hundreds.items() if len(own) == 100]
+    last = hundreds.pop(max(whole or hundreds))
     text = versions(last) + block(summary(last)) + "\n" + block(summary(last, "kind").split("\n\n")[0])
     for hundred, own in sorted(hundreds.items()):
         told = summary(own).splitlines()
