@@ -52,6 +52,7 @@ def sizes_of(fit: JointFit) -> dict[str, float]:
     return {
         "weight": weight,
         "beyond_weight": beyond,
+        "reading": largest if math.isnan(weight) else math.nan,
         "deflection": deflection,
         "stiffness": stiffness,
         "force": stiffness * deflection,

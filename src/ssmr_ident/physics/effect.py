@@ -48,7 +48,8 @@ class Sized:
         [m/s], ``duration`` [s], ``acceleration`` [m/s^2], ``load`` [N] (largest reading of a load cell), ``reach`` [m]
         and ``slope`` [N/m] (deflection and stiffness in the direction that goes farthest), ``weight`` and
         ``beyond_weight`` [m/s^2] (what an accelerometer reads of gravity at rest, and how far the largest reading goes
-        beyond it), or a combination as in ``force/deflection^3``.
+        beyond it), ``reading`` [m/s^2] (``acceleration`` where no axis reads gravity), or a combination as in
+        ``force/deflection^3``.
     above : str
         A size on which it stands.
     """

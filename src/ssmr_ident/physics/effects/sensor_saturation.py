@@ -40,8 +40,8 @@ EFFECT = Effect(
     acts={Site.OUTPUT: change},
     rig=True,
     probes=(
-        {"range_m_s2": Sized(0.99, "acceleration")},
-        {"range_m_s2": Sized(0.9, "acceleration")},
+        {"range_m_s2": Sized(0.99, "reading")},
+        {"range_m_s2": Sized(0.9, "reading")},
         # an axis that carries gravity clips beside it, and what clips below that reads one number all the time
         {"range_m_s2": Sized(0.8, "beyond_weight", above="weight")},
         {"range_m_s2": Sized(0.4, "beyond_weight", above="weight")},
