@@ -11,8 +11,10 @@ from ssmr_ident.diagnose import explore
 from ssmr_ident.diagnose.baseline import bent, best_baseline
 from ssmr_ident.diagnose.explain import SETTLING, beside, with_suspect
 from ssmr_ident.diagnose.explore import PROMISING, search
+from ssmr_ident.diagnose.race import FAR, started
 from ssmr_ident.diagnose.scan import out_of_reach, scan
 from ssmr_ident.diagnose.setup import set_up
+from ssmr_ident.diagnose.sliding import with_law_of_sliding
 from ssmr_ident.identify.descent import descend
 from ssmr_ident.identify.joint import JointFit
 from ssmr_ident.physics.effects import CATALOGUE
@@ -69,6 +71,22 @@ def test_releases_are_begun_anew_beside_wheels_that_lift() -> None:
     held = descend(follow(base.trials, model, base.point, base.nuisances), SETTLING)
     begun = beside(base, lift)
     assert held.cost(base.counted) - begun.cost(base.counted) > 50.0
+
+
+def test_an_effect_in_pulls_is_begun_beside_the_robot_as_known() -> None:
+    """A wheel whose load the baseline had put elsewhere stays there beside a soft cable, and slides too late."""
+    drawn = draw("bench", "one", 5548)
+    assert set(drawn.truth.effects) == {"cable_compliance"}
+    setup, known = with_law_of_sliding(drawn.campaign, drawn.campaign.parameters, None)
+    base, lengths = setup.begun or best_baseline(setup.fitted, setup, known)
+    assert bent(base)
+    cable = scan(base, [CATALOGUE["cable_compliance"]])[0][0]
+    bent_as_well = descend(started(base, cable), 8)
+    (found,) = [fit for fit in search(base, "rigid6", lengths).tried if fit.model.ids == ("cable_compliance",)]
+    assert found.cost(base.counted) < bent_as_well.cost(base.counted) - 200.0
+    assert np.all(np.abs(found.point[: len(base.model.physics)]) < FAR)
+    true = drawn.truth.effects["cable_compliance"]["K_cable_N_m"]
+    assert found.model.split(found.point)[1]["cable_compliance"]["K_cable_N_m"] == pytest.approx(true, rel=0.02)
 
 
 def test_a_slow_sensor_on_a_rig_is_asked_where_anything_else_is() -> None:

@@ -12,9 +12,9 @@ from ssmr_ident.compare.recorded import follow
 from ssmr_ident.diagnose.along import begun_along, without_laws
 from ssmr_ident.diagnose.baseline import LAST, WIDE, bent, far_off, leaves_much
 from ssmr_ident.diagnose.explain import from_what_is_known, in_its_place
-from ssmr_ident.diagnose.race import Progress, raced, ranked, run_on, screened, started, variants
+from ssmr_ident.diagnose.race import Progress, raced, ranked, run_on, screened, started, started_from_known, variants
 from ssmr_ident.diagnose.scan import Suspect, candidates, moves_beyond, out_of_reach, scan
-from ssmr_ident.identify.descent import LOUD, chatters, descend
+from ssmr_ident.identify.descent import LOUD, chatters, descend, slides
 from ssmr_ident.identify.horizons import led
 from ssmr_ident.identify.joint import JointFit
 from ssmr_ident.identify.parallel import side_by_side
@@ -118,6 +118,7 @@ def search(
         cheap = [g for g in groups if chosen and baseline == "sdof" and CATALOGUE[g[0].effect].sudden]
         starts = [partial(started, base, s) for group in _each_group(chosen, beyond, cheap) for s in variants(group)]
         starts += [partial(from_what_is_known, base, s, lengths) for group in beyond for s in variants(group)]
+        starts += [partial(started_from_known, base, group[0], slides(base)) for group in chosen if alone]
         starts += [partial(_instead, base, s) for s in same]
         rough = run_on(list(side_by_side(lambda begin: begin(), starts)))
     tried += _to_the_end(base, rough, rest, lengths, progress)
