@@ -12,7 +12,8 @@ from ssmr_ident.compare.comparison import measure
 from ssmr_ident.compare.outcome import Prediction
 from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.core.recording import Channel, Provenance, Recording
-from ssmr_ident.diagnose.worth import grows_with_motion, noise_floor, without_jolts
+from ssmr_ident.diagnose.assemble import hidden_by_jolts
+from ssmr_ident.diagnose.worth import grows_with_motion, noise_floor, without_jolts, worth
 from ssmr_ident.identify.trials.pull import pull_trial
 from ssmr_ident.session import Entry
 
@@ -42,6 +43,27 @@ def test_a_jolt_counts_unless_the_cable_tightens_there(spike_s: float, seen: boo
     (cut,) = without_jolts(SimpleNamespace(trials=(trial,)), [whole])  # type: ignore[arg-type]
     assert measure(whole)[0] > 1.6 * noise_floor(whole)
     assert (measure(cut)[0] > 1.6 * noise_floor(cut)) is seen
+
+
+@pytest.mark.parametrize(("jolt", "missed", "said"), [(30.0, 0.5, True), (0.1, 0.5, False), (30.0, -0.5, False)])
+def test_an_answer_that_a_jolt_alone_makes_worse_says_so(jolt: float, missed: float, said: bool) -> None:
+    random = np.random.default_rng(12)
+    time = np.arange(800) / RATE
+    force = 10.0 * np.minimum(time, 2.0)
+    logged = force + 0.05 * random.standard_normal(len(time))
+    tightens = time < 0.05
+
+    def pull(error: float, spike: float, whole: bool) -> Prediction:
+        shown = np.ones(len(time), bool) if whole else ~tightens
+        simulated = force + error * np.sin(time) + spike * tightens
+        return Prediction(
+            time[shown], ("force",), ("N",), logged[shown, None], simulated[shown, None], low_pass_hz=None
+        )
+
+    before, after = abs(min(missed, 0.0)) * 0.2 + max(missed, 0.0), abs(min(missed, 0.0))
+    whole = worth([pull(before, 0.0, True)], [pull(after, jolt, True)], ())
+    words = hidden_by_jolts([whole, whole], *([[pull(e, 0.0, False)]] * 2 for e in (before, after)))
+    assert [word.partition(":")[0] for word in words] == (["fitted", "held out"] if said else [])
 
 
 @pytest.mark.parametrize(("rate", "hum"), [(1000.0, 0.0), (1000.0, 1.0), (500.0, 1.0)])

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
+from ssmr_ident.compare.outcome import Prediction
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.accept import left_over
 from ssmr_ident.diagnose.diagnosis import MISSING, NOTHING, UNDETERMINED, Conflict, Diagnosis, NamedEffect, Tried, Worth
@@ -36,6 +39,8 @@ motion: the floor takes the noise for white, and coloured noise lies above it.""
 
 JOLTS = "what is left on unseen recordings is the jolt of the tightening cable: without it {:.1f} times the noise"
 
+UNDER_JOLTS = "{}: the jolt of the tightening cable hides it; without that the error falls from {:.3g} to {:.3g} %"
+
 
 def assembled(outcome: Outcome, parameters: ParameterSet, everything: JointFit | None, seed: int) -> Diagnosis:
     """The diagnosis.
@@ -59,10 +64,12 @@ def assembled(outcome: Outcome, parameters: ParameterSet, everything: JointFit |
     conflicts = conflicting(outcome)
     effects = _named(outcome, parameters) if named else ()
     jolts: tuple[str, ...] = ()
+    settled = without_jolts(base.fit, before_fit), without_jolts(base.kept, before_kept)
     if named:
         verdict = MISSING if len(outcome.rivals) <= MOST_RIVALS else UNDETERMINED
+        ended = without_jolts(best.fit, after_fit), without_jolts(best.kept, after_kept)
+        jolts = hidden_by_jolts((training, heldout), settled, ended)
     else:
-        settled = without_jolts(base.fit, before_fit), without_jolts(base.kept, before_kept)
         fitted, kept = (worth(p, p, ()) for p in settled)
         left = max(w.before / w.noise_floor for w in (fitted, kept))
         if heldout.before > UNEXPLAINED * heldout.noise_floor and kept.before < UNEXPLAINED * kept.noise_floor:
@@ -104,6 +111,18 @@ def assembled(outcome: Outcome, parameters: ParameterSet, everything: JointFit |
         summary=summary,
         notes=(*outcome.setup.notes, *jolts, *_elsewhere(free, base, conflicts), *_notes(best, free, heldout)),
         evidence=evidence,
+    )
+
+
+def hidden_by_jolts(
+    whole: Sequence[Worth], before: Sequence[Sequence[Prediction]], after: Sequence[Sequence[Prediction]]
+) -> tuple[str, ...]:
+    """Words where recordings, fitted or held out, are worse after, but for the jolts of cables better."""
+    calm = [worth(first, second, ()) for first, second in zip(before, after, strict=True)]
+    return tuple(
+        UNDER_JOLTS.format(name, quiet.before, quiet.after)
+        for name, loud, quiet in zip(("fitted", "held out"), whole, calm, strict=True)
+        if loud.after > loud.before and quiet.after < quiet.before
     )
 
 

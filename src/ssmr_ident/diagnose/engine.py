@@ -37,6 +37,9 @@ from ssmr_ident.identify.scatter import covariance
 MOST_EFFECTS = 2
 """Effects that are looked for together."""
 
+MOST_MOVES = 2
+"""Times that the search is begun anew beside a better fit of what stands, which an effect has led to."""
+
 
 @dataclass(frozen=True, eq=False)
 class Outcome:
@@ -82,7 +85,7 @@ def _examined(setup: Setup, parameters: ParameterSet, progress: Progress | None)
     tried, searches = [baseline], []
     singles: list[Explanation] = []
     chosen = baseline
-    rounds, exchanged = MOST_EFFECTS, False
+    rounds, moves, exchanged = MOST_EFFECTS, MOST_MOVES, False
     while rounds:
         rounds -= 1
         if chosen is not baseline and left_over(chosen, baseline) < FORMULA:
@@ -149,7 +152,8 @@ def _examined(setup: Setup, parameters: ParameterSet, progress: Progress | None)
             baseline = bare if first else baseline
         refuted = outdone(leader, chosen) or (first and not shown_by_all(leader, chosen))
         if refuted or (moved and not good_enough(leader, chosen, first)):
-            if moved:
+            if moved and moves:
+                moves, rounds = moves - 1, rounds + 1
                 continue
             break
         chosen = replace(leader, fit=found_fit)
