@@ -65,6 +65,12 @@ def test_an_answer_mends_what_the_baseline_leaves_wherever_it_shows(
     assert touches(_leaving(fitted, kept), _leaving([1.23, 1.62, 2.23], [2.61, 9.01])) is answers
 
 
+@pytest.mark.parametrize(("others", "answers"), [([1.38, 1.01, 0.96, 1.09], True), ([1.58, 1.55, 1.38, 1.56], False)])
+def test_one_loud_recording_does_not_speak_against_what_the_others_show(others: list[float], answers: bool) -> None:
+    before = _leaving([2.19, 1.58, 1.55, 1.38], [1.56])
+    assert touches(_leaving([2.0, *others[:3]], others[3:]), before) is answers
+
+
 @pytest.mark.parametrize(
     ("bent", "chance", "answers"),
     [

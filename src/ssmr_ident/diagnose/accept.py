@@ -40,7 +40,7 @@ the share that the first one must leave in the recording that shows it best, or 
 
 UNTOUCHED = 0.9
 """Share of the variance, mean over the recordings in which the baseline leaves more than noise, beyond which an answer
-does not answer."""
+does not answer; and of what is beyond noise in all of them together."""
 
 ALIKE = 2.0
 """Unexplained variance over that of the best explanation, up to which another counts as near as it."""
@@ -103,13 +103,19 @@ def touches(chosen: Explanation, baseline: Explanation) -> bool:
     """Whether an explanation takes anything from the recordings in which the baseline leaves more than noise.
 
     What is named beside a misfit that it leaves as it is, is not what is missing. A drift may show in one alone that
-    was kept back, which the baseline has not bent round. Where the baseline leaves what noise of some colour may leave,
+    was kept back, which the baseline has not bent round, and softening (bank 5508) in the others than the one loud
+    recording, more than which it took. Where the baseline leaves what noise of some colour may leave,
     an offset that takes back what the baseline bent has nothing to take; nor where most pulls are explained, and one or
     two lie in hollows of their own whatever is named.
     """
-    left = np.concatenate([f.parts / [t.size for t in f.trials] for f in (baseline.fit, baseline.kept)])
+    left, after = (
+        np.concatenate([f.parts / [t.size for t in f.trials] for f in (e.fit, e.kept)]) for e in (baseline, chosen)
+    )
     loud = left > LOUD
-    if not loud.any() or float(np.mean(_changes(chosen, baseline)[loud])) < float(np.log(UNTOUCHED)):
+    if not loud.any() or float(np.mean(np.log(after / left)[loud])) < float(np.log(UNTOUCHED)):
+        return True
+    beyond, still = (float(np.maximum(e - 1.0, 0.0).sum()) for e in (left, after))
+    if still < UNTOUCHED * beyond:
         return True
     explained = slides(baseline.fit) and float(np.median(left)) < LOUD
     return relieves(chosen, baseline) and (explained or not _beyond_noise(baseline))
