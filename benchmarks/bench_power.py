@@ -16,6 +16,7 @@ from pathlib import Path
 
 import numpy as np
 from bank import draw
+from bank.pulls import BLOCKS
 from bank.rig_physics import LISTED
 from bank.robot_physics import BENCH, DECAYS, PULLS
 from scipy.optimize import brentq, minimize
@@ -25,7 +26,7 @@ from scoring import GOOD, Row, append, engine, read, row_of
 from ssmr_ident.pipeline.diagnose import diagnose
 
 EFFECTS = {
-    "decays": tuple(DECAYS), "pulls": tuple(PULLS), "bench": BENCH, "forced": tuple(LISTED),
+    "decays": tuple(DECAYS), "pulls": tuple(PULLS), "bench": BENCH, "block": tuple(BLOCKS), "forced": tuple(LISTED),
     "rig_decay": tuple(name for name in LISTED if not name.startswith("sensor")),
 }  # fmt: skip
 WANTED = 0.95
