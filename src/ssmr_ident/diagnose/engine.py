@@ -32,7 +32,7 @@ from ssmr_ident.diagnose.stripped import good_enough, outdone, shaken, stripped_
 from ssmr_ident.diagnose.weigh import Explanation, evidences
 from ssmr_ident.identify.descent import slides
 from ssmr_ident.identify.joint import differentiate
-from ssmr_ident.identify.scatter import covariance
+from ssmr_ident.identify.roughness import scatter_of
 
 MOST_EFFECTS = 2
 """Effects that are looked for together."""
@@ -177,7 +177,7 @@ def informed(setup: Setup, parameters: ParameterSet) -> Setup:
     if not setup.calibration:
         return setup
     fit, _ = best_baseline(setup.calibration, setup, parameters)
-    stds = np.sqrt(np.diag(covariance(fit)))
+    stds = np.sqrt(np.diag(scatter_of(fit)))
     physics = tuple(
         replace(u, prior=u.value(float(p)), prior_std=max(u.std(float(p), float(s)), 1e-12))
         for u, p, s in zip(setup.model.physics, fit.point, stds, strict=True)

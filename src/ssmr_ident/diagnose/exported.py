@@ -8,9 +8,10 @@ import numpy as np
 
 from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.diagnose.setup import twin
+from ssmr_ident.identify.descent import chatters
 from ssmr_ident.identify.joint import JointFit
 from ssmr_ident.identify.robot_map import HEIGHT, SENSOR, SHIFTS
-from ssmr_ident.identify.scatter import covariance
+from ssmr_ident.identify.roughness import scatter_of
 from ssmr_ident.physics.effects import CATALOGUE
 
 SOURCE = "fit of the recordings"
@@ -30,7 +31,7 @@ def exported(fit: JointFit, before: ParameterSet) -> ParameterSet:
         Whose keys, units and fixed values are kept.
     """
     model, point = fit.model, fit.point
-    stds = np.sqrt(np.maximum(np.diag(covariance(fit)), 0.0))
+    stds = np.sqrt(np.maximum(np.diag(scatter_of(fit)), 0.0))
     values, effects = model.split(point)
     changes: dict[str, Estimate] = {}
     contacts = np.array(before["contact_points_m"].value, float) if "contact_points_m" in before else None
@@ -77,7 +78,8 @@ def _effects(fit: JointFit, effects: dict[str, dict[str, float]], stds: np.ndarr
     for index, coordinate in enumerate(fit.model.free):
         name, unknown = coordinate.parameter.name, coordinate.unknown
         value = effects[coordinate.effect][name]
-        spread = max(unknown.std(float(fit.point[count + index]), float(stds[count + index])), _place(fit, name))
+        std = unknown.std(float(fit.point[count + index]), float(stds[count + index]))
+        spread = max(std, _place(fit, name), _between(fit, coordinate.effect, name, value))
         bound = value in (coordinate.parameter.lower, coordinate.parameter.upper)
         found[coordinate.effect][name] = Estimate(value, spread, unknown.unit, SOURCE, at_bound=bound)
     return found
@@ -93,6 +95,16 @@ def _place(fit: JointFit, parameter: str) -> float:
     names = f"contact_shift_{parameter[7:]}", f"accelerometer.position_m.{parameter[7:-2]}"
     known = [u.prior_spread for u in fit.model.physics if u.name in names and u.prior_std is not None]
     return float(1.0 / np.sqrt(np.sum(1.0 / np.square(known)))) if known else 0.0
+
+
+def _between(fit: JointFit, effect_id: str, parameter: str, value: float) -> float:
+    """What a parameter cannot be known better than where saw-teeth come out of step: half of the way between the values
+    it was begun at, for no descent leads from one to the next."""
+    tried = np.array(CATALOGUE[effect_id].spans.get(parameter, ()))
+    if len(tried) < 2 or not chatters(fit):
+        return 0.0
+    nearest = int(np.clip(np.searchsorted(tried, value), 1, len(tried) - 1))
+    return float(0.5 * (tried[nearest] - tried[nearest - 1]))
 
 
 def _prior(old: Estimate) -> str:

@@ -42,7 +42,11 @@ def covariance(fit: JointFit) -> Array:
     -------
     (p, p) float
     """
-    fit = sharpened(fit)
+    return sandwich(sharpened(fit))
+
+
+def sandwich(fit: JointFit) -> Array:
+    """The same, (p, p) float, by the slopes that a fit has."""
     matrix, _ = Curvature.of(fit, fit.weights).normal_equations()
     scatter = np.eye(len(fit.point))
     for weight, trial, slopes, residual in zip(fit.weights, fit.trials, fit.slopes, fit.residuals, strict=True):

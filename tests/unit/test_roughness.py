@@ -1,0 +1,72 @@
+"""Where contacts slide, estimates scatter as far as the hollows of the cost are deep; elsewhere by its curvature."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from bank import draw
+
+from ssmr_ident.diagnose.baseline import best_baseline
+from ssmr_ident.diagnose.sliding import with_law_of_sliding
+from ssmr_ident.identify.joint import Slopes, evaluate
+from ssmr_ident.identify.roughness import scatter_of
+from ssmr_ident.identify.scatter import covariance
+
+SAMPLES, COUNT, STEEP, HIDDEN = 400, 12, 20.0, 1.5
+
+
+class Rough:
+    """A trial that every parameter moves its own way, and a wave far finer than any step shakes aside."""
+
+    name, channels, idle, nuisances, coarse, size = "made", ("force",), (), (), 2.0, SAMPLES
+
+    def __init__(self, wave: float, searched: bool) -> None:
+        self.wave, self.searched = wave, searched
+        white = np.linalg.qr(np.random.default_rng(8).standard_normal((SAMPLES, COUNT + 2)))[0]
+        self.along, self.aside = white[:, :COUNT], white[:, COUNT]
+        self.white_target = np.sqrt(SAMPLES) * white[:, -1] + HIDDEN * self.aside
+        self.target = self.white_target[:, None]
+
+    def runs(self, asked: list[tuple[np.ndarray, np.ndarray]]) -> np.ndarray:
+        at = np.array([point for point, _ in asked])
+        waves = self.wave * np.sin(1e6 * at.sum(axis=1))
+        return (STEEP * self.along @ at.T + np.outer(self.aside, waves))[:, None]
+
+    @staticmethod
+    def whitened(simulated: np.ndarray) -> np.ndarray:
+        return simulated[:, 0]
+
+    @staticmethod
+    def by_channel(residual: np.ndarray) -> np.ndarray:
+        return residual[:, None]
+
+
+@pytest.mark.parametrize("wave", [0.3, 3.0])
+def test_a_rough_cost_widens_the_scatter_by_the_depth_of_its_hollows(wave: float) -> None:
+    """In closed form: beside a plane a wave s is worth w (s² - 2 s c), of a variance w² (2 c² S² + S⁴/8)."""
+    model = SimpleNamespace(split=lambda point: (point,), unknowns=(), steps=lambda: [])
+    found = {}
+    for searched in (False, True):
+        trial = Rough(wave, searched)
+        begun = evaluate([trial], model, np.zeros(COUNT), [np.zeros(0)])  # type: ignore[list-item, arg-type]
+        fit = replace(begun, slopes=(Slopes(STEEP * trial.along, np.zeros((SAMPLES, 0))),))
+        found[searched] = scatter_of(fit)
+        assert (found[searched] == covariance(fit)).all() is not searched
+    depth = float(fit.weights[0]) * np.sqrt(2.0 * (HIDDEN * wave) ** 2 + wave**4 / 8.0)
+    widened = np.trace(found[True]) / np.trace(found[False])
+    assert widened == pytest.approx(1.0 + depth, rel=0.25)
+
+
+def test_estimates_from_pulls_lie_within_what_is_said_of_them() -> None:
+    drawn = draw("pulls", "none", 5512)
+    setup, known = with_law_of_sliding(drawn.campaign, drawn.campaign.parameters, None)
+    fit, _ = setup.begun or best_baseline(setup.fitted, setup, known)
+    truth = drawn.truth.parameters
+    places = np.array([(k, u.scaled(truth[u.name])) for k, u in enumerate(fit.model.physics) if u.name in truth])
+    own, off = places[:, 0].astype(int), fit.point[places[:, 0].astype(int)] - places[:, 1]
+    rough, local = (np.abs(off) / np.sqrt(np.diag(scatter)[own]) for scatter in (scatter_of(fit), covariance(fit)))
+    assert np.sqrt(np.mean(rough**2)) < 2.0
+    assert np.sqrt(np.mean(local**2)) > 3.0
