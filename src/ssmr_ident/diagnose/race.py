@@ -10,7 +10,7 @@ from functools import partial
 import numpy as np
 
 from ssmr_ident.compare.recorded import follow
-from ssmr_ident.diagnose.explain import beside, with_suspect
+from ssmr_ident.diagnose.explain import beside, in_its_place, with_suspect
 from ssmr_ident.diagnose.gathered import gathered
 from ssmr_ident.diagnose.scan import Suspect, both_ways
 from ssmr_ident.identify.descent import chatters, descend
@@ -26,6 +26,9 @@ BASELINE = "baseline."
 
 FAR = 3.0
 """Prior standard deviations by which a parameter may have moved before a fit is begun from what is known as well."""
+
+REPLACED = 3
+"""Effects, the first by a straight line, that are begun in the place of what a baseline has left the file for."""
 
 HEATS = ((0, 1), (12, 3), (6, 4))
 """Rounds in which probes are tried: how many go in, and Gauss-Newton steps in each. All probes go into the first, on
@@ -148,15 +151,19 @@ def screened(
         for start in ((first, known) if CATALOGUE[suspect.effect].sudden else (first,))
         if start is not None
     ]
+    begins = [partial(_begun, *start) for start in starts]
+    if known is not None:
+        # a baseline that has stiffened round a tire that hardens leaves that no room
+        begins += [partial(_in_its_place, first, group[0]) for group in groups[:REPLACED]]
     field: list[JointFit] = []
-    rounds = len(starts) + 3
-    for fit in side_by_side(lambda start: _begun(*start), starts):
+    rounds = len(begins) + 3
+    for fit in side_by_side(lambda begin: begin(), begins):
         if progress:
             progress("trying effects", len(field), rounds)
         field.append(fit)
     apart = [
         fit
-        for fit, (_, suspect) in zip(field, starts, strict=True)
+        for fit, (_, suspect) in zip(field, starts, strict=False)
         if CATALOGUE[suspect.effect].apart and np.isfinite(fit.rss)
     ]
     second = lengths[1:2] if len(lengths) > 2 else lengths[:1]
@@ -167,7 +174,7 @@ def screened(
         field = [*once, *(f for f in _few_unlisted(ordered)[:kept] if f not in once)]
         field = list(side_by_side(partial(_led_on, few.trials, second, steps), field))
         if progress:
-            progress("trying effects", len(starts) + heat, rounds)
+            progress("trying effects", len(begins) + heat, rounds)
     if progress:
         progress("trying effects", 1, 1)
     return ranked(field)
@@ -187,6 +194,11 @@ def _from_what_is_known(fit: JointFit) -> JointFit | None:
         return None
     point = np.concatenate([np.zeros(physics), fit.point[physics:]])
     return descend(follow(fit.trials, fit.model, point), 2)
+
+
+def _in_its_place(first: JointFit, suspect: Suspect) -> JointFit:
+    far = np.abs(first.point[: len(first.model.physics)]) > FAR
+    return descend(in_its_place(first, suspect, far), HEATS[0][1])
 
 
 def _begun(first: JointFit, suspect: Suspect) -> JointFit:
