@@ -10,7 +10,7 @@ from ssmr_ident.diagnose import explore, race
 from ssmr_ident.diagnose.explain import beside
 from ssmr_ident.diagnose.scan import Suspect, scan
 from ssmr_ident.identify.descent import descend
-from ssmr_ident.identify.joint import JointFit, evaluate
+from ssmr_ident.identify.joint import JointFit, differentiate, evaluate
 from ssmr_ident.physics.effects import CATALOGUE
 
 PLAY = {"gap_m": 2e-3, "rounding": 0.2}
@@ -18,6 +18,12 @@ PLAY = {"gap_m": 2e-3, "rounding": 0.2}
 
 def _suspect(effect: str, at: dict[str, float]) -> Suspect:
     return Suspect(effect, at, {}, {}, 0.0)
+
+
+def fitted_at(fit: JointFit, name: str, value: float) -> JointFit:
+    """A fit with one parameter elsewhere, with slopes."""
+    point = np.where([unknown.name == name for unknown in fit.model.physics], value, fit.point)
+    return differentiate(evaluate(fit.trials, fit.model, point, fit.nuisances))
 
 
 @pytest.fixture(scope="module")
@@ -54,6 +60,18 @@ def test_a_baseline_that_has_left_what_is_known_is_begun_from_there_as_well() ->
     assert found is not None
     assert np.max(np.abs(found.point)) < 1.0
     assert found.rss < 1.5 * fit.rss < 0.1 * bent.rss
+
+
+def test_an_effect_is_begun_in_the_place_of_what_the_baseline_has_left_the_file_for() -> None:
+    """A rig that had stiffened by five deviations round a spring that hardens leaves that no room."""
+    true = {"k3_N_m3": 3e9}
+    runs = [Run(release=4e-3), Run(release=3e-3)]
+    fit = fitted(prepared(campaign({"nonlinear_stiffness": true}, runs, seed=4, duration=0.5)))
+    bent = fitted_at(fit, "stiffness_N_m", 1.7 * race.FAR)
+    hardening = scan(bent, [CATALOGUE["nonlinear_stiffness"]])[0][0]
+    beside_it, in_its_place = race._begun(bent, hardening), race._in_its_place(bent, hardening)
+    assert in_its_place.cost(bent.counted) < beside_it.cost(bent.counted) - 30.0
+    assert np.max(np.abs(in_its_place.point[: len(bent.point)])) < race.FAR
 
 
 def test_of_a_race_over_whole_recordings_each_effects_best_goes_on() -> None:
@@ -104,6 +122,7 @@ def test_probes_that_lie_apart_all_go_on(first: JointFit, monkeypatch: pytest.Mo
         return fit
 
     monkeypatch.setattr(race, "_begun", begun)
+    monkeypatch.setattr(race, "REPLACED", 0)
     monkeypatch.setattr(race, "_led_on", goes_on)
     race.screened(first, [masts, stiff], (0.3, 0.6, np.inf), None)
     names = [fit.model.ids[-1] for fit in seconds]
