@@ -103,10 +103,10 @@ def touches(chosen: Explanation, baseline: Explanation) -> bool:
     """Whether an explanation takes anything from the recordings in which the baseline leaves more than noise.
 
     What is named beside a misfit that it leaves as it is, is not what is missing. A drift may show in one alone that
-    was kept back, which the baseline has not bent round, and softening (bank 5508) in the others than the one loud
-    recording, more than which it took. Where the baseline leaves what noise of some colour may leave,
-    an offset that takes back what the baseline bent has nothing to take; nor where most pulls are explained, and one or
-    two lie in hollows of their own whatever is named.
+    was kept back, which the baseline has not bent round; softening (bank 5508) in all recordings but the one that is
+    loud. Where the baseline leaves what noise of some colour may leave, an offset that takes back what the baseline
+    bent has nothing to take; nor where most pulls are explained, and one or two lie in hollows of their own whatever is
+    named.
     """
     left, after = (
         np.concatenate([f.parts / [t.size for t in f.trials] for f in (e.fit, e.kept)]) for e in (baseline, chosen)

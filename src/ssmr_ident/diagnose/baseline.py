@@ -13,7 +13,7 @@ from ssmr_ident.compare.recorded import follow, radian
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.accept import CHANCE
 from ssmr_ident.diagnose.hollows import from_afar
-from ssmr_ident.diagnose.race import FAR
+from ssmr_ident.diagnose.race import far_off
 from ssmr_ident.diagnose.setup import Setup
 from ssmr_ident.diagnose.start import begin, pooled
 from ssmr_ident.identify.cell_noise import block_noises
@@ -163,11 +163,6 @@ def from_all_sides(fit: JointFit) -> list[JointFit]:
 
 def leaves_much(fit: JointFit) -> bool:
     return float(np.max(fit.parts / [t.size for t in fit.trials])) > LOUD
-
-
-def far_off(fit: JointFit) -> np.ndarray:
-    """Which coordinates of the physics have left what is known, (p,) bool."""
-    return np.abs(fit.point[: len(fit.model.physics)]) > FAR
 
 
 def bent(fit: JointFit) -> bool:

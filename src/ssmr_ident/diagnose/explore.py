@@ -10,9 +10,19 @@ import numpy as np
 
 from ssmr_ident.compare.recorded import follow
 from ssmr_ident.diagnose.along import begun_along, without_laws
-from ssmr_ident.diagnose.baseline import LAST, WIDE, bent, far_off, leaves_much
+from ssmr_ident.diagnose.baseline import LAST, WIDE, bent, leaves_much
 from ssmr_ident.diagnose.explain import from_what_is_known, in_its_place
-from ssmr_ident.diagnose.race import Progress, raced, ranked, run_on, screened, started, started_from_known, variants
+from ssmr_ident.diagnose.race import (
+    Progress,
+    far_off,
+    raced,
+    ranked,
+    run_on,
+    screened,
+    started,
+    started_from_known,
+    variants,
+)
 from ssmr_ident.diagnose.scan import Suspect, candidates, moves_beyond, out_of_reach, scan
 from ssmr_ident.identify.descent import LOUD, chatters, descend, slides
 from ssmr_ident.identify.horizons import led

@@ -35,6 +35,11 @@ HEATS = ((0, 1), (12, 3), (6, 4))
 the first horizon; the others are run on the second."""
 
 
+def far_off(fit: JointFit) -> np.ndarray:
+    """Which coordinates of the physics have left what is known, (p,) bool."""
+    return np.abs(fit.point[: len(fit.model.physics)]) > FAR
+
+
 def _each_form(ranked: Sequence[JointFit]) -> list[JointFit]:
     """Of every effect, in each formula, the fit that leaves least: a first step says little of where one ends."""
     best: dict[tuple[tuple[str, ...], ...], JointFit] = {}
@@ -190,15 +195,14 @@ def _from_what_is_known(fit: JointFit) -> JointFit | None:
     A baseline bends far round wheels that lift in one loud release, and where it is bent so they do not lift.
     """
     physics = len(fit.model.physics)
-    if float(np.max(np.abs(fit.point[:physics]), initial=0.0)) <= FAR:
+    if not far_off(fit).any():
         return None
     point = np.concatenate([np.zeros(physics), fit.point[physics:]])
     return descend(follow(fit.trials, fit.model, point), 2)
 
 
 def _in_its_place(first: JointFit, suspect: Suspect) -> JointFit:
-    far = np.abs(first.point[: len(first.model.physics)]) > FAR
-    return descend(in_its_place(first, suspect, far), HEATS[0][1])
+    return descend(in_its_place(first, suspect, far_off(first)), HEATS[0][1])
 
 
 def _begun(first: JointFit, suspect: Suspect) -> JointFit:
