@@ -126,7 +126,9 @@ def page(folder: Path) -> str:
         "How large an effect must be",
         "power.jsonl",
         "`bench_power.py`: the size from which 95 % are named right or in a tie, by a logistic fit over the sessions; "
-        "and the held-out error of the refitted baseline over the noise floor there.\n",
+        "and the held-out error of the refitted baseline over the noise floor there. A block that is dragged at one "
+        "speed shows one constant force, whose level the cell's zero takes: of a clip, a cable that gives little or "
+        "friction that falls only the jolt is left, which no two pulls have alike and which counts for nothing.\n",
         lambda rows: block(bench_power.report(rows)),
     )
     section(
