@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from bank import draw
 
+from ssmr_ident.diagnose import exported
 from ssmr_ident.diagnose.baseline import best_baseline
 from ssmr_ident.diagnose.sliding import with_law_of_sliding
 from ssmr_ident.identify.joint import Slopes, evaluate
@@ -70,3 +71,23 @@ def test_estimates_from_pulls_lie_within_what_is_said_of_them() -> None:
     rough, local = (np.abs(off) / np.sqrt(np.diag(scatter)[own]) for scatter in (scatter_of(fit), covariance(fit)))
     assert np.sqrt(np.mean(rough**2)) < 2.0
     assert np.sqrt(np.mean(local**2)) > 3.0
+
+
+@pytest.mark.parametrize(
+    ("effect", "name", "value", "left", "std"),
+    [
+        ("stribeck", "kinetic_share", 0.87, 30.0, 0.05),  # begun at 0.8 and 0.9
+        ("stribeck", "kinetic_share", 0.93, 30.0, 0.025),
+        ("stribeck", "kinetic_share", 0.99, 30.0, 0.025),
+        ("stribeck", "stribeck_velocity_m_s", 5e-4, 30.0, 1e-3),
+        ("stribeck", "kinetic_share", 0.87, 1.2, 0.0),  # teeth in step
+        ("stribeck", "exponent", 2.0, 30.0, 0.0),
+        ("cable_compliance", "K_cable_N_m", 1e5, 30.0, 0.0),
+    ],
+)
+def test_teeth_out_of_step_tell_no_more_than_what_they_were_begun_at(
+    effect: str, name: str, value: float, left: float, std: float
+) -> None:
+    trial = SimpleNamespace(searched=True, size=100)
+    fit = SimpleNamespace(trials=(trial,), parts=np.array([100.0 * left]))
+    assert exported._between(fit, effect, name, value) == pytest.approx(std)  # type: ignore[arg-type]

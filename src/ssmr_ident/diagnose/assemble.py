@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from ssmr_ident.compare.outcome import Prediction
-from ssmr_ident.core.parameter import ParameterSet
+from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.diagnose.accept import left_over
 from ssmr_ident.diagnose.diagnosis import MISSING, NOTHING, UNDETERMINED, Conflict, Diagnosis, NamedEffect, Tried, Worth
 from ssmr_ident.diagnose.discriminate import next_experiment
@@ -62,7 +62,9 @@ def assembled(outcome: Outcome, parameters: ParameterSet, everything: JointFit |
     training = worth(before_fit, after_fit, [t.name for t in base.fit.trials])
     heldout = worth(before_kept, after_kept, [t.name for t in base.kept.trials])
     conflicts = conflicting(outcome)
-    effects = _named(outcome, parameters) if named else ()
+    before_file = exported(base.fit, parameters)
+    best_file = exported(best.fit, parameters) if named else before_file
+    effects = _named(outcome, best_file.effects) if named else ()
     jolts: tuple[str, ...] = ()
     settled = without_jolts(base.fit, before_fit), without_jolts(base.kept, before_kept)
     if named:
@@ -88,7 +90,6 @@ def assembled(outcome: Outcome, parameters: ParameterSet, everything: JointFit |
         summary = undetermined(heldout, METRIC, names)
     places = located(base.fit, parameters, seed=seed) if verdict != NOTHING else ()
     advice = next_experiment(outcome.setup, *_apart(outcome)) if verdict != NOTHING else ""
-    after = exported(everything or best.fit, parameters)
     evidence = Evidence(
         overlays=overlays(heldout.recordings, before_kept, after_kept, heldout=True),
         maps=residual_maps(base.fit, best.fit if named else None),
@@ -106,8 +107,8 @@ def assembled(outcome: Outcome, parameters: ParameterSet, everything: JointFit |
         training=training,
         heldout=heldout,
         next_experiment=advice,
-        before=exported(base.fit, parameters),
-        after=after if named else exported(base.fit, parameters),
+        before=before_file,
+        after=exported(everything, parameters) if named and everything else best_file,
         summary=summary,
         notes=(*outcome.setup.notes, *jolts, *_elsewhere(free, base, conflicts), *_notes(best, free, heldout)),
         evidence=evidence,
@@ -150,9 +151,8 @@ def conflicting(outcome: Outcome) -> tuple[Conflict, ...]:
     return tuple(sorted(found, key=lambda c: -abs(c.sigmas)))
 
 
-def _named(outcome: Outcome, parameters: ParameterSet) -> tuple[NamedEffect, ...]:
+def _named(outcome: Outcome, fitted: Mapping[str, Mapping[str, Estimate]]) -> tuple[NamedEffect, ...]:
     best = outcome.chosen
-    fitted = exported(best.fit, parameters).effects
     share = shares(outcome.found)
     found = []
     for effect_id in best.fit.model.ids:
