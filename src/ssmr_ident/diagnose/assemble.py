@@ -119,12 +119,10 @@ def hidden_by_jolts(
     whole: Sequence[Worth], before: Sequence[Sequence[Prediction]], after: Sequence[Sequence[Prediction]]
 ) -> tuple[str, ...]:
     """Words where recordings, fitted or held out, are worse after, but for the jolts of cables better."""
-    calm = [worth(first, second, ()) for first, second in zip(before, after, strict=True)]
-    return tuple(
-        UNDER_JOLTS.format(name, quiet.before, quiet.after)
-        for name, loud, quiet in zip(("fitted", "held out"), whole, calm, strict=True)
-        if loud.after > loud.before and quiet.after < quiet.before
-    )
+    sets = zip(("fitted", "held out"), whole, before, after, strict=True)
+    worse = ((name, first, second) for name, loud, first, second in sets if loud.after > loud.before)
+    calm = ((name, worth(first, second, ())) for name, first, second in worse)
+    return tuple(UNDER_JOLTS.format(name, w.before, w.after) for name, w in calm if w.after < w.before)
 
 
 def _apart(outcome: Outcome) -> tuple[JointFit, list[JointFit]]:
