@@ -119,7 +119,8 @@ def test_what_lies_below_the_noise_does_not_speak_against_a_second_effect() -> N
             noise = random.standard_normal((len(values), size))
             return SimpleNamespace(
                 model=Model(()), point=np.zeros(0), parts=size * np.array(values), counted=np.full(len(values), 300.0),
-                trials=[trial] * len(values), residuals=[np.sqrt(v) * n for v, n in zip(values, noise, strict=True)],
+                states=0, trials=[trial] * len(values),
+                residuals=[np.sqrt(v) * n for v, n in zip(values, noise, strict=True)],
             )  # fmt: skip
 
         return Explanation(fit(parts), fit([kept]))  # type: ignore[arg-type]

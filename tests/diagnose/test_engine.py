@@ -12,6 +12,8 @@ from ssmr_ident.campaign import Campaign, Measurement
 from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.core.recording import Channel, Provenance, Recording
 from ssmr_ident.diagnose import engine
+from ssmr_ident.diagnose.setup import set_up
+from ssmr_ident.identify.joint import differentiate, evaluate
 from ssmr_ident.pipeline.diagnose import diagnose
 from ssmr_ident.session import Entry, Session
 
@@ -151,3 +153,20 @@ def test_a_law_of_no_determined_size_gives_way_to_the_next(monkeypatch):
     diagnose(rig(lambda x, v: 4.6e8 * x**3 + 220.0 * v * np.abs(v)))
     assert len(asked[0]) > 1
     assert asked[1] == asked[0] - {"+".join(laws[0])}
+
+
+@pytest.mark.parametrize(("moves", "searches"), [(engine.MOST_MOVES, 2), (0, 1)])
+def test_a_baseline_that_an_effect_led_to_a_better_place_is_searched_again(monkeypatch, moves, searches):
+    def displaced(trials, setup, parameters, best=engine.best_baseline):
+        fit, lengths = best(trials, setup, parameters)
+        return differentiate(evaluate(fit.trials, fit.model, fit.point + 0.02, fit.nuisances)), lengths
+
+    monkeypatch.setattr(engine, "best_baseline", displaced)
+    monkeypatch.setattr(engine, "MOST_MOVES", moves)
+    # as an effect does that has taken the motion's place
+    monkeypatch.setattr(engine, "significant", lambda fit: True)
+    session = rig(lambda x, v: 0.0 * x)
+    outcome = engine.examine(set_up(session, session.parameters), session.parameters)
+    assert outcome.chosen is outcome.baseline
+    assert outcome.baseline.fit.rss < 1.1 * outcome.baseline.fit.size
+    assert len(outcome.searches) == searches

@@ -7,7 +7,7 @@ import pytest
 from small_rigs import Run, campaign, fitted, prepared
 
 from ssmr_ident.diagnose import explore, race
-from ssmr_ident.diagnose.explain import beside
+from ssmr_ident.diagnose.explain import as_large_as_it_takes, beside
 from ssmr_ident.diagnose.scan import Suspect, scan
 from ssmr_ident.identify.descent import descend
 from ssmr_ident.identify.joint import JointFit, differentiate, evaluate
@@ -129,3 +129,20 @@ def test_probes_that_lie_apart_all_go_on(first: JointFit, monkeypatch: pytest.Mo
     assert names.count("flexible_mast") == len(masts)
     assert names.count("nonlinear_stiffness") == race.HEATS[1][0]
     assert len(set(map(id, seconds))) == len(seconds)
+
+
+def test_an_effect_is_begun_as_large_as_it_takes_and_in_units_of_that() -> None:
+    """A slope had promised a hundredth of the hardening that the rig has."""
+    runs = [Run(force=30.0), Run(force=20.0)]
+    setup = prepared(campaign({"nonlinear_stiffness": {"k3_N_m3": 1e9}}, runs, seed=4, duration=1.0))
+    linear = fitted(setup, iterations=0)
+    hint = {"k3_N_m3": 1e7}
+    grown = as_large_as_it_takes(linear, Suspect("nonlinear_stiffness", hint, {}, hint, 0.0, ("k3_N_m3",)))
+    found = grown.model.split(grown.point)[1]["nonlinear_stiffness"]["k3_N_m3"]
+    assert found == pytest.approx(1e9, rel=0.25)
+    assert grown.rss < 0.5 * linear.rss
+    assert grown.point[-1] == pytest.approx(1.0 / 3.0)
+    ended = race._enlarged(linear, Suspect("nonlinear_stiffness", hint, {}, hint, 0.0))
+    assert ended is not None
+    assert ended.model.split(ended.point)[1]["nonlinear_stiffness"]["k3_N_m3"] == pytest.approx(1e9, rel=0.005)
+    assert race._enlarged(linear, Suspect("quadratic_damping", {"d2_N_s2_m2": 1e-3}, {}, {}, 0.0)) is None

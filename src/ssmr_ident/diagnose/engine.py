@@ -21,7 +21,7 @@ from ssmr_ident.diagnose.accept import (
 from ssmr_ident.diagnose.baseline import alike_in, best_baseline, prepared, swings_alone, unsteady
 from ssmr_ident.diagnose.coupling import coupled
 from ssmr_ident.diagnose.explore import Search, search
-from ssmr_ident.diagnose.followed import all_explained, at_its_best, each_set_once, explained, joined
+from ssmr_ident.diagnose.followed import all_explained, at_its_best, contested, each_set_once, explained, joined
 from ssmr_ident.diagnose.pairs import backward, exchange, instead, partners_of, with_a_second
 from ssmr_ident.diagnose.polish import calmed, loud
 from ssmr_ident.diagnose.race import Progress
@@ -105,7 +105,7 @@ def _examined(setup: Setup, parameters: ParameterSet, progress: Progress | None)
         if chosen is not baseline and _cost(leader, chosen) > _cost(chosen, chosen) and not certain(leader, chosen):
             tried = joined(tried, new)
             break
-        leader = at_its_best(leader, new, kept, lengths)
+        leader = contested(at_its_best(leader, new, kept, lengths), new, kept, lengths)
         if chosen is not baseline and not setup.decoupled and mends(leader, chosen):
             # the first effect may have stood in for two
             partners = partners_of(leader, kept, setup.campaign.session.baseline, lengths, progress)

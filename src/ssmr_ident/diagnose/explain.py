@@ -88,10 +88,27 @@ def in_its_place(fit: JointFit, suspect: Suspect, far: Array) -> JointFit:
     """
     point = fit.point.copy()
     point[: len(far)][far] = 0.0
-    nearest = replace(fit, point=point)
-    tried = [replace(suspect, at=smaller(CATALOGUE[suspect.effect], suspect.at, share)) for share in GROWING]
-    begun = [evaluate(fit.trials, *with_suspect(nearest, one), fit.nuisances) for one in tried]
+    begun = _grown(replace(fit, point=point), suspect)
     return min(begun, key=lambda f: f.cost(fit.counted) if np.isfinite(f.rss) else np.inf)
+
+
+def as_large_as_it_takes(fit: JointFit, suspect: Suspect) -> JointFit:
+    """A suspect as large as leaves least squares beside a fit, however little of it a straight line promises.
+
+    The tires of a robot that hardens by far go, without hardening, ten times as far: what a slope there makes of the
+    effect is two hundredths of it.
+    """
+    grown = min(_grown(fit, suspect), key=lambda f: f.rss if np.isfinite(f.rss) else np.inf)
+    values = grown.model.split(grown.point)[1][suspect.effect]
+    # in units of what it is now, or a step of a descent is one of what the slope had made of it
+    at = {name: values[name] for name in suspect.at}
+    sizes = {name: abs(at[name]) for name in suspect.sizes}
+    return evaluate(fit.trials, *with_suspect(fit, replace(suspect, at=at, sizes=sizes)), fit.nuisances)
+
+
+def _grown(fit: JointFit, suspect: Suspect) -> list[JointFit]:
+    tried = [replace(suspect, at=smaller(CATALOGUE[suspect.effect], suspect.at, share)) for share in GROWING]
+    return [evaluate(fit.trials, *with_suspect(fit, one), fit.nuisances) for one in tried]
 
 
 def _held(fit: JointFit, suspect: Suspect, model: Model, point: Array) -> Model:

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ssmr_ident.diagnose.coloured import told_by
-from ssmr_ident.identify.joint import JointFit, acting
+from ssmr_ident.identify.joint import JointFit
 
 TIE = math.log(20.0)
 """Difference in log evidence (odds of 20 to 1) up to which explanations count as alike."""
@@ -54,8 +54,12 @@ class Explanation:
 
 
 def log_evidence(explanation: Explanation, best: Explanation) -> float:
-    """Up to a constant, in units of the best one's independent samples; kept recordings count as well."""
-    return from_recordings(explanation, best) - 0.5 * asked(explanation)
+    """Up to a constant, in units of the best one's independent samples; kept recordings count as well.
+
+    A state that recordings have under one explanation alone, as that of a mast at its release, takes half a unit by
+    chance (Akaike 1974).
+    """
+    return from_recordings(explanation, best) - 0.5 * (asked(explanation) + _states(explanation))
 
 
 def asked(explanation: Explanation) -> float:
@@ -80,19 +84,14 @@ def _from_samples(explanation: Explanation, counted: np.ndarray, further: np.nda
 
 
 def surplus(leader: Explanation, before: Explanation) -> float:
-    """Log evidence of one explanation over another, noise being as coloured as what the first one leaves.
-
-    A state that recordings have under one explanation alone, as that of a mast at its release, takes half a unit by
-    chance (Akaike 1974).
-    """
+    """Log evidence of one explanation over another, noise being as coloured as what the first one leaves."""
     counted, further = told_by(leader.fit, before.fit), told_by(leader.kept, before.kept)
     told = _from_samples(leader, counted, further) - _from_samples(before, counted, further)
-    return told - 0.5 * (asked(leader) - asked(before) + _own(leader) - _own(before))
+    return told - 0.5 * (asked(leader) - asked(before) + _states(leader) - _states(before))
 
 
-def _own(explanation: Explanation) -> int:
-    """Nuisances that act, of all recordings."""
-    return sum(len(acting(t, f.model)) for f in (explanation.fit, explanation.kept) for t in f.trials)
+def _states(explanation: Explanation) -> int:
+    return explanation.fit.states + explanation.kept.states
 
 
 def evidences(explanations: Sequence[Explanation]) -> dict[str, float]:

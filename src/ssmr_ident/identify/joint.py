@@ -121,6 +121,11 @@ class JointFit:
         """What the priors charge."""
         return float(self.point @ self.point) + sum(float(n @ n) for n in self.nuisances)
 
+    @property
+    def states(self) -> int:
+        """Nuisances that act, of all recordings."""
+        return sum(len(acting(trial, self.model)) for trial in self.trials)
+
     def cost(self, counted: Array) -> float:
         """Twice the negative log posterior, for given numbers of independent samples, (t,) float."""
         if not np.isfinite(self.rss):
