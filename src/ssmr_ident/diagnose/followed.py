@@ -13,8 +13,8 @@ from ssmr_ident.identify.joint import JointFit
 from ssmr_ident.identify.trials import Trial
 
 NEAR = 20.0
-"""Log evidence by which an explanation may be behind and still be led to its best: of 40 that came to the end of a
-search (bank 5801 to 5815 and 5622), being led on gained 14 and 22 for two, and less than 5 for the others."""
+"""Log evidence by which an explanation may be behind and still be led to its best: of 25 that came to the end of a
+search (short decays, bank 5801 to 5815), being led on gained 22 and 119 for two, and 5 or less for the others."""
 
 
 def explained(kept: Sequence[Trial], fit: JointFit, near: JointFit | None = None) -> Explanation:

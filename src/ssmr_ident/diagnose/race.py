@@ -75,7 +75,7 @@ def raced(base: JointFit, groups: Sequence[Sequence[Suspect]], progress: Progres
     for done, fit in enumerate(side_by_side(lambda start: start(), starts)):
         if progress:
             progress("trying effects", done, rounds)
-        field += [fit] if fit else []
+        field += [] if fit is None else [fit]
     for index, group in enumerate(groups if plain else ()):
         if progress:
             progress("trying effects", len(starts) + index, rounds)
@@ -195,7 +195,7 @@ def _enlarged(base: JointFit, suspect: Suspect) -> JointFit | None:
     left.
 
     Each recording in its own noise, not by plain squares: those of one that is 30,000 times its noise drew the mass 60
-    standard deviations away, and hardening ended at 530 where it comes to -30 from here.
+    standard deviations away, and hardening ended at a cost of 277 where four steps from here lead to -7.
     """
     grown = as_large_as_it_takes(base, suspect)
     return descend(grown, 4) if grown.rss < 0.5 * base.rss else None
