@@ -95,8 +95,8 @@ def in_its_place(fit: JointFit, suspect: Suspect, far: Array) -> JointFit:
 def as_large_as_it_takes(fit: JointFit, suspect: Suspect) -> JointFit:
     """A suspect as large as leaves least squares beside a fit, however little of it a straight line promises.
 
-    The tires of a robot that hardens by far go, without hardening, ten times as far: what a slope there makes of the
-    effect is two hundredths of it.
+    The tires of a robot that hardens by far go, without hardening, more than three times as far: what a slope there
+    makes of the effect is less than a hundredth of it.
     """
     grown = min(_grown(fit, suspect), key=lambda f: f.rss if np.isfinite(f.rss) else np.inf)
     values = grown.model.split(grown.point)[1][suspect.effect]
