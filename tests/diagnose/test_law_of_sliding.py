@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -9,10 +10,14 @@ import numpy as np
 import pytest
 
 from ssmr_ident.campaign import Campaign, Measurement
-from ssmr_ident.core.parameter import Estimate
+from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.core.recording import Channel, Provenance, Recording
-from ssmr_ident.diagnose.setup import set_up
+from ssmr_ident.diagnose import sliding
+from ssmr_ident.diagnose.baseline import best_baseline
+from ssmr_ident.diagnose.setup import Setup, set_up
 from ssmr_ident.diagnose.sliding import KEY, of_those_that_stand, unexplained, with_law_of_sliding
+from ssmr_ident.identify.joint import JointFit, differentiate, evaluate
+from ssmr_ident.identify.trials import Trial
 from ssmr_ident.physics.robot import SLIDING_SPEED, robot_from_parameters
 from ssmr_ident.session import Entry, Session
 from ssmr_ident.session.parameters_file import read_parameters
@@ -81,10 +86,36 @@ def test_a_pull_on_wheels_that_turn_has_no_say_where_neither_law_explains_it(
     decided = known.updated({KEY: Estimate(SLIDING_SPEED, None, "m/s", fixed=True)})
     laws = [(set_up(replace(campaign, parameters=p), p), p) for p in (known, decided)]
     assert strange.name in [trial.name for trial in laws[0][0].fitted]
-    assert of_those_that_stand(laws, {strange.name}) == cone
-    assert of_those_that_stand(laws, {m.name for m in campaign.measurements}) == 0  # none stands: the file's own law
+    fits = [best_baseline(setup.fitted, setup, p)[0] for setup, p in laws]
+    assert of_those_that_stand(laws, {strange.name}, fits) == cone
+    everything = {m.name for m in campaign.measurements}
+    assert of_those_that_stand(laws, everything, fits) == 0  # none stands: the file's own law
     if cone:  # it would have turned the answer round
-        assert of_those_that_stand(laws, set()) == 0
+        assert of_those_that_stand(laws, set(), fits) == 0
+
+
+def test_pulls_that_stand_are_fitted_from_where_all_have_ended_as_well(monkeypatch: pytest.MonkeyPatch) -> None:
+    """By themselves they may end in a hollow that the fit of all is out of."""
+    campaign = pulled(False, noise=0.05)
+    known = campaign.parameters
+    decided = known.updated({KEY: Estimate(SLIDING_SPEED, None, "m/s", fixed=True)})
+    laws = [(set_up(replace(campaign, parameters=p), p), p) for p in (known, decided)]
+    whole = [best_baseline(setup.fitted, setup, p)[0] for setup, p in laws]
+
+    def hollow(trials: Sequence[Trial], setup: Setup, p: ParameterSet) -> tuple[JointFit, tuple[float, ...]]:
+        fit = whole[0] if setup is laws[0][0] else whole[1]
+        point = fit.point.copy()
+        if fit is whole[0]:
+            point[[u.name for u in fit.model.physics].index("contact_shift_x_m")] -= 4.0
+        begun = evaluate(trials, fit.model, point, fit.nuisances[: len(trials)])
+        return differentiate(begun), ()
+
+    monkeypatch.setattr(sliding, "best_baseline", hollow)
+    monkeypatch.setattr(sliding, "crossed", list)
+    last = whole[0].trials[-1].name
+    assert of_those_that_stand(laws, {last}, whole) == 0
+    monkeypatch.setattr(sliding, "_better_of", lambda fit, _: fit)
+    assert of_those_that_stand(laws, {last}, whole) == 1
 
 
 def test_a_law_counts_as_unexplained_by_turning_wheels_alone() -> None:

@@ -17,7 +17,7 @@ from ssmr_ident.diagnose.evidence import Evidence
 from ssmr_ident.diagnose.exported import exported
 from ssmr_ident.diagnose.locate import located
 from ssmr_ident.diagnose.residual_map import residual_maps
-from ssmr_ident.diagnose.rivals import in_part
+from ssmr_ident.diagnose.rivals import MOST_RIVALS, in_part
 from ssmr_ident.diagnose.surface import surfaces
 from ssmr_ident.diagnose.weigh import Explanation, shares
 from ssmr_ident.diagnose.within import REACH, measure_of
@@ -29,9 +29,6 @@ METRIC = "nrmse_percent"
 
 CONFLICT = 2.0
 """Prior standard deviations from which a parameter counts as pulled away from what is known of it."""
-
-MOST_RIVALS = 2
-"""Explanations beside the best with which an answer is still one."""
 
 UNEXPLAINED = 1.6
 """Error over the noise floor from which something is missing even if nothing names it, where what is left follows the
@@ -110,7 +107,13 @@ def assembled(outcome: Outcome, parameters: ParameterSet, everything: JointFit |
         before=before_file,
         after=exported(everything, parameters) if named and everything else best_file,
         summary=summary,
-        notes=(*outcome.setup.notes, *jolts, *_elsewhere(free, base, conflicts), *_notes(best, free, heldout)),
+        notes=(
+            *outcome.setup.notes,
+            *jolts,
+            *_elsewhere(free, base, conflicts),
+            *_notes(best, free, heldout),
+            *_open(outcome),
+        ),
         evidence=evidence,
     )
 
@@ -126,7 +129,10 @@ def hidden_by_jolts(
 
 
 def _apart(outcome: Outcome) -> tuple[JointFit, list[JointFit]]:
-    """What the next recording has to tell apart: the answer and its rivals; without an answer, the nearest suspects."""
+    """What the next recording has to tell apart: the answer and its rivals, or what may be beside it; the nearest
+    suspects where there is no answer."""
+    if outcome.beside:
+        return outcome.beside[0].fit, [e.fit for e in outcome.beside[1:]]
     if outcome.chosen is not outcome.baseline:
         return outcome.chosen.fit, [r.fit for r in outcome.rivals]
     ranked = sorted(outcome.tried, key=lambda e: -outcome.found[e.id])
@@ -186,6 +192,20 @@ def _elsewhere(free: Explanation, within: Explanation, conflicts: tuple[Conflict
         f"the baseline shown is the best within {REACH:.0f} standard deviations of all that is known; as another "
         f"robot{off} it leaves {left:.3g} % on recordings never fitted: what is known of the robot gives the name, not "
         "the recordings alone",
+    )
+
+
+def _open(outcome: Outcome) -> tuple[str, ...]:
+    """What may be beside an effect that is certain, where that is open."""
+    if not outcome.beside:
+        return ()
+    own = set(outcome.chosen.fit.model.ids)
+    others = dict.fromkeys(name for e in outcome.beside for name in e.fit.model.ids if name not in own)
+    gain = outcome.found[outcome.beside[0].id] - outcome.found[outcome.chosen.id]
+    return (
+        f"{readable(outcome.chosen.id)} does not leave noise alone, and these recordings do not tell what is beside it "
+        f"(or how its law differs from the world's): with any of {', '.join(map(readable, others))} the fit is better "
+        f"by about {gain:.0f} units of log evidence",
     )
 
 

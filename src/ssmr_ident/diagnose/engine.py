@@ -25,7 +25,7 @@ from ssmr_ident.diagnose.followed import all_explained, at_its_best, contested, 
 from ssmr_ident.diagnose.pairs import backward, exchange, instead, partners_of, with_a_second
 from ssmr_ident.diagnose.polish import calmed, loud
 from ssmr_ident.diagnose.race import Progress
-from ssmr_ident.diagnose.rivals import rivals_of
+from ssmr_ident.diagnose.rivals import rivals_of, shared_by_all
 from ssmr_ident.diagnose.rotate import left_elsewhere, shown_by_all
 from ssmr_ident.diagnose.setup import Setup
 from ssmr_ident.diagnose.stripped import good_enough, outdone, shaken, stripped_of, way_home
@@ -58,6 +58,8 @@ class Outcome:
     found : dict of str to float
         Log evidence by id, the baseline's being 0.
     searches : tuple of Search
+    beside : tuple of Explanation
+        Pairs that all have the chosen effect, where the recordings leave open which is beside it; the likeliest first.
     """
 
     setup: Setup
@@ -67,6 +69,7 @@ class Outcome:
     rivals: tuple[Explanation, ...]
     found: dict[str, float]
     searches: tuple[Search, ...]
+    beside: tuple[Explanation, ...] = ()
 
 
 def examine(setup: Setup, parameters: ParameterSet, progress: Progress | None = None) -> Outcome:
@@ -167,9 +170,15 @@ def _examined(setup: Setup, parameters: ParameterSet, progress: Progress | None)
         return _examined(replace(setup, begun=(home.fit, lengths)), parameters, progress)
     if chosen is not baseline and not touches(chosen, baseline):
         chosen = baseline
-    rivals, tried = rivals_of(chosen, baseline, tried, searches[0].suspects if searches else (), kept)
-    found = evidences(tried)
-    return Outcome(setup, baseline, tuple(tried), chosen, tuple(rivals), found, tuple(searches))
+    suspects = searches[0].suspects if searches else ()
+    rivals, tried = rivals_of(chosen, baseline, tried, suspects, kept)
+    beside: tuple[Explanation, ...] = ()
+    core = shared_by_all(chosen, rivals, tried, baseline)
+    if core is not None:
+        shown = replace(core, fit=differentiate(core.fit))
+        beside, tried, chosen = (chosen, *rivals), [shown if e is core else e for e in tried], shown
+        rivals, tried = rivals_of(chosen, baseline, tried, suspects, kept)
+    return Outcome(setup, baseline, tuple(tried), chosen, tuple(rivals), evidences(tried), tuple(searches), beside)
 
 
 def informed(setup: Setup, parameters: ParameterSet) -> Setup:

@@ -12,6 +12,7 @@ from ssmr_ident.compare.recorded import follow
 from ssmr_ident.diagnose.along import begun_along, without_laws
 from ssmr_ident.diagnose.baseline import LAST, WIDE, bent, leaves_much
 from ssmr_ident.diagnose.explain import from_what_is_known, in_its_place
+from ssmr_ident.diagnose.from_known import begun_from_known
 from ssmr_ident.diagnose.race import (
     Progress,
     far_off,
@@ -141,9 +142,20 @@ def search(
         # paths, unless nothing holds the mass
         others = without_laws(groups) if begun else groups
         tried += _to_the_end(base, raced(base, others, progress), [np.inf], lengths, progress) if others else []
+    if loud and baseline != "sdof" and len(lengths) > 1 and not further and _astray(tried):
+        begun = begun_from_known(base, baseline, lengths[0], progress)
+        tried += _to_the_end(base, begun, lengths[1:], lengths, progress, starts=2)
     if progress:
         progress("refitting explanations", 1, 1)
     return Search(base, tuple(tuple(g) for g in groups), tuple(_each_once(tried)), tuple(lengths))
+
+
+def _astray(tried: Sequence[JointFit]) -> bool:
+    """Whether what explains most leaves far more than another formula would, in most recordings of decays."""
+    best = ranked(tried)[:1]
+    return not any(chatters(f) for f in best) and all(
+        float(np.median(f.parts / [t.size for t in f.trials])) > WIDE for f in best
+    )
 
 
 def _promises(suspect: Suspect) -> bool:
@@ -166,9 +178,10 @@ def _to_the_end(
     rest: Sequence[float],
     lengths: Sequence[float],
     progress: Progress | None,
+    starts: int = 1,
 ) -> list[JointFit]:
     """The first few of what was tried, refitted to all recordings at their full length."""
-    few = _finalists([fit for fit in rough if _close(rough, fit)], starts=2 if chatters(base) else 1)
+    few = _finalists([fit for fit in rough if _close(rough, fit)], starts=2 if chatters(base) else starts)
     return _led_on(base, few, rest, lengths, progress)
 
 

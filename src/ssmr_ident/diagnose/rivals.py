@@ -6,16 +6,20 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ssmr_ident.diagnose.accept import FORMULA, as_near, leaves_structure, left_over
+from ssmr_ident.diagnose.accept import FORMULA, as_near, leaves_structure, left_over, significant
 from ssmr_ident.diagnose.explain import beside
 from ssmr_ident.diagnose.followed import explained, joined
 from ssmr_ident.diagnose.scan import Suspect
+from ssmr_ident.diagnose.stripped import good_enough
 from ssmr_ident.diagnose.weigh import TIE, Explanation, evidences
 from ssmr_ident.diagnose.worth import BY_CHANCE, grows_with_motion, predictions
 from ssmr_ident.identify.descent import chatters, descend
 from ssmr_ident.identify.trials import Trial
 
 NONE_OF_THEM = "unlisted"
+
+MOST_RIVALS = 2
+"""Explanations beside the best with which an answer is still one."""
 
 STEPS = 10
 """Gauss-Newton steps of a law that had not come so far as to be refitted."""
@@ -56,6 +60,22 @@ def rivals_of(
     alike = [e for e in tried if e not in (chosen, baseline) and len(e.fit.model.ids) <= len(chosen.fit.model.ids)]
     rivals = [e for e in alike if found[chosen.id] - found[e.id] < TIE or e in none or (wrong and as_near(e, chosen))]
     return sorted(rivals, key=lambda e: -found[e.id]), tried
+
+
+def shared_by_all(
+    chosen: Explanation, rivals: Sequence[Explanation], tried: Sequence[Explanation], baseline: Explanation
+) -> Explanation | None:
+    """The one effect that a pair shares with more rivals than an answer may have, by itself.
+
+    Hardening by a law that is not the catalogue's leaves structure, of which four others take as much as the mast that
+    was first: which of them is beside it is open, and that there is hardening is not.
+    """
+    named = _named(chosen, baseline)
+    if len(named) != 2 or len(rivals) <= MOST_RIVALS:
+        return None
+    common = set(named).intersection(*(_named(rival, baseline) for rival in rivals))
+    alone = [e for e in tried if len(common) == 1 and _named(e, baseline) == tuple(common)]
+    return alone[0] if alone and good_enough(alone[0], baseline, True) and significant(alone[0].fit) else None
 
 
 def _none_of_them(

@@ -112,7 +112,7 @@ def scan(fit: JointFit, effects: Sequence[Effect], small: bool = False) -> list[
     """
     clear = Cleared(fit)
     found: dict[str, list[Suspect]] = {}
-    for suspect in side_by_side(lambda one: _suspect(fit, clear, *one, small), _probes(fit, effects)):
+    for suspect in side_by_side(lambda one: _suspect(fit, clear, *one, small), probes(fit, effects)):
         if suspect is not None:
             found.setdefault(suspect.effect, []).append(suspect)
     groups = [_few_places(CATALOGUE[name], sorted(some, key=lambda s: -s.gain)) for name, some in found.items()]
@@ -135,7 +135,7 @@ def out_of_reach(fit: JointFit, effects: Sequence[Effect], groups: Sequence[Sequ
     seen = {group[0].effect for group in groups}
     hidden = [effect for effect in effects if moves_beyond(effect) and effect.id not in seen]
     found: dict[str, list[Suspect]] = {}
-    for effect, at, held in _probes(fit, hidden):
+    for effect, at, held in probes(fit, hidden):
         found.setdefault(effect.id, []).append(Suspect(effect.id, at, held, {}, 0.0))
     return list(found.values())
 
@@ -145,7 +145,7 @@ def moves_beyond(effect: Effect) -> bool:
     return effect.sudden and Site.OUTPUT not in effect.acts
 
 
-def _probes(fit: JointFit, effects: Sequence[Effect]) -> list[tuple[Effect, dict[str, float], dict[str, float]]]:
+def probes(fit: JointFit, effects: Sequence[Effect]) -> list[tuple[Effect, dict[str, float], dict[str, float]]]:
     """Every probe of some effects in a session's own units, at each value of what is tried and not fitted."""
     sizes, found = sizes_of(fit), []
     for effect in effects:

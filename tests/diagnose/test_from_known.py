@@ -1,0 +1,62 @@
+"""Effects begun from what is known, where a baseline that is bent far leads none of them home."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from bank import draw
+
+from ssmr_ident.diagnose import explore, from_known
+from ssmr_ident.diagnose.baseline import best_baseline
+from ssmr_ident.diagnose.explore import search
+from ssmr_ident.diagnose.from_known import SHARES, begun_from_known
+from ssmr_ident.diagnose.setup import set_up
+from ssmr_ident.identify.joint import JointFit
+from ssmr_ident.physics.effects import CATALOGUE
+
+
+def _left(fit: JointFit) -> np.ndarray:
+    return np.array(fit.parts / [t.size for t in fit.trials])
+
+
+def test_tires_that_harden_by_swings_are_found_from_what_is_known(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Beside the bent baseline others come further on a first horizon, and stay far above the noise."""
+    drawn = draw("decays", "one", 2, "nonlinear_stiffness", 0.97, short=True)
+    assert set(drawn.truth.effects) == {"nonlinear_stiffness"}
+    setup = set_up(drawn.campaign, drawn.campaign.parameters)
+    base, lengths = best_baseline(setup.fitted, setup, drawn.campaign.parameters)
+    assert np.median(_left(base)) > 100.0
+    some = tuple(CATALOGUE[name] for name in ("nonlinear_stiffness", "quadratic_damping"))
+    monkeypatch.setattr(explore, "candidates", lambda *_: some[1:])
+    monkeypatch.setattr(from_known, "candidates", lambda *_: some)
+    found = {fit.model.ids: fit for fit in search(base, "rigid6", lengths).tried}
+    assert np.median(_left(found["quadratic_damping",])) > 4.0
+    assert np.median(_left(found["nonlinear_stiffness",])) < 1.5
+
+
+def test_where_an_effect_explains_the_recordings_nothing_is_begun_anew(monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn = draw("decays", "one", 3, "nonlinear_stiffness", 0.5, short=True)
+    setup = set_up(drawn.campaign, drawn.campaign.parameters)
+    base, lengths = best_baseline(setup.fitted, setup, drawn.campaign.parameters)
+    assert np.max(_left(base)) > 2.0
+    monkeypatch.setattr(explore, "candidates", lambda *_: (CATALOGUE["nonlinear_stiffness"],))
+    monkeypatch.setattr(explore, "begun_from_known", lambda *_: pytest.fail("begun anew"))
+    assert np.median(_left(search(base, "rigid6", lengths).tried[0])) < 2.0
+
+
+def test_every_formula_is_begun_at_sizes_far_apart_and_no_worse_than_it_began(monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn = draw("decays", "one", 3, "nonlinear_stiffness", 0.5, short=True)
+    setup = set_up(drawn.campaign, drawn.campaign.parameters)
+    base, lengths = best_baseline(setup.fitted, setup, drawn.campaign.parameters)
+    asked: list[tuple[int, int]] = []
+    some = tuple(CATALOGUE[name] for name in ("nonlinear_stiffness", "free_play"))
+    monkeypatch.setattr(from_known, "candidates", lambda *_: some)
+    found = begun_from_known(base, "rigid6", lengths[0], lambda _, done, of: asked.append((done, of)))
+    assert {fit.model.ids for fit in found} == {("nonlinear_stiffness",), ("free_play",)}
+    forms = {tuple(c.parameter.name for c in fit.model.free) for fit in found}
+    assert {("k3_N_m3",), ("knee_share", "knee_m")} <= forms
+    assert asked[-1][1] % len(SHARES) == 0
+    costs = [fit.cost(found[0].counted) for fit in found if len(fit.model.free) == len(found[0].model.free)]
+    assert costs == sorted(costs)
+    longest = max(float(t.times[-1] - t.times[0]) for t in found[0].trials)
+    assert longest <= lengths[0]
