@@ -39,6 +39,42 @@ def test_teeth_of_a_saw() -> None:
     assert "teeth" in str(pull)
 
 
+def _swung(force: np.ndarray, rebound: float) -> np.ndarray:
+    """What a body adds that swings after every drop: up within 15 samples, back within 30 more [N]."""
+    drops = np.flatnonzero(np.diff(force) < -10.0) + 1
+    swing = np.interp(np.arange(45), [0, 15, 45], [0.0, rebound, 0.0])
+    added = force.copy()
+    for drop in drops:
+        stretch = added[drop : drop + 45]
+        stretch += swing[: len(stretch)]
+    return added
+
+
+@pytest.mark.parametrize("rebound", [5.0, 12.0, 25.0])
+def test_a_body_that_swings_after_every_drop_hides_no_teeth(rebound: float) -> None:
+    rng = np.random.default_rng(0)
+    clean = saw(POSITION, 6000.0, 190.0, 150.0)
+    pull = take_apart(POSITION, _swung(clean, rebound) + 0.3 * rng.normal(size=len(POSITION)))
+    assert len(pull.teeth) == pytest.approx((600.0 - 190.0) // 40.0 + 1, abs=1)
+    assert np.mean([tooth.peak for tooth in pull.teeth]) == pytest.approx(190.0, rel=0.01)
+    assert np.mean([tooth.trough for tooth in pull.teeth]) == pytest.approx(150.0, rel=0.02)
+    assert all(tooth.slope == pytest.approx(6000.0, rel=0.3) for tooth in pull.teeth)
+
+
+@pytest.mark.parametrize("stiffness", [0.0, 1000.0])
+def test_drops_without_a_rise_as_steep_as_the_first_are_no_teeth(stiffness: float) -> None:
+    """The rebound alone is steep: what follows it stays level, or rises as no spring that loads the contact does."""
+    rng = np.random.default_rng(4)
+    rising = np.minimum(6000.0 * POSITION, 190.0)
+    sliding = POSITION > 190.0 / 6000.0
+    after = saw(POSITION[sliding] - POSITION[sliding][0], stiffness or 1e-9, 20.0, 0.0)
+    steps = np.where(np.arange(sliding.sum()) // 600 % 2, 20.0, 0.0) if not stiffness else after
+    force = rising.copy()
+    force[sliding] = 170.0 + steps
+    pull = take_apart(POSITION, _swung(force, 12.0) + 0.3 * rng.normal(size=len(POSITION)))
+    assert not pull.teeth
+
+
 def test_slope_intervals_cover() -> None:
     rng = np.random.default_rng(1)
     misses = []

@@ -6,6 +6,7 @@ that loads the contact is the same. A plateau that wanders (a rough or worn surf
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -19,6 +20,9 @@ Array = np.ndarray
 
 FEWEST_TEETH = 3
 """Drops needed for a claim: one is a bump, two may be chance."""
+
+FLAT, STEEP = 0.4, 2.5
+"""Slopes over the first rise's between which a rise is about as steep."""
 
 
 @dataclass(frozen=True)
@@ -183,7 +187,10 @@ def _teeth(ramps: tuple[Ramp, ...], first: Ramp, noise: float, position: Array, 
     # A stretch that falls faster than the spring rises is the letting go itself.
     steady = [ramp for ramp in after if ramp.slope > -first.slope and ramp.samples >= 4]
     found = []
-    for before, following in pairwise(steady):
+    for index, before in enumerate(steady[:-1]):
+        if before.slope > STEEP * first.slope:
+            continue  # a rebound, from which the force does not let go but swings back
+        following = steady[index + 1]
         begin, end = max(before.last - 2, 0), min(following.first + 3, len(force))
         gap = force[begin:end]
         # A drop of one sample still makes a stretch of three, which takes samples off its neighbours: both lines
@@ -191,15 +198,33 @@ def _teeth(ramps: tuple[Ramp, ...], first: Ramp, noise: float, position: Array, 
         fall = begin + int(np.argmin(np.diff(gap)))
         at = float(position[fall] + position[fall + 1]) / 2
         peak = before.force_end + before.slope * (at - before.x_end)
-        trough = following.force_start + following.slope * (at - following.x_start)
         peak = float(np.clip(peak, np.max(gap) - 2 * noise, np.max(gap) + 2 * noise))
-        # no upper limit here: a single low sample is the body's swing, not the friction it grips again at
-        trough = max(trough, float(np.min(gap)) - 2 * noise)
-        grips = 0.4 * first.slope < following.slope < 2.5 * first.slope
         # 2 % of the level: below it a tooth says nothing about two friction coefficients.
-        if before.force_end - following.force_start > max(5 * noise, 0.02 * abs(peak)) and grips:
-            found.append(Tooth(before.last, peak, trough, following.slope, following.slope_std))
+        least = max(5 * noise, 0.02 * abs(peak))
+        rise = _rise_after(steady[index:], first, least)
+        if rise is not None:
+            trough = rise.force_start + rise.slope * (at - rise.x_start)
+            # no upper limit here: a single low sample is the body's swing, not the friction it grips again at
+            trough = max(trough, float(np.min(gap)) - 2 * noise)
+            found.append(Tooth(before.last, peak, trough, rise.slope, rise.slope_std))
     return tuple(found)
+
+
+def _rise_after(ramps: Sequence[Ramp], first: Ramp, least: float) -> Ramp | None:
+    """The rise about as steep as the first one that follows a drop by ``least`` [N] behind the first of some stretches.
+
+    The body may swing in between: what is stretched as it grips again rebounds four times as fast, for a tenth of a
+    second. Then the rise lasts longer than what it is behind of, and begins before the next drop.
+    """
+    before = ramps[0]
+    for last, ramp in pairwise(ramps):
+        falls = last.force_end - ramp.force_start > least and last.slope < STEEP * first.slope
+        if (last is before) != falls:
+            return None
+        grips = FLAT * first.slope < ramp.slope < STEEP * first.slope and before.force_end - ramp.force_start > least
+        if grips and (last is before or ramp.samples > ramp.first - before.last):
+            return ramp
+    return None
 
 
 def _sliding_start(ramps: tuple[Ramp, ...], first: Ramp, noise: float) -> int:
