@@ -18,7 +18,7 @@ from ssmr_ident.diagnose.accept import (
     touches,
     within_file,
 )
-from ssmr_ident.diagnose.baseline import alike_in, best_baseline, prepared, swings_alone, unsteady
+from ssmr_ident.diagnose.baseline import alike_in, begun_again, best_baseline, prepared, swings_alone, unsteady
 from ssmr_ident.diagnose.coupling import coupled
 from ssmr_ident.diagnose.explore import Search, search
 from ssmr_ident.diagnose.followed import all_explained, at_its_best, contested, each_set_once, explained, joined
@@ -170,6 +170,10 @@ def _examined(setup: Setup, parameters: ParameterSet, progress: Progress | None)
         return _examined(replace(setup, begun=(home.fit, lengths)), parameters, progress)
     if chosen is not baseline and not touches(chosen, baseline):
         chosen = baseline
+    if chosen is baseline and not setup.decoupled:
+        fit = begun_again(baseline.fit, lengths)
+        if fit is not None and certain(explained(kept, differentiate(fit), baseline.kept), baseline):
+            return _examined(replace(setup, begun=(differentiate(fit), lengths)), parameters, progress)
     suspects = searches[0].suspects if searches else ()
     rivals, tried = rivals_of(chosen, baseline, tried, suspects, kept)
     beside: tuple[Explanation, ...] = ()
