@@ -21,11 +21,14 @@ NONE, HARDENING, MAST = _named(), _named("nonlinear_stiffness"), _named("flexibl
 PAIR = _named("nonlinear_stiffness", "flexible_mast")
 OTHERS = [_named("nonlinear_stiffness", name) for name in ("quadratic_damping", "sensor_bandwidth")]
 TURNED = _named("wheel_lift", "nonlinear_stiffness")
-TRIED = [NONE, HARDENING, MAST, PAIR, *OTHERS, TURNED]
+OTHER = _named("motor_belt", "flexible_mast")
+FOUND = {HARDENING.id: 100.0, MAST.id: 20.0, PAIR.id: 180.4, OTHER.id: 110.0}
+TRIED = [OTHER, NONE, HARDENING, MAST, PAIR, *OTHERS, TURNED]
 
 
 @pytest.fixture(autouse=True)
 def good(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(rivals, "evidences", lambda tried: {e.id: FOUND.get(e.id, 0.0) for e in tried})
     monkeypatch.setattr(rivals, "good_enough", lambda one, before, first: one is HARDENING and before is NONE and first)
     monkeypatch.setattr(rivals, "significant", lambda fit: fit is HARDENING.fit)
 
@@ -34,10 +37,16 @@ def test_an_effect_that_all_pairs_have_is_named_alone() -> None:
     assert shared_by_all(PAIR, [*OTHERS, TURNED], TRIED, NONE) is HARDENING
 
 
+@pytest.mark.parametrize("behind", [MAST, OTHER], ids=["a single effect", "a pair"])
+def test_what_is_behind_the_effect_alone_says_nothing_against_it(behind: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(FOUND, OTHER.id, 90.0)
+    assert shared_by_all(PAIR, [*OTHERS, TURNED, behind], TRIED, NONE) is HARDENING
+
+
 @pytest.mark.parametrize(
     "pairs",
-    [OTHERS, [*OTHERS, MAST], [*OTHERS, _named("motor_belt", "flexible_mast")]],
-    ids=["few enough to be an answer", "a single effect without it", "a pair without it"],
+    [OTHERS, [*OTHERS, OTHER]],
+    ids=["few enough to be an answer", "a pair without it that is ahead of it"],
 )
 def test_nothing_is_named_alone_where_pairs_are_an_answer_or_share_nothing(pairs: list[Any]) -> None:
     assert shared_by_all(PAIR, pairs, TRIED, NONE) is None

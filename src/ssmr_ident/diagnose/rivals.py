@@ -65,17 +65,24 @@ def rivals_of(
 def shared_by_all(
     chosen: Explanation, rivals: Sequence[Explanation], tried: Sequence[Explanation], baseline: Explanation
 ) -> Explanation | None:
-    """The one effect that a pair shares with more rivals than an answer may have, by itself.
+    """The one effect of a pair, by itself, that is in all its rivals, where they are more than an answer may have.
 
-    Hardening by a law that is not the catalogue's leaves structure, of which four others take as much as the mast that
-    was first: which of them is beside it is open, and that there is hardening is not.
+    A law in another formula than the catalogue's leaves structure, of which a third and a fourth effect take as much as
+    the second: which of them is beside the first is open, and the first is not. A rival without it that is behind the
+    effect alone, for all that it has two, is none of it.
     """
     named = _named(chosen, baseline)
     if len(named) != 2 or len(rivals) <= MOST_RIVALS:
         return None
-    common = set(named).intersection(*(_named(rival, baseline) for rival in rivals))
-    alone = [e for e in tried if len(common) == 1 and _named(e, baseline) == tuple(common)]
-    return alone[0] if alone and good_enough(alone[0], baseline, True) and significant(alone[0].fit) else None
+    found, singles = evidences(tried), {_named(e, baseline)[0]: e for e in tried if len(_named(e, baseline)) == 1}
+    shared = [
+        singles[name]
+        for name in named
+        if name in singles
+        and all(name in _named(rival, baseline) or found[rival.id] < found[singles[name].id] for rival in rivals)
+    ]
+    certain = [e for e in shared if good_enough(e, baseline, True) and significant(e.fit)]
+    return certain[0] if len(certain) == 1 else None
 
 
 def _none_of_them(

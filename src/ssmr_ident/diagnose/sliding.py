@@ -92,7 +92,8 @@ def of_those_that_stand(
 def _better_of(fit: JointFit, whole: JointFit) -> JointFit:
     """A fit of some recordings, or one that begins where a fit of more than those has ended."""
     own = {trial.name: nuisance for trial, nuisance in zip(whole.trials, whole.nuisances, strict=True)}
-    other = descend(evaluate(fit.trials, fit.model, whole.point, [own[t.name] for t in fit.trials]), LAST)
+    begun = evaluate(fit.trials, fit.model, whole.point, [own[t.name] for t in fit.trials])
+    other = descend(begun, LAST) if np.isfinite(begun.rss) else fit
     return differentiate(other) if other.cost(fit.counted) < fit.cost(fit.counted) else fit
 
 
