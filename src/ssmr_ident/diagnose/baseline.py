@@ -129,7 +129,7 @@ def begun_again(fit: JointFit, lengths: Sequence[float]) -> JointFit | None:
     """
     if slides(fit) or len(lengths) == 1 or not bent(fit) or not leaves_much(fit):
         return None
-    return called_back(led(fit.trials, fit.model, np.zeros_like(fit.point), lengths, LAST))
+    return differentiate(called_back(led(fit.trials, fit.model, np.zeros_like(fit.point), lengths, LAST)))
 
 
 def led_out(fit: JointFit) -> JointFit:

@@ -171,9 +171,9 @@ def _examined(setup: Setup, parameters: ParameterSet, progress: Progress | None)
     if chosen is not baseline and not touches(chosen, baseline):
         chosen = baseline
     if chosen is baseline and not setup.decoupled:
-        fit = begun_again(baseline.fit, lengths)
-        if fit is not None and certain(explained(kept, differentiate(fit), baseline.kept), baseline):
-            return _examined(replace(setup, begun=(differentiate(fit), lengths)), parameters, progress)
+        again = begun_again(baseline.fit, lengths)
+        if again is not None and certain(explained(kept, again, baseline.kept), baseline):
+            return _examined(replace(setup, begun=(again, lengths)), parameters, progress)
     suspects = searches[0].suspects if searches else ()
     rivals, tried = rivals_of(chosen, baseline, tried, suspects, kept)
     beside: tuple[Explanation, ...] = ()
