@@ -1,8 +1,8 @@
 """Effects begun beside all else as it is known, at sizes far apart: where none beside a bent baseline has led home.
 
 A baseline that leaves a thousand times the noise is bent round nothing that is there, and its slopes are those of
-another robot. Tires that harden by so much that their releases lie whole swings off (bank 5563) ended as a loop or a
-soft mast, at 8 to 150 times the noise; of six sizes of hardening beside what is known two end at the noise.
+another robot. Tires that harden by so much that their releases lie whole swings off (bank 5563) ended as a loop
+that left up to 285 times the noise's variance; of six sizes of hardening beside what is known two end at the noise.
 """
 
 from __future__ import annotations
