@@ -44,7 +44,7 @@ def test_where_an_effect_explains_the_recordings_nothing_is_begun_anew(monkeypat
     assert np.median(_left(search(base, "rigid6", lengths).tried[0])) < 2.0
 
 
-def test_every_formula_is_begun_at_sizes_far_apart_and_no_worse_than_it_began(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_every_formula_is_begun_at_sizes_far_apart_on_the_first_horizon(monkeypatch: pytest.MonkeyPatch) -> None:
     drawn = draw("decays", "one", 3, "nonlinear_stiffness", 0.5, short=True)
     setup = set_up(drawn.campaign, drawn.campaign.parameters)
     base, lengths = best_baseline(setup.fitted, setup, drawn.campaign.parameters)

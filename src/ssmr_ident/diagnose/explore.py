@@ -151,7 +151,8 @@ def search(
 
 
 def _astray(tried: Sequence[JointFit]) -> bool:
-    """Whether what explains most leaves far more than another formula would, in most recordings of decays."""
+    """Whether what explains most leaves far more than another formula would, in most recordings of decays; so does
+    nothing at all."""
     best = ranked(tried)[:1]
     return not any(chatters(f) for f in best) and all(
         float(np.median(f.parts / [t.size for t in f.trials])) > WIDE for f in best
