@@ -136,6 +136,11 @@ def mends(pair: Explanation, single: Explanation) -> bool:
     return most < SECOND or (most < SETTLED and settles(pair, single))
 
 
+def halves(pair: Explanation, single: Explanation) -> bool:
+    """Whether a pair leaves far less than any formula of its first effect would, mean over all recordings."""
+    return float(np.exp(np.mean(_changes(pair, single)))) < STRONG
+
+
 def settles(pair: Explanation, single: Explanation) -> bool:
     """Whether what a single effect leaves follows the motion, and what a pair leaves does not. Not in pulls."""
     if slides(single.fit):

@@ -11,7 +11,9 @@ from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.accept import (
     FORMULA,
     certain,
+    halves,
     leading,
+    leaves_structure,
     left_over,
     mends,
     significant,
@@ -91,7 +93,8 @@ def _examined(setup: Setup, parameters: ParameterSet, progress: Progress | None)
     rounds, moves, exchanged = MOST_EFFECTS, MOST_MOVES, False
     while rounds:
         rounds -= 1
-        if chosen is not baseline and left_over(chosen, baseline) < FORMULA:
+        small = chosen is not baseline and left_over(chosen, baseline) < FORMULA
+        if small and not leaves_structure(chosen):
             break
         if setup.decoupled and chosen is baseline:
             new = [coupled(setup, parameters, kept)]
@@ -109,6 +112,8 @@ def _examined(setup: Setup, parameters: ParameterSet, progress: Progress | None)
             tried = joined(tried, new)
             break
         leader = contested(at_its_best(leader, new, kept, lengths), new, kept, lengths)
+        if small and not halves(leader, chosen):
+            break
         if chosen is not baseline and not setup.decoupled and mends(leader, chosen):
             # the first effect may have stood in for two
             partners = partners_of(leader, kept, setup.campaign.session.baseline, lengths, progress)

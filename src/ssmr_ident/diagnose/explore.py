@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -13,6 +13,7 @@ from ssmr_ident.diagnose.along import begun_along, without_laws
 from ssmr_ident.diagnose.baseline import LAST, WIDE, bent, leaves_much
 from ssmr_ident.diagnose.explain import from_what_is_known, in_its_place
 from ssmr_ident.diagnose.from_known import begun_from_known
+from ssmr_ident.diagnose.loose import begun_loose
 from ssmr_ident.diagnose.race import (
     Progress,
     far_off,
@@ -124,14 +125,19 @@ def search(
         beyond = [
             g for g in groups if (alone or elsewhere) and moves_beyond(CATALOGUE[g[0].effect]) and len(lengths) > 1
         ]
-        same = [g[0] for g in groups if alone and g[0].own < SAME and not CATALOGUE[g[0].effect].sudden]
+        pulls = slides(base)
+        same = [g[0] for g in groups if alone and (pulls or g[0].own < SAME) and not CATALOGUE[g[0].effect].sudden]
         # a straight line from a sensor that is quick enough points nowhere, and on a rig it costs little not to ask it
         cheap = [g for g in groups if chosen and baseline == "sdof" and CATALOGUE[g[0].effect].sudden]
         starts = [partial(started, base, s) for group in _each_group(chosen, beyond, cheap) for s in variants(group)]
         starts += [partial(from_what_is_known, base, s, lengths) for group in beyond for s in variants(group)]
-        starts += [partial(started_from_known, base, group[0], slides(base)) for group in chosen if alone]
+        starts += [partial(started_from_known, base, group[0], pulls) for group in chosen if alone]
         starts += [partial(_instead, base, s) for s in same]
+        starts += begun_loose(base, asked) if pulls else []
         rough = run_on(list(side_by_side(lambda begin: begin(), starts)))
+        if pulls and rough and CATALOGUE[rough[0].model.ids[-1]].loosens:
+            known = begun_loose(replace(base, point=np.zeros_like(base.point)), asked)
+            rough = ranked([*rough, *run_on(list(side_by_side(lambda begin: begin(), known)))])
     tried += _to_the_end(base, rough, rest, lengths, progress)
     if loud and len(lengths) > 1 and not chatters(base) and field and _promises(field[0][0]):
         # what grows while a recording lasts hardly shows on a first horizon, and is left behind there
@@ -147,7 +153,9 @@ def search(
         tried += _to_the_end(base, begun, lengths[1:], lengths, progress, starts=2)
     if progress:
         progress("refitting explanations", 1, 1)
-    return Search(base, tuple(tuple(g) for g in groups), tuple(_each_once(tried)), tuple(lengths))
+    # of two fits of pulls the recordings kept back decide
+    ends = tried if slides(base) else _each_once(tried)
+    return Search(base, tuple(tuple(g) for g in groups), tuple(ends), tuple(lengths))
 
 
 def _astray(tried: Sequence[JointFit]) -> bool:
@@ -182,7 +190,7 @@ def _to_the_end(
     starts: int = 1,
 ) -> list[JointFit]:
     """The first few of what was tried, refitted to all recordings at their full length."""
-    few = _finalists([fit for fit in rough if _close(rough, fit)], starts=2 if chatters(base) else starts)
+    few = _finalists([fit for fit in rough if _close(rough, fit)], starts=2 if slides(base) else starts)
     return _led_on(base, few, rest, lengths, progress)
 
 

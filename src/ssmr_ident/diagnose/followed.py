@@ -8,7 +8,7 @@ import numpy as np
 
 from ssmr_ident.compare.recorded import follow
 from ssmr_ident.diagnose.polish import polish, turned
-from ssmr_ident.diagnose.weigh import Explanation, evidences
+from ssmr_ident.diagnose.weigh import Explanation, evidences, log_evidence
 from ssmr_ident.identify.joint import JointFit
 from ssmr_ident.identify.trials import Trial
 
@@ -26,8 +26,15 @@ def explained(kept: Sequence[Trial], fit: JointFit, near: JointFit | None = None
 
 
 def all_explained(kept: Sequence[Trial], fits: Sequence[JointFit], near: JointFit) -> list[Explanation]:
-    """Fits as explanations, but for those that make no robot of the recordings kept back."""
-    return [e for e in (explained(kept, fit, near) for fit in fits) if _followable(e)]
+    """Fits as explanations, but for those that make no robot of the recordings kept back.
+
+    Of two fits of one effect, which pulls may end in, the one that all recordings say most for.
+    """
+    found = [e for e in (explained(kept, fit, near) for fit in fits) if _followable(e)]
+    best: dict[str, Explanation] = {}
+    for explanation in sorted(found, key=lambda e: -log_evidence(e, found[0])):
+        best.setdefault(explanation.id, explanation)
+    return [e for e in found if e is best[e.id]]
 
 
 def _followable(explanation: Explanation) -> bool:

@@ -12,8 +12,9 @@ import numpy as np
 from ssmr_ident.compare.recorded import follow
 from ssmr_ident.diagnose.explain import as_large_as_it_takes, beside, in_its_place, with_suspect
 from ssmr_ident.diagnose.gathered import gathered
+from ssmr_ident.diagnose.loose import begun_loose
 from ssmr_ident.diagnose.scan import Suspect, both_ways
-from ssmr_ident.identify.descent import chatters, descend
+from ssmr_ident.identify.descent import chatters, descend, slides
 from ssmr_ident.identify.horizons import STEPS, led
 from ssmr_ident.identify.joint import JointFit, evaluate
 from ssmr_ident.identify.parallel import side_by_side
@@ -70,6 +71,7 @@ def raced(base: JointFit, groups: Sequence[Sequence[Suspect]], progress: Progres
     starts: list[Callable[[], JointFit | None]] = [partial(started, base, way, plain) for way in ways]
     starts += [partial(started_from_known, base, way, plain) for way in ways] if plain else []
     starts += [partial(_enlarged, base, way) for way in ways] if plain else []
+    starts += begun_loose(base, [CATALOGUE[group[0].effect] for group in groups]) if plain else []
     field: list[JointFit] = []
     rounds = len(starts) + (len(groups) if plain else 0)
     for done, fit in enumerate(side_by_side(lambda start: start(), starts)):
@@ -93,13 +95,15 @@ def raced(base: JointFit, groups: Sequence[Sequence[Suspect]], progress: Progres
 
 
 def run_on(started: Sequence[JointFit]) -> list[JointFit]:
-    """The best fit of each effect a few steps on; the most likely first.
+    """The best fit of each effect a few steps on, two of what was begun at many sizes; the most likely first.
 
     Two steps from a start say little: relaxation with two branches was then 80 ahead of none and a slow sensor 330,
     and they ended 940 and 370 ahead.
     """
     kept, steps = HEATS[-1]
     field = _few_unlisted(_each_form(ranked(started)))[:kept]
+    if any(slides(fit) for fit in field):
+        field += _each_form([f for f in ranked(started) if f not in field and CATALOGUE[f.model.ids[-1]].loosens])
     return ranked(list(side_by_side(lambda fit: descend(fit, steps), field)))
 
 
