@@ -12,7 +12,7 @@ from small_rigs import Run, campaign, fitted, prepared
 from ssmr_ident.diagnose.accept import leading
 from ssmr_ident.diagnose.baseline import best_baseline
 from ssmr_ident.diagnose.explain import beside
-from ssmr_ident.diagnose.followed import NEAR, contested, explained
+from ssmr_ident.diagnose.followed import NEAR, all_explained, contested, explained
 from ssmr_ident.diagnose.race import ranked
 from ssmr_ident.diagnose.scan import Suspect
 from ssmr_ident.diagnose.setup import set_up
@@ -55,6 +55,25 @@ def test_what_is_close_behind_is_led_to_its_best_before_it_is_turned_down(behind
     found = contested(leading(damping, new), new, base.trials, LENGTHS)
     assert found.id == ("nonlinear_stiffness" if wins else "quadratic_damping")
     assert found in new
+
+
+@pytest.mark.parametrize("order", [(0, 1), (1, 0)])
+def test_of_two_fits_of_one_effect_that_which_predicts_what_was_kept_back_is_an_explanation(
+    order: tuple[int, int],
+) -> None:
+    """The right hardening, and a softening that a quiet recording hardly tells from it."""
+    setup = prepared(campaign({"nonlinear_stiffness": {"k3_N_m3": 2e8}}, [Run(force=60.0), Run(force=5.0)], seed=4))
+    base = fitted(setup)
+    loud, quiet = base.trials
+    own = evaluate([quiet], base.model, base.point, base.nuisances[1:])
+    suspect = Suspect("nonlinear_stiffness", {"k3_N_m3": 2e8}, {}, {"k3_N_m3": 2e8}, 0.0)
+    right = descend(beside(own, suspect), 10)
+    wrong = descend(beside(own, replace(suspect, at={"k3_N_m3": -2e8})), 0)
+    both = [right, wrong]
+    found = all_explained(
+        [loud], [both[k] for k in order], evaluate([loud], base.model, base.point, base.nuisances[:1])
+    )
+    assert [explanation.fit for explanation in found] == [right]
 
 
 def test_states_that_one_explanation_alone_has_count_against_it() -> None:
