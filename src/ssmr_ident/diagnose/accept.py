@@ -36,7 +36,8 @@ first one leaves more."""
 
 UNHARMED, STRONG = 1.02, 0.5
 """Where no recording kept back shows an effect: the variance that it may add to those that it leaves unexplained, and
-the share that the first one must leave in the recording that shows it best, or at the median."""
+the share that the first one must leave in the recording that shows it best, or at the median; and a second effect,
+mean over all, beside a first one that leaves less than ``FORMULA``."""
 
 UNTOUCHED = 0.9
 """Share of the variance, mean over the recordings in which the baseline leaves more than noise, beyond which an answer

@@ -153,7 +153,7 @@ def search(
         tried += _to_the_end(base, begun, lengths[1:], lengths, progress, starts=2)
     if progress:
         progress("refitting explanations", 1, 1)
-    # of two fits of pulls the recordings kept back decide
+    # of two fits of pulls all recordings decide, those kept back as well
     ends = tried if slides(base) else _each_once(tried)
     return Search(base, tuple(tuple(g) for g in groups), tuple(ends), tuple(lengths))
 
