@@ -7,9 +7,10 @@ import pytest
 from made_pulls import made_pulls
 
 from ssmr_ident.core.parameter import ParameterSet
+from ssmr_ident.diagnose.explain import in_its_place
 from ssmr_ident.diagnose.exported import exported
-from ssmr_ident.diagnose.gathered import gathered
-from ssmr_ident.diagnose.race import started
+from ssmr_ident.diagnose.gathered import OFFSET, gathered
+from ssmr_ident.diagnose.race import far_off, started
 from ssmr_ident.diagnose.scan import Suspect
 from ssmr_ident.diagnose.setup import Setup
 from ssmr_ident.identify.joint import JointFit, differentiate, evaluate
@@ -59,18 +60,32 @@ def test_it_is_known_no_better_than_the_contacts(pulled: tuple[Setup, ParameterS
     assert std >= known["contact_points_m"].std / np.sqrt(2.0)
 
 
-def test_an_offset_begun_beside_contacts_that_are_bent_takes_their_place() -> None:
+@pytest.fixture(scope="module")
+def bent() -> JointFit:
     """A centre of mass 36 mm off, which a baseline follows with its contacts at seven deviations."""
     setup, _ = made_pulls(PULLS[:1], {"com_offset": {"offset_x_m": 0.0, "offset_y_m": -0.036}}, 3)
-    unknown = next(u for u in setup.model.physics if u.name == "contact_shift_y_m")
-    point = np.zeros(len(setup.model.physics))
-    point[setup.model.physics.index(unknown)] = unknown.scaled(0.036)
+    names = [u.name for u in setup.model.physics]
+    point = np.zeros(len(names))
+    k = names.index("contact_shift_y_m")
+    point[k] = setup.model.physics[k].scaled(0.036)
     values, effects = setup.model.split(point)
     trials = (*setup.fitted, *setup.kept)
-    bent = evaluate(trials, setup.model, point, [t.begin(values, effects) for t in trials])
-    offset = Suspect("com_offset", {"offset_x_m": 0.0, "offset_y_m": -5e-4}, {}, SIZES, 0.0)
-    found = started(bent, offset, plain=True)
-    held, effects = found.model.split(found.point)
-    assert effects["com_offset"]["offset_y_m"] == pytest.approx(-0.036, abs=0.01)
-    assert abs(held["contact_shift_y_m"]) < unknown.std(0.0, 1.0) * 3.0
-    assert found.penalty < 0.3 * bent.penalty
+    return evaluate(trials, setup.model, point, [t.begin(values, effects) for t in trials])
+
+
+@pytest.mark.parametrize("slope", [5e-4, -5e-4])
+def test_an_offset_begun_beside_contacts_that_are_bent_takes_their_place(bent: JointFit, slope: float) -> None:
+    offset = Suspect(OFFSET, {"offset_x_m": -slope, "offset_y_m": slope}, {}, SIZES, 0.0)
+    for found in (started(bent, offset, plain=True), in_its_place(bent, offset, far_off(bent))):
+        held, effects = found.model.split(found.point)
+        assert effects[OFFSET]["offset_y_m"] == pytest.approx(-0.036, abs=0.01)
+        assert abs(held["contact_shift_y_m"]) < 0.015
+        assert found.penalty < 0.3 * bent.penalty
+
+
+def test_in_its_place_it_is_where_the_contacts_had_moved_to(bent: JointFit) -> None:
+    """However wrong the way that a rough slope points: along it no size is any good."""
+    offset = Suspect(OFFSET, {"offset_x_m": -5e-4, "offset_y_m": 5e-4}, {}, SIZES, 0.0)
+    found = in_its_place(bent, offset, far_off(bent))
+    assert found.rss == pytest.approx(bent.rss, rel=0.05)
+    assert found.cost(bent.counted) < bent.cost(bent.counted) - 20.0

@@ -136,7 +136,8 @@ def search(
         starts += begun_loose(base, asked) if pulls else []
         rough = run_on(list(side_by_side(lambda begin: begin(), starts)))
         if pulls and rough and CATALOGUE[rough[0].model.ids[-1]].loosens:
-            begun = list(side_by_side(lambda begin: begin(), begun_loose(_as_known(base), asked)))
+            known = replace(base, point=base.model.as_known(base.point))
+            begun = list(side_by_side(lambda begin: begin(), begun_loose(known, asked)))
             rough = ranked([*rough, *run_on(begun)])
     tried += _to_the_end(base, rough, rest, lengths, progress)
     if loud and len(lengths) > 1 and not chatters(base) and field and _promises(field[0][0]):
@@ -165,13 +166,6 @@ def _astray(tried: Sequence[JointFit]) -> bool:
     return not any(chatters(f) for f in best) and all(
         float(np.median(f.parts / [t.size for t in f.trials])) > WIDE for f in best
     )
-
-
-def _as_known(base: JointFit) -> JointFit:
-    """A fit whose physics is what the file says."""
-    point = base.point.copy()
-    point[: len(base.model.physics)] = 0.0
-    return replace(base, point=point)
 
 
 def _promises(suspect: Suspect) -> bool:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from ssmr_ident.identify.joint import JointFit, evaluate
 
+OFFSET = "com_offset"
+
 
 def gathered(fit: JointFit) -> JointFit:
     """The same robot, with all that its centre of mass is off by in the offset that has no prior.
@@ -13,11 +15,11 @@ def gathered(fit: JointFit) -> JointFit:
     rough where wheels let go: a centre of mass 36 mm off (bank 5018) was contacts 40 mm off at 8 deviations, and an
     offset begun beside them stayed below a millimetre.
     """
-    if "com_offset" not in fit.model.held:
+    if OFFSET not in fit.model.held:
         return fit
     columns = {unknown.name: (k, unknown) for k, unknown in enumerate(fit.model.unknowns)}
     best = fit
-    for moved in (("com_offset.offset_{}_m", "accelerometer.position_m.{}"), ("com_offset.offset_{}_m",)):
+    for moved in ((f"{OFFSET}.offset_{{}}_m", "accelerometer.position_m.{}"), (f"{OFFSET}.offset_{{}}_m",)):
         point = fit.point.copy()
         for axis in "xy":
             own = columns.get(f"contact_shift_{axis}_m")

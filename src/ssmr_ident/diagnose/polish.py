@@ -57,8 +57,7 @@ def polish(fit: JointFit, lengths: tuple[float, ...]) -> JointFit:
 
 def anew(fit: JointFit, lengths: tuple[float, ...]) -> JointFit:
     """The effects as they are, everything else begun from what is known of it."""
-    point = fit.point.copy()
-    point[: len(fit.model.physics)] = 0.0
+    point = fit.model.as_known(fit.point)
     short = [t.until(lengths[0]) for t in fit.trials]
     begun = follow(short, fit.model, point, kin=fit)
     return mended(led(fit.trials, fit.model, point, lengths, LAST, begun.nuisances))

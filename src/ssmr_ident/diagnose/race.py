@@ -122,8 +122,7 @@ def combined(base: JointFit, suspect: Suspect) -> list[JointFit]:
         at = dict(zip(spans, values, strict=True))
         own = {name: value for name, value in at.items() if not name.startswith(BASELINE)}
         model, point = with_suspect(base, replace(suspect, at=own))
-        if known:
-            point[: len(names)] = 0.0
+        point = model.as_known(point) if known else point
         for name in at.keys() - own.keys():
             for k in (k for k, other in enumerate(names) if other == name.removeprefix(BASELINE)):
                 point[k] += np.log(at[name]) / model.physics[k].spread
@@ -210,11 +209,9 @@ def _from_what_is_known(fit: JointFit) -> JointFit | None:
 
     A baseline bends far round wheels that lift in one loud release, and where it is bent so they do not lift.
     """
-    physics = len(fit.model.physics)
     if not far_off(fit).any():
         return None
-    point = np.concatenate([np.zeros(physics), fit.point[physics:]])
-    return descend(follow(fit.trials, fit.model, point), 2)
+    return descend(follow(fit.trials, fit.model, fit.model.as_known(fit.point)), 2)
 
 
 def _in_its_place(first: JointFit, suspect: Suspect) -> JointFit:
@@ -267,8 +264,7 @@ def started_from_known(base: JointFit, suspect: Suspect, plain: bool = False) ->
     that a baseline had put elsewhere, by 24 standard deviations, stayed there beside a soft cable, 740 behind here.
     """
     model, point = with_suspect(base, suspect)
-    point[: len(base.model.physics)] = 0.0
-    return descend(evaluate(base.trials, model, point, base.nuisances), 4, plain=plain)
+    return descend(evaluate(base.trials, model, model.as_known(point), base.nuisances), 4, plain=plain)
 
 
 def variants(group: Sequence[Suspect]) -> list[Suspect]:

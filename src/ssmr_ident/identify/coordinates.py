@@ -73,6 +73,10 @@ class Model:
             effects[coordinate.effect][coordinate.parameter.name] = coordinate.value(float(s))
         return values, effects
 
+    def as_known(self, point: Array) -> Array:
+        """A point with the physics as the file says, and the effects as they are."""
+        return np.concatenate([np.zeros(len(self.physics)), point[len(self.physics) :]])
+
     def with_one(self, at: Split, column: int, scaled: float) -> Split:
         """What ``split`` gives where one coordinate is another; the rest is shared."""
         values, effects = at
