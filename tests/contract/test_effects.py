@@ -104,7 +104,7 @@ def test_every_parameter_reaches_the_code(effect: Effect) -> None:
         for one, other in itertools.combinations(motions, 2):
             assert np.abs(one - other)[:, 2].max() > QUANTUM, "two terms do the same"
         return
-    for site in (Site.ROBOT, Site.PULL, Site.OUTPUT):
+    for site in (Site.ROBOT, Site.SENSOR, Site.PULL, Site.OUTPUT):
         if site in effect.acts:
             change = effect.acts[site]
             assert change is not None

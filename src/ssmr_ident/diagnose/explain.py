@@ -14,7 +14,6 @@ from ssmr_ident.identify.coordinates import Model
 from ssmr_ident.identify.descent import descend
 from ssmr_ident.identify.horizons import led
 from ssmr_ident.identify.joint import JointFit, Slopes, evaluate
-from ssmr_ident.physics.effect import Site
 from ssmr_ident.physics.effects import CATALOGUE
 
 Array = np.ndarray
@@ -54,7 +53,7 @@ def beside(fit: JointFit, suspect: Suspect) -> JointFit:
     if not CATALOGUE[suspect.effect].sudden or not np.isfinite(begun.rss):
         return begun
     frozen = _held(fit, suspect, model, point)
-    if Site.OUTPUT in CATALOGUE[suspect.effect].acts:
+    if not CATALOGUE[suspect.effect].moves:
         starts = [evaluate(fit.trials, frozen, fit.point, fit.nuisances)]
     else:
         starts = [follow(fit.trials, frozen, fit.point, fit.nuisances)]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -110,7 +110,7 @@ def search(
         begun = begun_along(base, [suspect for group in groups for suspect in group])
         begun = ranked(list(side_by_side(lambda fit: descend(fit, 2), begun)))
         effects = list(dict.fromkeys(fit.model.ids for fit in begun))[:REFITTED]
-        few = [fit for fit in begun if fit.model.ids in effects and _close(begun, fit)]
+        few = [fit for fit in begun if fit.model.ids in effects and within_reach(begun, fit)]
         tried = _led_on(base, few, rest, lengths, progress)
         if tried and not leaves_much(ranked(tried)[0]):
             # every law has been begun as well as it could be; what is none may do as much
@@ -191,7 +191,7 @@ def _to_the_end(
     starts: int = 1,
 ) -> list[JointFit]:
     """The first few of what was tried, refitted to all recordings at their full length."""
-    few = _finalists([fit for fit in rough if _close(rough, fit)], starts=2 if slides(base) else starts)
+    few = _finalists([fit for fit in rough if within_reach(rough, fit)], starts=2 if slides(base) else starts)
     return _led_on(base, few, rest, lengths, progress)
 
 
@@ -202,17 +202,30 @@ def _led_on(
     lengths: Sequence[float],
     progress: Progress | None,
 ) -> list[JointFit]:
-    """Fits refitted to all recordings at their full length, those that are ahead first."""
-    tried: list[JointFit] = []
-    for index, fit in enumerate(rough):
-        if progress:
-            progress("refitting explanations", index, len(rough))
+    """Fits refitted to all recordings at their full length, side by side."""
+
+    def halfway(fit: JointFit) -> JointFit:
         if chatters(base):
             fit = descend(fit, LAST // 2, plain=True)
-        begun = led(base.trials, fit.model, fit.point, rest, LAST // 2, _all_nuisances(base, fit, lengths))
+        return led(base.trials, fit.model, fit.point, rest, LAST // 2, _all_nuisances(base, fit, lengths))
+
+    def ended(fit: JointFit) -> JointFit:
         # what is as far behind as this halfway does not win, and where exactly it ends decides nothing
-        tried.append(mended(descend(begun, LAST - LAST // 2)) if _close(ranked([begun, *tried]), begun) else begun)
-    return tried
+        return mended(descend(fit, LAST - LAST // 2)) if within_reach(order, fit) else fit
+
+    halves = _told(side_by_side(halfway, rough), 0, 2 * len(rough), progress)
+    order = ranked(halves)
+    return _told(side_by_side(ended, halves), len(rough), 2 * len(rough), progress)
+
+
+def _told(fits: Iterable[JointFit], done: int, count: int, progress: Progress | None) -> list[JointFit]:
+    """Fits as they come, each counted."""
+    found: list[JointFit] = []
+    for fit in fits:
+        if progress:
+            progress("refitting explanations", done + len(found), count)
+        found.append(fit)
+    return found
 
 
 def _each_group(*lists: Sequence[Sequence[Suspect]]) -> list[Sequence[Suspect]]:
@@ -228,7 +241,7 @@ def mended(fit: JointFit) -> JointFit:
     return descend(follow(fit.trials, fit.model, fit.point, fit.nuisances), LAST)
 
 
-def _close(ranked: Sequence[JointFit], fit: JointFit) -> bool:
+def within_reach(ranked: Sequence[JointFit], fit: JointFit) -> bool:
     """Whether a refit to the end may still bring one before the first."""
     if not ranked:
         return False

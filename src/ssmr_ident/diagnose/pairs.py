@@ -6,13 +6,14 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from ssmr_ident.diagnose.accept import ahead, certain, harmless, leading, mends, significant
+from ssmr_ident.diagnose.baseline import LAST
 from ssmr_ident.diagnose.explain import without
-from ssmr_ident.diagnose.explore import search
+from ssmr_ident.diagnose.explore import search, within_reach
 from ssmr_ident.diagnose.followed import all_explained, at_its_best, each_set_once, explained, joined
 from ssmr_ident.diagnose.polish import loud, polish
 from ssmr_ident.diagnose.race import Progress
 from ssmr_ident.diagnose.weigh import Explanation, evidences
-from ssmr_ident.identify.descent import chatters
+from ssmr_ident.identify.descent import chatters, descend
 from ssmr_ident.identify.joint import differentiate
 from ssmr_ident.identify.trials import Trial
 
@@ -67,7 +68,10 @@ def exchange(
     first, *rest = pair.fit.model.ids
     alone = next((e for e in singles if list(e.fit.model.ids) == rest), None)
     if alone is None:
-        alone = explained(kept, differentiate(polish(without(pair.fit, first), lengths)), pair.kept)
+        begun = descend(without(pair.fit, first), LAST // 2)
+        if not within_reach([single.fit], begun):
+            return None
+        alone = explained(kept, differentiate(polish(begun, lengths)), pair.kept)
     better = ahead(alone, single) and harmless(alone, single)
     return alone if better and significant(alone.fit) else None
 

@@ -141,7 +141,7 @@ def out_of_reach(fit: JointFit, effects: Sequence[Effect], groups: Sequence[Sequ
 
 
 def moves_beyond(effect: Effect) -> bool:
-    """Whether an effect changes motions, and that only beyond some value."""
+    """Whether an effect changes motions or a sensor's pace, and that only beyond some value."""
     return effect.sudden and Site.OUTPUT not in effect.acts
 
 

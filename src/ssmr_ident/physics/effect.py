@@ -21,6 +21,7 @@ class Site(Enum):
     GROUND      ``height(...)``: height of the floor under a wheel [m]
     BODY        extra bodies and terms of the equations of motion
     ROBOT       ``change(robot, **parameters)``: another robot value
+    SENSOR      the same, of which the accelerometer alone is another: the motion stays
     PULL        ``change(stiffness, **parameters)``: another cable
     OUTPUT      ``change(time, channels, **parameters)``: what the sensor makes of the motion
     ==========  ======================================================================================
@@ -32,6 +33,7 @@ class Site(Enum):
     GROUND = "ground"
     BODY = "body"
     ROBOT = "robot"
+    SENSOR = "sensor"
     PULL = "pull"
     OUTPUT = "output"
 
@@ -143,6 +145,11 @@ class Effect(Shown):
     def amplitudes(self) -> tuple[Parameter, ...]:
         """The parameters that switch it off."""
         return tuple(parameter for parameter in self.parameters if parameter.off is not None)
+
+    @property
+    def moves(self) -> bool:
+        """Whether it changes the motion, and not only what instruments make of it."""
+        return not set(self.acts) <= {Site.SENSOR, Site.OUTPUT}
 
     def values(self, given: Mapping[str, float] | None = None) -> dict[str, float]:
         """All parameters: the given ones, nominal for the rest."""

@@ -133,7 +133,8 @@ _BODIES: Recent[Body] = Recent()
 def _body(robot: Robot, active: Effects) -> Body:
     e = effect_vector(active)
     for effect_id, values in active.items():
-        change = CATALOGUE[effect_id].acts.get(Site.ROBOT)
+        acts = CATALOGUE[effect_id].acts
+        change = acts.get(Site.ROBOT) or acts.get(Site.SENSOR)
         if change and not CATALOGUE[effect_id].is_off(values):
             robot = change(robot, **values)
     mast = inverse_mass_matrix(robot, active)

@@ -27,7 +27,7 @@ EFFECT = Effect(
     signature="high frequencies smaller and late: phase and amplitude fall together",
     parameters=(Parameter("bandwidth_hz", "Hz", 40.0, 1.0, math.inf, "-3 dB point", off=math.inf),),
     experiments=("free_response", "swivel", "forced"),
-    acts={Site.ROBOT: change},
+    acts={Site.SENSOR: change},
     rig=True,
     probes=(
         {"bandwidth_hz": 50.0},
