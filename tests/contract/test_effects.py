@@ -201,6 +201,21 @@ def test_nominal_leaves_a_trace_that_an_instrument_shows(effect: Effect, robot: 
 
 
 @EACH
+def test_only_what_a_sensor_makes_of_a_motion_leaves_it_as_it_is(effect: Effect, robot: Robot) -> None:
+    """To the last bit; all others change it in one of their experiments at least."""
+    if effect.id == "translation_coupling":
+        return
+    on, names = {effect.id: effect.values(SHOWN.get(effect.id))}, ["x", "y", "z", "roll", "pitch", "yaw"]
+    changed = []
+    for experiment, scenarios in _experiments(robot, long=False).items():
+        if experiment in effect.experiments or not effect.moves:
+            for scenario in scenarios:
+                plain, other = (simulate(robot, scenario, 200.0, effects=e) for e in ({}, on))
+                changed += [not np.array_equal(plain[name], other[name]) for name in names]
+    assert any(changed) == effect.moves
+
+
+@EACH
 def test_inputs_are_left_as_they_were(effect: Effect, robot: Robot) -> None:
     scenario = swivel(wheel_rates(robot, 0.0, 1.0), 0.1)
     on = {effect.id: effect.values()}

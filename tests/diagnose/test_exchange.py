@@ -8,7 +8,7 @@ import pytest
 from small_rigs import Run, campaign, fitted, prepared
 
 from ssmr_ident.compare.recorded import follow
-from ssmr_ident.diagnose import accept
+from ssmr_ident.diagnose import accept, pairs
 from ssmr_ident.diagnose.accept import ahead, certain, mends
 from ssmr_ident.diagnose.explain import with_suspect
 from ssmr_ident.diagnose.followed import explained
@@ -62,6 +62,25 @@ def test_the_right_one_stays(hardens: tuple[dict[str, Explanation], tuple[Trial,
     assert not mends(pair, right)
     assert exchange(pair, right, kept, (math.inf,), ()) is None
     assert exchange(pair, right, kept, (math.inf,), (found["dry_friction"],)) is None
+
+
+def test_what_is_far_behind_alone_is_not_led_to_its_end(
+    hardens: tuple[dict[str, Explanation], tuple[Trial, ...]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    found, kept = hardens
+    pair, right = found["nonlinear_stiffness+dry_friction"], found["nonlinear_stiffness"]
+    asked: list[JointFit] = []
+
+    def polish(fit: JointFit, lengths: tuple[float, ...]) -> JointFit:
+        asked.append(fit)
+        return fit
+
+    monkeypatch.setattr(pairs, "polish", polish)
+    # alone, friction leaves 5 to 234 times the variance of the noise, and hardening 0.9 to 1.0
+    assert exchange(pair, right, kept, (math.inf,), ()) is None
+    assert not asked
+    exchange(found["dry_friction+nonlinear_stiffness"], found["dry_friction"], kept, (math.inf,), ())
+    assert [fit.model.ids for fit in asked] == [("nonlinear_stiffness",)]
 
 
 def test_ahead_is_one_alone(
