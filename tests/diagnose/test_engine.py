@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
-from scipy.signal import butter, sosfilt
+from scipy.signal import butter, lfilter, sosfilt
 
 from ssmr_ident.campaign import Campaign, Measurement
 from ssmr_ident.core.parameter import Estimate, ParameterSet
@@ -88,6 +89,25 @@ def test_nothing_is_missing_where_nothing_is():
     assert (found.verdict, found.effects) == ("nothing_missing", ())
     assert found.heldout.before < 1.1 * found.heldout.noise_floor
     assert found.before["stiffness_N_m"].value == pytest.approx(STIFFNESS, rel=0.01)
+    assert not any("colour" in note for note in found.notes)
+
+
+def test_what_may_be_noise_of_another_colour_is_said_beside_nothing():
+    """Four fifths of the noise's variance are first-order noise of 19 ms, which the floor does not see."""
+    session, rng, keep = rig(lambda x, v: 0.0 * x), np.random.default_rng(3), 0.9
+    slow = [
+        lfilter([2.0 * NOISE * np.sqrt(1.0 - keep**2)], [1.0, -keep], rng.standard_normal(round(RATE * SECONDS)))
+        for _ in LEVELS
+    ]
+    measurements = []
+    for measurement, noise in zip(session.measurements, slow, strict=True):
+        force, position = measurement.recording.channels
+        seen = replace(position, samples=position.samples + noise)
+        measurements.append(replace(measurement, recording=replace(measurement.recording, channels=(force, seen))))
+    found = diagnose(replace(session, measurements=tuple(measurements)))
+    assert (found.verdict, found.effects) == ("nothing_missing", ())
+    assert found.heldout.before > 3.0 * found.heldout.noise_floor
+    assert any("noise of another colour" in note for note in found.notes)
 
 
 def test_friction_of_another_formula_is_named_and_alone():

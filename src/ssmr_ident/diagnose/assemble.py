@@ -36,6 +36,11 @@ motion: the floor takes the noise for white, and coloured noise lies above it.""
 
 JOLTS = "what is left on unseen recordings is the jolt of the tightening cable: without it {:.1f} times the noise"
 
+COLOURED = (
+    "what is left is {:.1f} times a noise floor that takes noise for white; it is not larger where more moves, and "
+    "noise of another colour reads up to {:.1f} times that floor"
+)
+
 UNDER_JOLTS = "{}: the jolt of the tightening cable hides it; without that the error falls from {:.3g} to {:.3g} %"
 
 
@@ -63,6 +68,7 @@ def assembled(outcome: Outcome, parameters: ParameterSet, everything: JointFit |
     best_file = exported(best.fit, parameters) if named else before_file
     effects = _named(outcome, best_file.effects) if named else ()
     jolts: tuple[str, ...] = ()
+    doubts: tuple[str, ...] = ()
     settled = without_jolts(base.fit, before_fit), without_jolts(base.kept, before_kept)
     if named:
         verdict = MISSING if len(outcome.rivals) <= MOST_RIVALS else UNDETERMINED
@@ -74,8 +80,10 @@ def assembled(outcome: Outcome, parameters: ParameterSet, everything: JointFit |
         if heldout.before > UNEXPLAINED * heldout.noise_floor and kept.before < UNEXPLAINED * kept.noise_floor:
             jolts = (JOLTS.format(kept.before / kept.noise_floor),)
         follows = grows_with_motion([*settled[0], *settled[1]]) < BY_CHANCE
-        beyond = left > reddest([*settled[0], *settled[1]])
-        verdict = UNDETERMINED if beyond or (left > UNEXPLAINED and follows) else NOTHING
+        most = reddest([*settled[0], *settled[1]])
+        verdict = UNDETERMINED if left > most or (left > UNEXPLAINED and follows) else NOTHING
+        if verdict == NOTHING and left > UNEXPLAINED:
+            doubts = (COLOURED.format(left, most),)
     tried = _tried(outcome)
     scanned = len(outcome.searches[0].suspects) if outcome.searches else 0
     if verdict == MISSING:
@@ -110,6 +118,7 @@ def assembled(outcome: Outcome, parameters: ParameterSet, everything: JointFit |
         notes=(
             *outcome.setup.notes,
             *jolts,
+            *doubts,
             *_elsewhere(free, base, conflicts),
             *_notes(best, free, heldout),
             *_open(outcome),
