@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from ssmr_ident.core.atomic import write_text
-from ssmr_ident.diagnose.diagnosis import NOTHING, UNDETERMINED, Diagnosis
+from ssmr_ident.diagnose.diagnosis import MISSING, NOTHING, UNDETERMINED, Diagnosis
 from ssmr_ident.diagnose.weigh import CERTAIN
 from ssmr_ident.identify.parallel import processors
 
@@ -41,7 +41,7 @@ def outcome(truth: Sequence[str], diagnosis: Diagnosis) -> str:
         return {NOTHING: "clean", UNDETERMINED: "undetermined"}.get(diagnosis.verdict, "false alarm")
     if diagnosis.verdict == NOTHING:
         return "missed"
-    if sorted(named) == sorted(truth):
+    if diagnosis.verdict == MISSING and sorted(named) == sorted(truth):
         return "right"
     held = [{effect.id, *effect.indistinguishable_from} for effect in diagnosis.effects]
     if len(held) == len(truth) and all(len(group) <= LARGEST_TIE for group in held):

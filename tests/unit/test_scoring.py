@@ -32,6 +32,7 @@ MISSING, NOTHING, DOUBT = "missing_physics", "nothing_missing", "undetermined"
         (("free_play",), said(MISSING, ("hysteresis", "free_play")), "tie"),
         (("free_play",), said(DOUBT, ("hysteresis", "free_play")), "tie"),
         (("free_play",), said(DOUBT, ("hysteresis", "stribeck", "unlisted", "free_play")), "undetermined"),
+        (("free_play",), said(DOUBT, ("free_play", "hysteresis", "stribeck", "unlisted")), "undetermined"),
         (("free_play",), said(MISSING, ("hysteresis", "stribeck", "unlisted", "free_play")), "wrong"),
         (("free_play",), said(MISSING, ("free_play",), ("stribeck",)), "extra"),
         (("free_play",), said(NOTHING), "missed"),
