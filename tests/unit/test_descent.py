@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ssmr_ident.compare.recorded import radian
 from ssmr_ident.identify.coordinates import Model
 from ssmr_ident.identify.descent import corrected
+from ssmr_ident.identify.horizons import radian
 from ssmr_ident.identify.joint import JointFit, differentiate, evaluate
 from ssmr_ident.identify.noise import AutoregressiveNoise
 from ssmr_ident.identify.objective import Unknown

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.stats import chi2
 
-from ssmr_ident.compare.recorded import follow, radian
+from ssmr_ident.compare.recorded import follow
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.accept import CHANCE
 from ssmr_ident.diagnose.hollows import from_afar
@@ -19,7 +19,7 @@ from ssmr_ident.diagnose.start import begin, pooled
 from ssmr_ident.identify.cell_noise import block_noises
 from ssmr_ident.identify.clouds import settled
 from ssmr_ident.identify.descent import LOUD, chatters, descend, slides
-from ssmr_ident.identify.horizons import horizons, led
+from ssmr_ident.identify.horizons import horizons, led, radian
 from ssmr_ident.identify.joint import JointFit, differentiate, evaluate
 from ssmr_ident.identify.swings import led_through_slides
 from ssmr_ident.identify.trials import Trial

@@ -60,7 +60,7 @@ def at_its_best(
     leader: Explanation, new: list[Explanation], kept: Sequence[Trial], lengths: tuple[float, ...]
 ) -> Explanation:
     """The leader led on, which takes its place where that is better."""
-    further = explained(kept, turned(polish(leader.fit, lengths), lengths), leader.kept)
+    further = explained(kept, turned(polish(leader.fit, lengths, refitted=True), lengths), leader.kept)
     if _followable(further) and further.fit.cost(further.fit.counted) < leader.fit.cost(further.fit.counted):
         new[new.index(leader)], leader = further, further
     return leader

@@ -44,10 +44,13 @@ def loud(fit: JointFit) -> bool:
     return float(np.median(fit.parts / [t.size for t in fit.trials])) > LOUD
 
 
-def polish(fit: JointFit, lengths: tuple[float, ...]) -> JointFit:
+def polish(fit: JointFit, lengths: tuple[float, ...], refitted: bool = False) -> JointFit:
     """An explanation led to its best: on from where it stands, and where that is far from what is known or leaves more
-    than noise, once more from what is known."""
-    further = gathered(mended(descend(gathered(fit), LAST)))
+    than noise, once more from what is known.
+
+    ``refitted`` is one that a search has led to its end, other starts of its recordings among it.
+    """
+    further = gathered(mended(descend(gathered(fit), LAST), fit if refitted else None))
     physics = len(further.model.physics)
     further = heard(further)
     if len(lengths) == 1 or not (loud(further) or float(np.max(np.abs(further.point[:physics]), initial=0.0)) > FAR):

@@ -31,6 +31,22 @@ NEAR = 0.02
 """Fall of the cost, per independent sample, at which a fit on a horizon is near enough to go on."""
 
 
+def radian(trials: Sequence[Trial]) -> float:
+    """Seconds in which the motion of the loudest channel turns by one radian: its rms over that of its slope.
+
+    Mains lines and noise are taken off both, for their slopes are steep. The median recording of the fastest kind.
+    """
+    kinds: dict[str, list[float]] = {}
+    for trial in trials:
+        signal = trial.colour(np.zeros_like(trial.target))
+        loudest = int(np.argmax(signal.std(axis=0)))
+        column, noise = signal[:, loudest], trial.noises[loudest].std ** 2 if trial.quiet else 0.0
+        size, slope = float(np.var(column)) - noise, float(np.var(np.diff(column))) - 2.0 * noise
+        if size > 0.0 and slope > 0.0:
+            kinds.setdefault(trial.kind, []).append(float(np.sqrt(size / slope)) * trial.step)
+    return min((float(np.median(found)) for found in kinds.values()), default=trials[0].step)
+
+
 def horizons(trials: Sequence[Trial], time: float) -> list[float]:
     """Lengths [s], the last being infinite; only that where nothing can be shortened."""
     if not any(trial.shorten for trial in trials):

@@ -126,12 +126,29 @@ class JointFit:
         """Nuisances that act, of all recordings."""
         return sum(len(acting(trial, self.model)) for trial in self.trials)
 
+    def only(self, index: int) -> JointFit:
+        """One of the trials by itself."""
+        one = slice(index, index + 1)
+        return replace(
+            self, trials=self.trials[one], nuisances=self.nuisances[one], simulated=self.simulated[one],
+            residuals=self.residuals[one], slopes=self.slopes[one],
+        )  # fmt: skip
+
     def cost(self, counted: Array) -> float:
         """Twice the negative log posterior, for given numbers of independent samples, (t,) float."""
         if not np.isfinite(self.rss):
             return np.inf
         sizes = np.array([trial.size for trial in self.trials])
         return float(counted @ np.log(self.parts / sizes)) + self.penalty
+
+
+def together(fits: Sequence[JointFit]) -> JointFit:
+    """Fits of different trials at one point, as one."""
+    first = fits[0]
+    return JointFit(
+        tuple(t for f in fits for t in f.trials), first.model, first.point, tuple(n for f in fits for n in f.nuisances),
+        tuple(s for f in fits for s in f.simulated), tuple(r for f in fits for r in f.residuals),
+    )  # fmt: skip
 
 
 def worth(residual: Array) -> float:
