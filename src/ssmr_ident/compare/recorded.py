@@ -37,11 +37,15 @@ def follow(
     kin : JointFit, optional
         Other recordings, as the model explains them; by default these.
     """
-    values, effects = model.split(point)
-    starts = [t.begin(values, effects) for t in trials] if near is None else near
+    found = nearest(trials, model, point, near)
+    return by_other_roads(found, kin, known=near is not None) if found.model.ids else found
+
+
+def nearest(trials: Sequence[Trial], model: Model, point: Array, near: Sequence[Array] | None = None) -> JointFit:
+    """The same by the first road alone."""
+    starts = [t.begin(*model.split(point)) for t in trials] if near is None else near
     pairs = list(zip(trials, starts, strict=True))
-    found = together(list(side_by_side(lambda pair: alone(pair[0], model, point, pair[1]), pairs)))
-    return by_other_roads(found, kin, known=near is not None) if effects else found
+    return together(list(side_by_side(lambda pair: alone(pair[0], model, point, pair[1]), pairs)))
 
 
 def predicted(trial: Trial, values: Values, effects: Effects, nuisance: Array) -> Prediction:

@@ -21,6 +21,7 @@ from ssmr_ident.identify.clouds import settled
 from ssmr_ident.identify.descent import LOUD, chatters, descend, slides
 from ssmr_ident.identify.horizons import horizons, led, radian
 from ssmr_ident.identify.joint import JointFit, differentiate, evaluate
+from ssmr_ident.identify.parallel import side_by_side
 from ssmr_ident.identify.swings import led_through_slides
 from ssmr_ident.identify.trials import Trial
 
@@ -111,12 +112,13 @@ def called_back(fit: JointFit) -> JointFit:
     far = np.flatnonzero(far_off(fit))
     if not len(far) or not float(np.median(left)) < WIDE or slides(fit):
         return fit
-    ends = [fit]
-    for column in far:
+
+    def home(column: int) -> JointFit:
         point = fit.point.copy()
         point[column] = 0.0
-        ends.append(descend(follow(fit.trials, fit.model, point, fit.nuisances), LAST))
-    best = min(ends, key=lambda f: f.cost(fit.counted))
+        return descend(follow(fit.trials, fit.model, point, fit.nuisances), LAST)
+
+    best = min((fit, *side_by_side(home, far.tolist())), key=lambda f: f.cost(fit.counted))
     return differentiate(best)
 
 

@@ -16,6 +16,7 @@ from ssmr_ident.diagnose.accept import (
     leaves_structure,
     left_over,
     mends,
+    promises,
     significant,
     touches,
     within_file,
@@ -111,7 +112,10 @@ def _examined(setup: Setup, parameters: ParameterSet, progress: Progress | None)
         if chosen is not baseline and _cost(leader, chosen) > _cost(chosen, chosen) and not certain(leader, chosen):
             tried = joined(tried, new)
             break
-        leader = contested(at_its_best(leader, new, kept, lengths), new, kept, lengths)
+        if chosen is not baseline and not slides(chosen.fit) and not promises(leader, chosen):
+            tried = joined(tried, new)
+            break
+        leader = contested(leader, new, kept, lengths)
         if small and not halves(leader, chosen):
             break
         if chosen is not baseline and not setup.decoupled and mends(leader, chosen):

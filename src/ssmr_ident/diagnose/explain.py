@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ssmr_ident.compare.recorded import follow
+from ssmr_ident.compare.recorded import nearest
 from ssmr_ident.diagnose.gathered import OFFSET, gathered
 from ssmr_ident.diagnose.scan import Suspect, smaller
 from ssmr_ident.identify.coordinates import Model
@@ -56,9 +56,9 @@ def beside(fit: JointFit, suspect: Suspect) -> JointFit:
     if not CATALOGUE[suspect.effect].moves:
         starts = [evaluate(fit.trials, frozen, fit.point, fit.nuisances)]
     else:
-        starts = [follow(fit.trials, frozen, fit.point, fit.nuisances)]
+        starts = [nearest(fit.trials, frozen, fit.point, fit.nuisances)]
         if not any(trial.searched for trial in fit.trials):
-            starts.append(follow(fit.trials, frozen, fit.point))
+            starts.append(nearest(fit.trials, frozen, fit.point))
     ends = [descend(start, SETTLING) for start in starts]
     settled = min(ends, key=lambda f: f.cost(fit.counted) if np.isfinite(f.rss) else np.inf)
     return evaluate(fit.trials, model, np.concatenate([settled.point, point[len(fit.point) :]]), settled.nuisances)

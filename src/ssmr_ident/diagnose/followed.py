@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 
 import numpy as np
 
@@ -10,6 +11,7 @@ from ssmr_ident.compare.recorded import follow
 from ssmr_ident.diagnose.polish import polish, turned
 from ssmr_ident.diagnose.weigh import Explanation, evidences, log_evidence
 from ssmr_ident.identify.joint import JointFit
+from ssmr_ident.identify.parallel import side_by_side
 from ssmr_ident.identify.trials import Trial
 
 NEAR = 20.0
@@ -60,19 +62,24 @@ def at_its_best(
     leader: Explanation, new: list[Explanation], kept: Sequence[Trial], lengths: tuple[float, ...]
 ) -> Explanation:
     """The leader led on, which takes its place where that is better."""
-    further = explained(kept, turned(polish(leader.fit, lengths, refitted=True), lengths), leader.kept)
-    if _followable(further) and further.fit.cost(further.fit.counted) < leader.fit.cost(further.fit.counted):
-        new[new.index(leader)], leader = further, further
-    return leader
+    further = _led_on(kept, lengths, leader)
+    new[new.index(leader)] = further
+    return further
 
 
 def contested(
     leader: Explanation, new: list[Explanation], kept: Sequence[Trial], lengths: tuple[float, ...]
 ) -> Explanation:
-    """The leader, once those close behind it are at their best as well."""
+    """The first, once the leader and those close behind it are at their best."""
     found = evidences(new)
-    for other in sorted(new, key=lambda e: -found[e.id]):
-        if other is not leader and found[other.id] > found[leader.id] - NEAR:
-            at_its_best(other, new, kept, lengths)
+    close = [e for e in new if found[e.id] > found[leader.id] - NEAR]
+    for before, after in zip(close, side_by_side(partial(_led_on, kept, lengths), close), strict=True):
+        new[new.index(before)] = after
     found = evidences(new)
     return max(new, key=lambda e: found[e.id])
+
+
+def _led_on(kept: Sequence[Trial], lengths: tuple[float, ...], one: Explanation) -> Explanation:
+    further = explained(kept, turned(polish(one.fit, lengths, refitted=True), lengths), one.kept)
+    better = further.fit.cost(further.fit.counted) < one.fit.cost(further.fit.counted)
+    return further if better and _followable(further) else one

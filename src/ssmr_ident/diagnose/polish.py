@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -11,12 +13,13 @@ from ssmr_ident.diagnose.baseline import LAST, unsteady
 from ssmr_ident.diagnose.explore import mended
 from ssmr_ident.diagnose.formulas import other_formulas
 from ssmr_ident.diagnose.gathered import gathered
-from ssmr_ident.diagnose.race import FAR, ranked
+from ssmr_ident.diagnose.race import far_off, ranked
 from ssmr_ident.diagnose.scan import held_at
 from ssmr_ident.identify.clouds import settled
 from ssmr_ident.identify.descent import LOUD, chatters, descend
 from ssmr_ident.identify.horizons import led
 from ssmr_ident.identify.joint import JointFit, evaluate
+from ssmr_ident.identify.parallel import side_by_side
 from ssmr_ident.identify.swings import led_through_slides
 from ssmr_ident.physics.effects import CATALOGUE
 
@@ -50,12 +53,21 @@ def polish(fit: JointFit, lengths: tuple[float, ...], refitted: bool = False) ->
 
     ``refitted`` is one that a search has led to its end, other starts of its recordings among it.
     """
-    further = gathered(mended(descend(gathered(fit), LAST), fit if refitted else None))
-    physics = len(further.model.physics)
-    further = heard(further)
-    if len(lengths) == 1 or not (loud(further) or float(np.max(np.abs(further.point[:physics]), initial=0.0)) > FAR):
+
+    def on() -> JointFit:
+        return heard(gathered(mended(descend(gathered(fit), LAST), fit if refitted else None)))
+
+    # what is in doubt before it has been led on is in doubt for good, as a rule
+    ways: list[Callable[[], JointFit]] = [on, partial(anew, fit, lengths)] if _doubtful(fit, lengths) else [on]
+    further, *others = side_by_side(lambda way: way(), ways)
+    if not _doubtful(further, lengths):
         return further
-    return min((anew(further, lengths), further), key=lambda f: f.cost(further.counted))
+    return min((*(others or [anew(further, lengths)]), further), key=lambda f: f.cost(further.counted))
+
+
+def _doubtful(fit: JointFit, lengths: tuple[float, ...]) -> bool:
+    """Whether a fit that can be led over horizons is far from what is known, or leaves more than noise."""
+    return len(lengths) > 1 and (loud(fit) or bool(far_off(fit).any()))
 
 
 def anew(fit: JointFit, lengths: tuple[float, ...]) -> JointFit:
