@@ -27,6 +27,9 @@ GROWING = tuple(float(share) for share in np.geomspace(0.3, 300.0, 16))
 SETTLING = 3
 """Gauss-Newton steps of all else beside an effect that is held."""
 
+SAME = 0.01
+"""Difference in the logarithm of what is left of a recording up to which two starts of it have met."""
+
 
 def with_suspect(fit: JointFit, suspect: Suspect, share: float = 1.0) -> tuple[Model, Array]:
     """The model with a suspect's effect, and a point of it at a share of the suspect's amplitude."""
@@ -58,10 +61,16 @@ def beside(fit: JointFit, suspect: Suspect) -> JointFit:
     else:
         starts = [nearest(fit.trials, frozen, fit.point, fit.nuisances)]
         if not any(trial.searched for trial in fit.trials):
-            starts.append(nearest(fit.trials, frozen, fit.point))
+            other = nearest(fit.trials, frozen, fit.point)
+            starts += [] if _same(starts[0], other) else [other]
     ends = [descend(start, SETTLING) for start in starts]
     settled = min(ends, key=lambda f: f.cost(fit.counted) if np.isfinite(f.rss) else np.inf)
     return evaluate(fit.trials, model, np.concatenate([settled.point, point[len(fit.point) :]]), settled.nuisances)
+
+
+def _same(one: JointFit, other: JointFit) -> bool:
+    """Whether two fits leave as much of every recording."""
+    return bool(np.all(np.abs(np.log(one.parts / other.parts)) < SAME))
 
 
 def from_what_is_known(fit: JointFit, suspect: Suspect, lengths: Sequence[float]) -> JointFit:

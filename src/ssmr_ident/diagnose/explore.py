@@ -25,6 +25,7 @@ from ssmr_ident.diagnose.race import (
     started,
     started_from_known,
     variants,
+    within_reach,
 )
 from ssmr_ident.diagnose.scan import Suspect, candidates, moves_beyond, out_of_reach, scan
 from ssmr_ident.identify.descent import LOUD, chatters, descend, slides
@@ -36,10 +37,6 @@ from ssmr_ident.physics.effects import CATALOGUE
 PROMISING = 6.0
 """Fall of n ln(RSS), beyond one for each parameter, from which a suspect is refitted. Noise alone passes it in
 1 to 2 of 100 probes (chi-square, one and two parameters); passing costs time and decides nothing."""
-
-CLOSE = 1.5
-"""Difference in the logarithm of the unexplained variance, before refits have come to rest, up to which an effect may
-still overtake another: a factor of 4.5."""
 
 SCREENED, REFITTED = 8, 3
 """Effects that are refitted on the first horizons, and to the end."""
@@ -135,7 +132,8 @@ def search(
         same = [g[0] for g in groups if alone and (pulls or g[0].own < SAME) and not CATALOGUE[g[0].effect].sudden]
         # a straight line from a sensor that is quick enough points nowhere, and on a rig it costs little not to ask it
         cheap = [g for g in groups if chosen and baseline == "sdof" and CATALOGUE[g[0].effect].sudden]
-        starts = [partial(started, base, s) for group in _each_group(chosen, beyond, cheap) for s in variants(group)]
+        each = _each_group(chosen, beyond, cheap)
+        starts = [partial(started, base, s) for group in each for s in variants(group, sizes=not further)]
         starts += [partial(from_what_is_known, base, s, lengths) for group in beyond for s in variants(group)]
         starts += [partial(started_from_known, base, group[0], pulls) for group in chosen if alone]
         starts += [partial(_instead, base, s) for s in same]
@@ -258,14 +256,6 @@ def mended(fit: JointFit, beside: JointFit | None = None) -> JointFit:
     if not stuck.any():
         return fit
     return descend(by_other_roads(fit, only=np.flatnonzero(stuck).tolist(), known=True), LAST)
-
-
-def within_reach(ranked: Sequence[JointFit], fit: JointFit) -> bool:
-    """Whether a refit to the end may still bring one before the first."""
-    if not ranked:
-        return False
-    counted = ranked[0].counted
-    return fit.cost(counted) < ranked[0].cost(counted) + CLOSE * float(counted.sum())
 
 
 def _finalists(ranked: Sequence[JointFit], starts: int) -> list[JointFit]:

@@ -8,10 +8,10 @@ from dataclasses import replace
 from ssmr_ident.diagnose.accept import ahead, certain, harmless, leading, mends, significant
 from ssmr_ident.diagnose.baseline import LAST
 from ssmr_ident.diagnose.explain import without
-from ssmr_ident.diagnose.explore import search, within_reach
+from ssmr_ident.diagnose.explore import search
 from ssmr_ident.diagnose.followed import all_explained, at_its_best, each_set_once, explained, joined
 from ssmr_ident.diagnose.polish import loud, polish
-from ssmr_ident.diagnose.race import Progress
+from ssmr_ident.diagnose.race import Progress, within_reach
 from ssmr_ident.diagnose.weigh import Explanation, evidences
 from ssmr_ident.identify.descent import chatters, descend
 from ssmr_ident.identify.joint import differentiate
