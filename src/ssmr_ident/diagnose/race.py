@@ -9,14 +9,14 @@ from functools import partial
 
 import numpy as np
 
-from ssmr_ident.compare.recorded import follow
+from ssmr_ident.compare.recorded import follow, nearest
 from ssmr_ident.diagnose.explain import as_large_as_it_takes, beside, in_its_place, with_suspect
 from ssmr_ident.diagnose.gathered import gathered
 from ssmr_ident.diagnose.loose import begun_loose
 from ssmr_ident.diagnose.scan import Suspect, both_ways
 from ssmr_ident.identify.descent import chatters, descend, slides
 from ssmr_ident.identify.horizons import STEPS, led
-from ssmr_ident.identify.joint import JointFit, evaluate
+from ssmr_ident.identify.joint import JointFit, each_best, evaluate
 from ssmr_ident.identify.parallel import side_by_side
 from ssmr_ident.identify.trials.trial import Trial
 from ssmr_ident.physics.effects import CATALOGUE
@@ -231,7 +231,8 @@ def _begun(first: JointFit, suspect: Suspect) -> JointFit:
     fit = descend(probe, HEATS[0][1])
     if fit.cost(first.counted) < first.cost(first.counted) or not CATALOGUE[suspect.effect].loosens:
         return fit
-    anew = descend(follow(first.trials, probe.model, probe.point, first.nuisances), HEATS[0][1])
+    starts = [nearest(first.trials, probe.model, probe.point, near) for near in (first.nuisances, None)]
+    anew = descend(each_best(starts), HEATS[0][1])
     return ranked((fit, anew))[0] if np.isfinite(anew.rss) else fit
 
 

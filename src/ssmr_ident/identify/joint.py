@@ -151,6 +151,12 @@ def together(fits: Sequence[JointFit]) -> JointFit:
     )  # fmt: skip
 
 
+def each_best(fits: Sequence[JointFit]) -> JointFit:
+    """Fits of the same trials at one point, each trial as it is left with least."""
+    parts = np.array([np.where(np.isfinite(f.parts), f.parts, np.inf) for f in fits])
+    return together([fits[best].only(k) for k, best in enumerate(np.argmin(parts, axis=0))])
+
+
 def worth(residual: Array) -> float:
     """Number of independent samples in a residual, n/(1 + 2 Σ ρ²) (Bartlett 1946)."""
     used = residual[residual != 0.0] if np.any(residual == 0.0) else residual

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from scipy import signal
@@ -71,6 +72,7 @@ class Butterworth(Shown):
         )
 
 
+@cache
 def design(
     sample_rate: float, lower_hz: float = 0.0, upper_hz: float = math.inf, *, order: int = ORDER
 ) -> Butterworth | None:
