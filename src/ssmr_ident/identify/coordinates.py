@@ -67,10 +67,11 @@ class Model:
     def split(self, point: Array) -> Split:
         """Physical values and effects at a point of scaled coordinates."""
         count = len(self.physics)
-        values = {u.name: u.value(s) for u, s in zip(self.physics, point[:count], strict=True)}
+        scaled = point.tolist()  # Python's own floats, which are several times quicker one by one
+        values = {u.name: u.value(s) for u, s in zip(self.physics, scaled[:count], strict=True)}
         effects = {name: dict(fixed) for name, fixed in self.held.items()}
-        for coordinate, s in zip(self.free, point[count:], strict=True):
-            effects[coordinate.effect][coordinate.parameter.name] = coordinate.value(float(s))
+        for coordinate, s in zip(self.free, scaled[count:], strict=True):
+            effects[coordinate.effect][coordinate.parameter.name] = coordinate.value(s)
         return values, effects
 
     def as_known(self, point: Array) -> Array:

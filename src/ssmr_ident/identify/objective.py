@@ -63,7 +63,7 @@ class Unknown:
 
     def _bent(self, scaled: float) -> float:
         """Share of a coordinate that is gone: 1 about the prior, less towards the end of its reach."""
-        return (1.0 + (scaled / self.reach) ** 4) ** -0.25
+        return 1.0 if self.reach == math.inf else (1.0 + (scaled / self.reach) ** 4) ** -0.25
 
     @property
     def prior_spread(self) -> float:
