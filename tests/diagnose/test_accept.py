@@ -9,7 +9,7 @@ import pytest
 
 from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.diagnose import accept
-from ssmr_ident.diagnose.accept import mends, relieves, touches, within_file
+from ssmr_ident.diagnose.accept import mends, promises, relieves, touches, within_file
 from ssmr_ident.diagnose.weigh import Explanation
 from ssmr_ident.identify.coordinates import Model
 from ssmr_ident.identify.joint import JointFit
@@ -158,3 +158,16 @@ def test_a_second_effect_that_takes_less_has_to_leave_nothing_that_follows_the_m
     monkeypatch.setattr(accept, "predictions", lambda fit: [fit.chance])
     monkeypatch.setattr(accept, "grows_with_motion", lambda found: found[0])
     assert mends(explained("pair", 1.4 * share, after), explained("single", 1.4, before)) is taken
+
+
+@pytest.mark.parametrize(("left", "promising"), [(0.98, False), (0.9, True)])
+def test_a_pair_that_takes_next_to_nothing_is_not_led_on(left: float, promising: bool) -> None:
+    single = _leaving([400.0, 300.0], [200.0])
+    pair = _leaving([400.0 * left, 300.0 * left], [200.0 * left])
+    assert promises(pair, single) == promising
+
+
+def test_what_lies_below_the_noise_hides_no_promise() -> None:
+    """Of recordings that are explained but for one, that one is asked."""
+    single, pair = _leaving([4.0, 0.01], [0.01]), _leaving([2.0, 0.015], [0.015])
+    assert promises(pair, single)

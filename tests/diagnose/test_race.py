@@ -35,12 +35,12 @@ def first() -> JointFit:
 def test_a_probe_that_is_worse_than_nothing_gets_starts_of_its_own(first: JointFit, monkeypatch) -> None:  # type: ignore[no-untyped-def]
     loose, near = _suspect("free_play", {**PLAY, "gap_m": 0.02}), descend(beside(first, _suspect("free_play", PLAY)), 4)
     assert descend(beside(first, loose), 1).cost(first.counted) > first.cost(first.counted) > near.cost(first.counted)
-    monkeypatch.setattr(race, "follow", lambda trials, model, point, nuisances: near)
+    monkeypatch.setattr(race, "nearest", lambda trials, model, point, nuisances: near)
     assert race._begun(first, loose).cost(first.counted) <= near.cost(first.counted)
 
 
 def test_a_probe_that_helps_at_once_is_followed_no_further(first: JointFit, monkeypatch) -> None:  # type: ignore[no-untyped-def]
-    monkeypatch.setattr(race, "follow", lambda *_: pytest.fail("costs twenty simulations for nothing"))
+    monkeypatch.setattr(race, "nearest", lambda *_: pytest.fail("costs twenty simulations for nothing"))
     assert race._begun(first, _suspect("free_play", {**PLAY, "gap_m": 2e-4})).cost(first.counted) < first.cost(
         first.counted
     )
@@ -146,3 +146,27 @@ def test_an_effect_is_begun_as_large_as_it_takes_and_in_units_of_that() -> None:
     assert ended is not None
     assert ended.model.split(ended.point)[1]["nonlinear_stiffness"]["k3_N_m3"] == pytest.approx(1e9, rel=0.005)
     assert race._enlarged(linear, Suspect("quadratic_damping", {"d2_N_s2_m2": 1e-3}, {}, {}, 0.0)) is None
+
+
+def test_beside_a_named_effect_one_size_is_begun_of_what_acts_beyond_a_threshold() -> None:
+    def belt(size: float, gain: float) -> Suspect:
+        return Suspect("motor_belt", {"K_b_N_m": size}, {}, {}, gain)
+
+    group = [belt(1e4, 40.0), belt(4e4, 9.0)]
+    assert race.variants(group) == group
+    assert race.variants(group, sizes=False) == group[:1]
+    # what is tried and not fitted is tried all the same
+    along = [Suspect("free_play", {"gap_m": 1e-4}, {"share_x": share}, {}, 1.0) for share in (0.0, 1.0)]
+    assert race.variants(along, sizes=False) == along
+
+
+@pytest.mark.parametrize(("close", "led_on"), [(race.CLOSE, True), (-race.CLOSE, False)])
+def test_a_probe_that_stays_far_behind_is_led_no_further(
+    first: JointFit, close: float, led_on: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    slow = _suspect("sensor_bandwidth", {"bandwidth_hz": 20.0})
+    assert CATALOGUE["sensor_bandwidth"].sudden
+    held = beside(first, slow)
+    monkeypatch.setattr(race, "CLOSE", close)
+    assert race.within_reach([first], held) == led_on
+    assert (race.started(first, slow).cost(first.counted) < held.cost(first.counted)) == led_on

@@ -41,10 +41,10 @@ PROMISING = 6.0
 SCREENED, REFITTED = 8, 3
 """Effects that are refitted on the first horizons, and to the end."""
 
-ALIKE = 0.2
-"""Difference in the logarithm of what two fits leave of a recording, up to which they leave the same: of 31 fits whose
-loudest recordings were begun elsewhere (14 sessions of decays) six fell by 490 to 4,400 in cost, and had left them more
-than three times as loud or as quiet as the other; of those alike none fell by more than 18."""
+AS_MUCH = 0.2
+"""Difference in the logarithm of what two fits leave of a recording, up to which they leave as much: of 31 fits whose
+loudest recordings were begun elsewhere (14 sessions) six fell by 490 to 4,400 in cost, and had left those more than
+three times as loud or as quiet as the other; none of the rest fell by more than 29."""
 
 SAME = 0.01
 """Share of a change's square below which the baseline makes it as well: steps of a tenth of a change leave so much."""
@@ -252,7 +252,7 @@ def mended(fit: JointFit, beside: JointFit | None = None) -> JointFit:
         return fit
     stuck = left > LOUD * max(middle, 1.0)
     if beside is not None:
-        stuck &= np.abs(np.log(fit.parts / beside.parts)) > ALIKE
+        stuck &= np.abs(np.log(fit.parts / beside.parts)) > AS_MUCH
     if not stuck.any():
         return fit
     return descend(by_other_roads(fit, only=np.flatnonzero(stuck).tolist(), known=True), LAST)

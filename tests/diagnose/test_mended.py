@@ -1,0 +1,74 @@
+"""Recordings in a valley of their own are begun elsewhere, where that has to do with what they are explained by."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from bank import draw
+
+from ssmr_ident.compare.roads import by_other_roads
+from ssmr_ident.diagnose import explore
+from ssmr_ident.diagnose.baseline import best_baseline
+from ssmr_ident.diagnose.explore import mended
+from ssmr_ident.diagnose.setup import set_up
+from ssmr_ident.identify.descent import LOUD
+from ssmr_ident.identify.joint import JointFit, each_best, evaluate, together
+
+
+@pytest.fixture(scope="module")
+def released() -> JointFit:
+    """Decays with nothing missing, at their best."""
+    drawn = draw("decays", "none", 11, short=True)
+    setup = set_up(drawn.campaign, drawn.campaign.parameters)
+    return best_baseline(setup.fitted, setup, drawn.campaign.parameters)[0]
+
+
+@pytest.fixture(scope="module")
+def astray(released: JointFit) -> JointFit:
+    """The same, the first release the other way round."""
+    own = [-released.nuisances[0], *released.nuisances[1:]]
+    fit = evaluate(released.trials, released.model, released.point, own)
+    assert fit.parts[0] > 100.0 * released.parts[0]
+    return fit
+
+
+def test_other_roads_lead_back(released: JointFit, astray: JointFit) -> None:
+    found = by_other_roads(astray)
+    assert found.parts == pytest.approx(released.parts, rel=0.01)
+    assert all(one is other for one, other in zip(found.nuisances[1:], astray.nuisances[1:], strict=True))
+
+
+def test_roads_are_tried_for_what_is_asked_for(astray: JointFit) -> None:
+    others = list(range(1, len(astray.trials)))
+    assert np.array_equal(by_other_roads(astray, only=others).parts, astray.parts)
+
+
+def test_a_road_that_ends_worse_is_not_taken(released: JointFit) -> None:
+    assert np.array_equal(by_other_roads(released).parts, released.parts)
+
+
+def test_a_fit_is_mended_where_one_recording_is_astray(released: JointFit, astray: JointFit) -> None:
+    found = mended(astray)
+    assert found.cost(released.counted) == pytest.approx(released.cost(released.counted), abs=1.0)
+    assert mended(astray, released).cost(released.counted) == found.cost(released.counted)
+
+
+def test_what_is_left_as_well_without_the_effect_is_no_reason(
+    released: JointFit, astray: JointFit, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(explore, "by_other_roads", lambda *_, **__: pytest.fail("a hundred simulations for nothing"))
+    assert mended(astray, astray) is astray
+    assert mended(released) is released
+    # of a model that leaves most of them it is no start that is wanting
+    all_round = evaluate(released.trials, released.model, released.point, [-n for n in released.nuisances])
+    assert float(np.median(all_round.parts / [t.size for t in all_round.trials])) > LOUD
+    assert mended(all_round) is all_round
+
+
+def test_recordings_are_taken_from_the_fit_that_leaves_least_of_them(released: JointFit, astray: JointFit) -> None:
+    own = [*released.nuisances[:-1], -released.nuisances[-1]]
+    other = evaluate(released.trials, released.model, released.point, own)
+    assert np.array_equal(each_best([astray, other]).parts, released.parts)
+    again = together([astray.only(k) for k in range(len(astray.trials))])
+    assert np.array_equal(again.parts, astray.parts)
+    assert again.penalty == pytest.approx(astray.penalty)
