@@ -98,3 +98,13 @@ def test_what_cannot_be_filtered_says_why(call, word: str) -> None:
 @pytest.mark.parametrize("count", [20, 21, 25, 34, 64, 127])
 def test_every_length_from_one_period_on_works(count: int) -> None:
     assert np.isfinite(low_pass(np.random.default_rng(0).standard_normal(count), RATE, 50.0)).all()
+
+
+def test_a_filter_that_was_changed_does_not_change_the_next_one() -> None:
+    first = design(1000.0, upper_hz=50.0)
+    assert first is not None
+    kept = first.sections.copy()
+    first.sections[:] = 0.0
+    again = design(1000.0, upper_hz=50.0)
+    assert again is not None
+    assert np.array_equal(again.sections, kept)

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cache
+from functools import lru_cache
 
 import numpy as np
 from scipy import signal
@@ -72,7 +72,6 @@ class Butterworth(Shown):
         )
 
 
-@cache
 def design(
     sample_rate: float, lower_hz: float = 0.0, upper_hz: float = math.inf, *, order: int = ORDER
 ) -> Butterworth | None:
@@ -109,14 +108,18 @@ def design(
         kind, edges = "highpass", [lower_hz]
     else:
         return None
+    sections, memory = _sections(order, tuple(edges), kind, sample_rate)
+    # a copy, for who changes it changes a filter of their own
+    return Butterworth(sections.copy(), memory, (lower_hz if has_lower else 0.0, upper_hz if has_upper else math.inf))
+
+
+@lru_cache(maxsize=64)
+def _sections(order: int, edges: tuple[float, ...], kind: str, sample_rate: float) -> tuple[np.ndarray, int]:
+    """Second-order sections, and the samples in which their transient settles; the same filter is asked for often."""
     critical = edges if len(edges) == 2 else edges[0]
     zeros, poles, gain = signal.butter(order, critical, kind, fs=sample_rate, output="zpk")
     memory = math.ceil(math.log(SETTLED) / math.log(np.abs(poles).max()))
-    return Butterworth(
-        signal.zpk2sos(zeros, poles, gain),
-        memory,
-        (lower_hz if has_lower else 0.0, upper_hz if has_upper else math.inf),
-    )
+    return signal.zpk2sos(zeros, poles, gain), memory
 
 
 def low_pass(
