@@ -148,16 +148,14 @@ def test_an_effect_is_begun_as_large_as_it_takes_and_in_units_of_that() -> None:
     assert race._enlarged(linear, Suspect("quadratic_damping", {"d2_N_s2_m2": 1e-3}, {}, {}, 0.0)) is None
 
 
-def test_beside_a_named_effect_one_size_is_begun_of_what_acts_beyond_a_threshold() -> None:
-    def belt(size: float, gain: float) -> Suspect:
-        return Suspect("motor_belt", {"K_b_N_m": size}, {}, {}, gain)
-
-    group = [belt(1e4, 40.0), belt(4e4, 9.0)]
-    assert race.variants(group) == group
-    assert race.variants(group, sizes=False) == group[:1]
+def test_of_what_acts_beyond_a_threshold_all_sizes_are_begun() -> None:
+    belts = [Suspect("motor_belt", {"K_b_N_m": size}, {}, {}, gain) for size, gain in ((1e4, 40.0), (4e4, 9.0))]
+    assert race.variants(belts) == belts
+    springs = [Suspect("nonlinear_stiffness", {"k3_N_m3": k}, {}, {}, gain) for k, gain in ((1e9, 40.0), (-1e9, 9.0))]
+    assert race.variants(springs) == springs[:1]
     # what is tried and not fitted is tried all the same
     along = [Suspect("free_play", {"gap_m": 1e-4}, {"share_x": share}, {}, 1.0) for share in (0.0, 1.0)]
-    assert race.variants(along, sizes=False) == along
+    assert race.variants(along) == along
 
 
 @pytest.mark.parametrize(("close", "led_on"), [(race.CLOSE, True), (-race.CLOSE, False)])

@@ -133,7 +133,7 @@ def search(
         # a straight line from a sensor that is quick enough points nowhere, and on a rig it costs little not to ask it
         cheap = [g for g in groups if chosen and baseline == "sdof" and CATALOGUE[g[0].effect].sudden]
         each = _each_group(chosen, beyond, cheap)
-        starts = [partial(started, base, s) for group in each for s in variants(group, sizes=not further)]
+        starts = [partial(started, base, s) for group in each for s in variants(group)]
         starts += [partial(from_what_is_known, base, s, lengths) for group in beyond for s in variants(group)]
         starts += [partial(started_from_known, base, group[0], pulls) for group in chosen if alone]
         starts += [partial(_instead, base, s) for s in same]

@@ -283,14 +283,12 @@ def started_from_known(base: JointFit, suspect: Suspect, plain: bool = False) ->
     return descend(evaluate(base.trials, model, model.as_known(point), base.nuisances), 4, plain=plain)
 
 
-def variants(group: Sequence[Suspect], sizes: bool = True) -> list[Suspect]:
-    """The best probe of an effect, for each value of what is tried and not fitted; all of what acts beyond a threshold.
-
-    A straight line promises nothing there. Without ``sizes`` the one that it promises most of, beside an effect that is
-    named: of five such groups (practice 02, 03, 05) it ended best in four, and in the fifth none came below it.
+def variants(group: Sequence[Suspect]) -> list[Suspect]:
+    """The best probe of an effect, for each value of what is tried and not fitted; all of what acts beyond a threshold,
+    of which a straight line promises nothing.
     """
     found: dict[tuple[tuple[str, float], ...], Suspect] = {}
     for suspect in group:
-        begun = suspect.at.items() if sizes and CATALOGUE[suspect.effect].sudden else ()
+        begun = suspect.at.items() if CATALOGUE[suspect.effect].sudden else ()
         found.setdefault((*sorted(suspect.held.items()), *begun), suspect)
     return list(found.values())

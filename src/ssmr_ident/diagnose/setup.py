@@ -9,6 +9,7 @@ import numpy as np
 from ssmr_ident.campaign import Campaign, Measurement
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import ParameterSet
+from ssmr_ident.diagnose.arranged import loudness
 from ssmr_ident.identify.coordinates import Model
 from ssmr_ident.identify.joint import JointFit
 from ssmr_ident.identify.objective import Unknown
@@ -147,15 +148,11 @@ def keep_back(targets: list[Measurement]) -> tuple[list[Measurement], list[Measu
     kept = [m for group in kinds.values() for m in _last(group)]
     if not kept:
         # pairs: the quieter one of as many kinds as make up the share, at least one
-        pairs = [sorted(group, key=_loudness)[0] for group in kinds.values() if len(group) > 1]
+        pairs = [sorted(group, key=loudness)[0] for group in kinds.values() if len(group) > 1]
         kept = pairs[: max(1, round(KEPT_BACK * len(targets)))]
     if not kept and len(targets) > 1:
-        kept = [min(targets, key=_loudness)]
+        kept = [min(targets, key=loudness)]
     return [m for m in targets if m not in kept], [m for m in targets if m in kept]
-
-
-def _loudness(m: Measurement) -> float:
-    return max(float(np.std(c.samples)) for c in m.recording.channels)
 
 
 def _last(group: list[Measurement]) -> list[Measurement]:
@@ -163,7 +160,7 @@ def _last(group: list[Measurement]) -> list[Measurement]:
     count = int(KEPT_BACK * len(group) + 1e-9)
     if not count:
         return []
-    ordered = sorted(group, key=_loudness)
+    ordered = sorted(group, key=loudness)
     middle = ordered[1:-1] or ordered[:-1]
     spread = np.linspace(0, len(middle) - 1, min(count, len(middle))).round().astype(int)
     return [middle[i] for i in dict.fromkeys(spread.tolist())]

@@ -56,11 +56,12 @@ def _diagnosed(campaign: Campaign, known: ParameterSet, seed: int, progress: Pro
         from ssmr_ident.diagnose.turning import diagnose_turning
 
         return diagnose_turning(campaign, known, seed, progress)
+    from ssmr_ident.diagnose.arranged import arranged
     from ssmr_ident.diagnose.assemble import assembled, refitted_on_all
     from ssmr_ident.diagnose.engine import examine
     from ssmr_ident.diagnose.sliding import with_law_of_sliding
 
-    setup, known = with_law_of_sliding(campaign, known, progress)
+    setup, known = with_law_of_sliding(arranged(campaign), known, progress)
     outcome = examine(setup, known, progress)
     return assembled(outcome, known, refitted_on_all(outcome), seed)
 
