@@ -37,6 +37,9 @@ PLACES = 3
 BACK = -0.3
 """Share of an effect that is tried the other way."""
 
+BURST_SHARE = 0.1
+"""Share of an effect that is tried where a simulation with all of it bursts."""
+
 SEEN = 1e-6
 """Share of the noise's variance below which a change cannot be told from rounding."""
 
@@ -192,6 +195,10 @@ def _suspect(
     columns = []
     for point in points:
         change, size = _change(fit, effect.id, {**point, **held}), 1.0
+        if change is None and not effect.sudden:
+            # a spring that softens until it has no stiffness left is none to be held against recordings
+            size = BURST_SHARE
+            change = _change(fit, effect.id, {**smaller(effect, point, size), **held})
         if change is None or float(change @ change) < SEEN * len(change):
             return None
         rms = float(np.sqrt(change @ change / len(change)))
