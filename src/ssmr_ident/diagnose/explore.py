@@ -136,6 +136,7 @@ def search(
         starts = [partial(started, base, s) for group in each for s in variants(group)]
         starts += [partial(from_what_is_known, base, s, lengths) for group in beyond for s in variants(group)]
         starts += [partial(started_from_known, base, group[0], pulls) for group in chosen if alone]
+        same += [g[0] for g in beyond if alone]  # what a belt gives, a baseline puts into the tires
         starts += [partial(_instead, base, s) for s in same]
         starts += begun_loose(base, asked) if pulls else []
         rough = run_on(list(side_by_side(lambda begin: begin(), starts)))
