@@ -129,17 +129,20 @@ def _examined(setup: Setup, parameters: ParameterSet, progress: Progress | None)
         first = chosen is baseline
         others = [e for e in new if e is not leader]
         good = good_enough(leader, chosen, first)
-        if first and others and good and not significant(found_fit):
+        vague = leader if first and good and not significant(found_fit) else None
+        if vague is not None and others:
             # a law whose size the recordings do not give stands in for another
             leader = at_its_best(leading(chosen, others), new, kept, lengths)
             found_fit = differentiate(leader.fit)
             good = good_enough(leader, chosen, first)
         tried = joined(tried, new)
-        if first and not good and certain(leader, chosen) and loud(chosen.fit):
-            together = with_a_second(leader, chosen, kept, setup.campaign.session.baseline, lengths, progress)
+        # or for two
+        single = vague if vague is not None and (not good or leader is vague) else leader
+        if first and (single is vague or (not good and certain(leader, chosen) and loud(chosen.fit))):
+            together = with_a_second(single, chosen, kept, setup.campaign.session.baseline, lengths, progress)
             tried = joined(tried, together)
             if together and good_enough(together[0], chosen, first) and significant(together[0].fit):
-                singles.append(leader)
+                singles.append(single)
                 chosen = together[0]
                 break
         if not good or not significant(found_fit) or within_file(found_fit, parameters):
