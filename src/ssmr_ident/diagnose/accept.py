@@ -209,11 +209,13 @@ def as_near(rival: Explanation, chosen: Explanation) -> bool:
     """Whether of two laws, neither of which is the world's, one is about as near to it as the other.
 
     Where the best law leaves structure, its formula is wrong by that much; a rival whose error is no more than that
-    again cannot be told from it by how well it fits.
+    again, in the recordings that were fitted as in those that were kept back, cannot be told from it by how well it
+    fits.
     """
     if len(rival.fit.model.ids) != len(chosen.fit.model.ids):
         return False
-    return float(np.exp(np.mean(np.log(rival.kept.parts / chosen.kept.parts)))) < ALIKE
+    pairs = ((rival.fit, chosen.fit), (rival.kept, chosen.kept))
+    return all(float(np.mean(np.log(own.parts / best.parts))) < float(np.log(ALIKE)) for own, best in pairs)
 
 
 def within_file(fit: JointFit, parameters: ParameterSet) -> bool:
