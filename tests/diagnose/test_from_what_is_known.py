@@ -10,9 +10,9 @@ from ssmr_ident.compare.recorded import follow, nearest
 from ssmr_ident.diagnose import explore
 from ssmr_ident.diagnose.baseline import bent, best_baseline
 from ssmr_ident.diagnose.explain import SETTLING, beside, with_suspect
-from ssmr_ident.diagnose.explore import PROMISING, search
+from ssmr_ident.diagnose.explore import search
 from ssmr_ident.diagnose.race import FAR, started
-from ssmr_ident.diagnose.scan import out_of_reach, scan
+from ssmr_ident.diagnose.scan import PROMISING, out_of_reach, scan
 from ssmr_ident.diagnose.setup import set_up
 from ssmr_ident.diagnose.sliding import with_law_of_sliding
 from ssmr_ident.identify.descent import descend

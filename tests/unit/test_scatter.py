@@ -81,17 +81,41 @@ def test_estimates_scatter_by_what_is_said_in_noise_of_any_colour(phi: float, fr
         assert np.mean(curvature) > 2.0 * np.std(found)  # one number of independent samples for all frequencies
 
 
+def test_what_priors_of_nuisances_leave_open_is_part_of_it() -> None:
+    """A wave, and a gain of each recording that is known beforehand and does the same: the mean of four is known to
+    half of what one gain is open by, however quiet the noise."""
+    count, open_by, random = 400, 0.3, np.random.default_rng(5)
+    times = np.arange(count) / 100.0
+    wave = 20.0 * np.sin(2.0 * np.pi * 0.8 * times)
+    found, stated = [], []
+    for _ in range(200):
+        gains = 3.0 + open_by * random.standard_normal(4)
+        trials = [_trial(wave, gain * wave + random.standard_normal(count), times, open_by) for gain in gains]
+        fit = differentiate(descend(evaluate(trials, MODEL, np.zeros(1), [np.zeros(1)] * 4), 5))
+        found.append(50.0 * fit.point[0])
+        stated.append(50.0 * float(np.sqrt(covariance(fit)[0, 0])))
+    assert np.mean(stated) == pytest.approx(open_by / np.sqrt(4), rel=0.02)
+    assert np.std(found) == pytest.approx(np.mean(stated), rel=0.2)  # four deviations of a deviation of 200
+
+
 def _measured(wave: np.ndarray, target: np.ndarray, times: np.ndarray) -> JointFit:
+    return evaluate([_trial(wave, target, times)], MODEL, np.zeros(1), [np.zeros(0)])
+
+
+def _trial(wave: np.ndarray, target: np.ndarray, times: np.ndarray, open_by: float | None = None) -> Trial:
+    """``open_by`` is how far a gain of its own may be off."""
+    own = () if open_by is None else ("gain",)
+    scales = np.array([1.0 if open_by is None else open_by])[: len(own)]
+
     def run(values: dict[str, float], effects: object, nuisance: np.ndarray) -> np.ndarray:
-        return (values["a"] * wave)[:, None]
+        return ((values["a"] + float(np.sum(nuisance * scales))) * wave)[:, None]
 
     course = Course(times, target[:, None], run, ("m",), None)
     noise = (AutoregressiveNoise(np.ones(1), 1.0),)
-    trial = Trial(
+    return Trial(
         "one.csv", "forced", "", ("position",), times, target[:, None], noise, np.ones((len(times), 1)), run,
-        lambda values, effects: np.zeros(0), (), np.zeros(0), course,
+        lambda values, effects: np.zeros(len(own)), own, scales, course,
     )  # fmt: skip
-    return evaluate([trial], MODEL, np.zeros(1), [np.zeros(0)])
 
 
 def test_a_smoothed_spectrum_keeps_its_power() -> None:

@@ -27,16 +27,12 @@ from ssmr_ident.diagnose.race import (
     variants,
     within_reach,
 )
-from ssmr_ident.diagnose.scan import Suspect, candidates, moves_beyond, out_of_reach, scan
+from ssmr_ident.diagnose.scan import Suspect, candidates, moves_beyond, out_of_reach, promising, scan
 from ssmr_ident.identify.descent import LOUD, chatters, descend, slides
 from ssmr_ident.identify.horizons import led
 from ssmr_ident.identify.joint import JointFit
 from ssmr_ident.identify.parallel import side_by_side
 from ssmr_ident.physics.effects import CATALOGUE
-
-PROMISING = 6.0
-"""Fall of n ln(RSS), beyond one for each parameter, from which a suspect is refitted. Noise alone passes it in
-1 to 2 of 100 probes (chi-square, one and two parameters); passing costs time and decides nothing."""
 
 SCREENED, REFITTED = 8, 3
 """Effects that are refitted on the first horizons, and to the end."""
@@ -124,7 +120,7 @@ def search(
     elif loud:
         rough = raced(base, field, progress) if field else []
     else:
-        chosen = [g for g in groups if _promises(g[0])][: REFITTED if further else SCREENED]
+        chosen = [g for g in groups if promising(g[0])][: REFITTED if further else SCREENED]
         beyond = [
             g for g in groups if (alone or elsewhere) and moves_beyond(CATALOGUE[g[0].effect]) and len(lengths) > 1
         ]
@@ -145,7 +141,7 @@ def search(
             begun = list(side_by_side(lambda begin: begin(), begun_loose(known, asked)))
             rough = ranked([*rough, *run_on(begun)])
     tried += _to_the_end(base, rough, rest, lengths, progress)
-    if loud and len(lengths) > 1 and not chatters(base) and field and _promises(field[0][0]):
+    if loud and len(lengths) > 1 and not chatters(base) and field and promising(field[0][0]):
         # what grows while a recording lasts hardly shows on a first horizon, and is left behind there
         first = field[0][0]
         tried += [] if _has(tried, first) else _to_the_end(base, [started(base, first)], [np.inf], lengths, progress)
@@ -171,10 +167,6 @@ def _astray(tried: Sequence[JointFit]) -> bool:
     return not any(chatters(f) for f in best) and all(
         float(np.median(f.parts / [t.size for t in f.trials])) > WIDE for f in best
     )
-
-
-def _promises(suspect: Suspect) -> bool:
-    return suspect.gain > PROMISING + len(suspect.at)
 
 
 def _has(fits: Sequence[JointFit], suspect: Suspect) -> bool:

@@ -13,7 +13,8 @@ from ssmr_ident.compare.recorded import follow, nearest
 from ssmr_ident.diagnose.explain import as_large_as_it_takes, beside, in_its_place, with_suspect
 from ssmr_ident.diagnose.gathered import gathered
 from ssmr_ident.diagnose.loose import begun_loose
-from ssmr_ident.diagnose.scan import Suspect, both_ways
+from ssmr_ident.diagnose.scan import Suspect, both_ways, promising
+from ssmr_ident.diagnose.weigh import CERTAIN
 from ssmr_ident.identify.descent import chatters, descend, slides
 from ssmr_ident.identify.horizons import STEPS, led
 from ssmr_ident.identify.joint import JointFit, each_best, evaluate
@@ -34,6 +35,9 @@ REPLACED = 3
 CLOSE = 1.5
 """Difference in the logarithm of the unexplained variance, before refits have come to rest, up to which an effect may
 still overtake another: a factor of 4.5."""
+
+AS_LIKELY = 2.0 * CERTAIN
+"""Fall of n ln(RSS) by which one formula of an effect may promise less than another, and be begun as well."""
 
 HEATS = ((0, 1), (12, 3), (6, 4))
 """Rounds in which probes are tried: how many go in, and Gauss-Newton steps in each. All probes go into the first, on
@@ -284,11 +288,13 @@ def started_from_known(base: JointFit, suspect: Suspect, plain: bool = False) ->
 
 
 def variants(group: Sequence[Suspect]) -> list[Suspect]:
-    """The best probe of an effect, for each value of what is tried and not fitted; all of what acts beyond a threshold,
-    of which a straight line promises nothing.
+    """The best probe of an effect, for each value of what is tried and not fitted, and for each formula that promises
+    as much; all of what acts beyond a threshold, of which a straight line promises nothing.
     """
-    found: dict[tuple[tuple[str, float], ...], Suspect] = {}
+    found: dict[tuple[object, ...], Suspect] = {}
     for suspect in group:
         begun = suspect.at.items() if CATALOGUE[suspect.effect].sudden else ()
-        found.setdefault((*sorted(suspect.held.items()), *begun), suspect)
+        likely = promising(suspect) and group[0].gain - suspect.gain < AS_LIKELY
+        form = frozenset(suspect.at if likely else group[0].at)
+        found.setdefault((form, *sorted(suspect.held.items()), *begun), suspect)
     return list(found.values())

@@ -24,9 +24,15 @@ from ssmr_ident.physics.effects import CATALOGUE
 from ssmr_ident.physics.rig import RIG_KEYS
 
 Array = np.ndarray
+Probe = tuple[Effect, dict[str, float], dict[str, float]]
+"""An effect, where a fit of it begins, and what is held."""
 
 ROUNDING = 1e-10
 """Share of a direction's own curvature below which what is left of it is rounding."""
+
+PROMISING = 6.0
+"""Fall of n ln(RSS), beyond one for each parameter, from which a suspect is refitted. Noise alone passes it in
+1 to 2 of 100 probes (chi-square, one and two parameters); passing costs time and decides nothing."""
 
 LEAST = 1e-3
 """Smallest share of a probe at which an effect is tried."""
@@ -56,7 +62,7 @@ class Suspect:
     held : mapping of parameter to value
         Tried at this value and not fitted.
     sizes : mapping of parameter to float
-        Natural sizes of those that may change sign.
+        Natural sizes of those that may have either sign.
     gain : float
         Fall of n ln(RSS) that the straight line promises.
     grown : tuple of str
@@ -74,12 +80,17 @@ class Suspect:
     own: float = 1.0
 
 
+def promising(suspect: Suspect) -> bool:
+    """Whether a suspect is worth a refit."""
+    return suspect.gain > PROMISING + len(suspect.at)
+
+
 def both_ways(suspect: Suspect) -> list[Suspect]:
     """A suspect, and where it may change sign also some of it the other way.
 
     Far from the optimum the straight line has the sign of what the baseline has made of the effect.
     """
-    signed = [name for name in suspect.sizes if name in suspect.at]
+    signed = [name for name in suspect.sizes if name in suspect.grown]
     if not signed:
         return [suspect]
     return [suspect, replace(suspect, at={**suspect.at, **{name: BACK * suspect.at[name] for name in signed}})]
@@ -113,13 +124,29 @@ def scan(fit: JointFit, effects: Sequence[Effect], small: bool = False) -> list[
         The fit leaves hardly more than noise: what is missing is small, and each effect is tried as small as that. A
         stiffness that turns a decay by a radian points nowhere, a hundredth of it points home.
     """
-    clear = Cleared(fit)
+    clear, every = Cleared(fit), probes(fit, effects)
+    places = _places(every)
     found: dict[str, list[Suspect]] = {}
-    for suspect in side_by_side(lambda one: _suspect(fit, clear, *one, small), probes(fit, effects)):
+    for suspect in side_by_side(lambda one: _suspect(fit, clear, *one, places, small), every):
         if suspect is not None:
             found.setdefault(suspect.effect, []).append(suspect)
     groups = [_few_places(CATALOGUE[name], sorted(some, key=lambda s: -s.gain)) for name, some in found.items()]
     return sorted(groups, key=lambda group: -group[0].gain)
+
+
+def _places(probes: Sequence[Probe]) -> dict[tuple[str, str], float]:
+    """Natural size, by effect and name, of what may be to either side of nothing and switches nothing off: the largest
+    that is tried.
+
+    Were it where a fit begins, a bend that is begun in the middle would be held there.
+    """
+    found: dict[tuple[str, str], float] = {}
+    for effect, at, _ in probes:
+        for parameter in effect.parameters:
+            if parameter.name in at and parameter.off is None and parameter.lower < 0.0:
+                key = effect.id, parameter.name
+                found[key] = max(found.get(key, 0.0), abs(at[parameter.name]))
+    return found
 
 
 def out_of_reach(fit: JointFit, effects: Sequence[Effect], groups: Sequence[Sequence[Suspect]]) -> list[list[Suspect]]:
@@ -148,7 +175,7 @@ def moves_beyond(effect: Effect) -> bool:
     return effect.sudden and Site.OUTPUT not in effect.acts
 
 
-def probes(fit: JointFit, effects: Sequence[Effect]) -> list[tuple[Effect, dict[str, float], dict[str, float]]]:
+def probes(fit: JointFit, effects: Sequence[Effect]) -> list[Probe]:
     """Every probe of some effects in a session's own units, at each value of what is tried and not fitted."""
     sizes, found = sizes_of(fit), []
     for effect in effects:
@@ -186,7 +213,13 @@ def on_rig(model: Model) -> bool:
 
 
 def _suspect(
-    fit: JointFit, clear: Cleared, effect: Effect, at: dict[str, float], held: dict[str, float], small: bool
+    fit: JointFit,
+    clear: Cleared,
+    effect: Effect,
+    at: dict[str, float],
+    held: dict[str, float],
+    places: Mapping[tuple[str, str], float],
+    small: bool,
 ) -> Suspect | None:
     signed = [p for p in effect.amplitudes if p.name in at and p.lower < 0.0]
     points = [at]
@@ -230,6 +263,7 @@ def _suspect(
         }
     names = tuple(p.name for p in (*grown, *signed))
     natural = {p.name: abs(at[p.name]) for p in signed}
+    natural |= {name: size for (effect_id, name), size in places.items() if effect_id == effect.id and name in at}
     own = float(np.max(np.diag(gram) / clear.size_of(raw)))
     return Suspect(effect.id, start, held, natural, gain, names, own)
 

@@ -99,14 +99,13 @@ _RIDERS: tuple[Mapping[str, float | Sized], ...] = tuple(
 """A ninth between one and the next: the descent finds what is left of that. So small a share, because a straight line
 must tell which frequency it is. Where noise is fast, a recording's motion seems faster than it is: down to a tenth."""
 
-_ALMOST_AT_REST = Sized(0.02, "deflection")
-"""Where a place begins that is fitted: nothing, but for the size that a fit's steps have."""
+_IN_THE_MIDDLE = Sized(1e-4, "deflection")
+"""Where a bend begins. On a robot, where none is tried off the middle, it stays there."""
 
 _TOUCHES: tuple[Mapping[str, float | Sized], ...] = tuple(
-    {"c_abs_s_N_m": Sized(0.05, "stiffness"), "place_m": Sized(share, "deflection")} for share in (-0.4, 0.005, 0.4)
+    {"c_abs_s_N_m": Sized(0.05, "stiffness"), "place_m": Sized(share, "deflection")} for share in (-0.4, 0.4)
 )
-"""Off the middle, and nearer to it than ``_ALMOST_AT_REST``: of quiet releases a bend at a fiftieth of the largest
-motion changes much less."""
+"""Off the middle."""
 
 EFFECT = Effect(
     id="unlisted",
@@ -136,7 +135,7 @@ EFFECT = Effect(
     acts={Site.ELEMENT: force},
     rig=True,
     probes=tuple(
-        {name: Sized(0.05, size), **({"place_m": _ALMOST_AT_REST} if name == "c_abs_s_N_m" else {})}
+        {name: Sized(0.05, size), **({"place_m": _IN_THE_MIDDLE} if name == "c_abs_s_N_m" else {})}
         for name, size in list(zip(TERMS, _SIZES, strict=True))[: PULSE_HZ - 2]
     ),
     rig_probes=(*_PULSES, *_RIDERS, *_TOUCHES),
