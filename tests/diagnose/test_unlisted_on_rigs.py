@@ -8,8 +8,10 @@ import pytest
 from small_rigs import Run, campaign, fitted, prepared
 
 from ssmr_ident.diagnose import explore
+from ssmr_ident.diagnose.explain import with_suspect
 from ssmr_ident.diagnose.race import ranked, started
-from ssmr_ident.diagnose.scan import PLACES, scan
+from ssmr_ident.diagnose.scan import PLACES, both_ways, scan
+from ssmr_ident.diagnose.sizes import sizes_of
 from ssmr_ident.identify.descent import LOUD
 from ssmr_ident.physics.effects import CATALOGUE
 from ssmr_ident.pipeline.diagnose import diagnose
@@ -53,6 +55,20 @@ def test_a_spring_that_touches_on_one_side_is_named_with_its_place(side: float, 
     assert found.std is not None
     assert abs(found.value - law["place_m"]) < 3.0 * found.std
     assert found.std == pytest.approx(known, rel=0.1)
+
+
+def test_a_bend_is_begun_in_the_middle_and_free_to_leave_it() -> None:
+    """A prior as narrow as where a fit begins held a spring that touches off the middle there: a robot's (bank 6401)
+    needed hardening beside it then."""
+    fit = fitted(prepared(campaign({"unlisted": STOP}, RUNS, seed=3, duration=6.0)))
+    (group,) = scan(fit, [CATALOGUE["unlisted"]])
+    bends = [suspect for suspect in group if "place_m" in suspect.at]
+    assert {math.copysign(1.0, s.at["place_m"]) if s.at["place_m"] else 0.0 for s in bends} == {-1.0, 0.0, 1.0}
+    assert {s.sizes["place_m"] for s in bends} == {max(s.at["place_m"] for s in bends)}
+    model, _ = with_suspect(fit, next(s for s in bends if not s.at["place_m"]))
+    assert model.free[-1].unknown.prior_std == pytest.approx(1.2 * sizes_of(fit)["deflection"])
+    # and is not turned about with the sign of its stiffness
+    assert [way.at["place_m"] for way in both_ways(bends[0])] == [bends[0].at["place_m"]] * 2
 
 
 def test_where_the_first_horizons_mislead_whole_recordings_are_asked(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -24,8 +24,6 @@ from ssmr_ident.physics.effects import CATALOGUE
 from ssmr_ident.physics.rig import RIG_KEYS
 
 Array = np.ndarray
-Probe = tuple[Effect, dict[str, float], dict[str, float]]
-"""An effect, where a fit of it begins, and what is held."""
 
 ROUNDING = 1e-10
 """Share of a direction's own curvature below which what is left of it is rounding."""
@@ -124,29 +122,13 @@ def scan(fit: JointFit, effects: Sequence[Effect], small: bool = False) -> list[
         The fit leaves hardly more than noise: what is missing is small, and each effect is tried as small as that. A
         stiffness that turns a decay by a radian points nowhere, a hundredth of it points home.
     """
-    clear, every = Cleared(fit), probes(fit, effects)
-    places = _places(every)
+    clear = Cleared(fit)
     found: dict[str, list[Suspect]] = {}
-    for suspect in side_by_side(lambda one: _suspect(fit, clear, *one, places, small), every):
+    for suspect in side_by_side(lambda one: _suspect(fit, clear, *one, small), probes(fit, effects)):
         if suspect is not None:
             found.setdefault(suspect.effect, []).append(suspect)
     groups = [_few_places(CATALOGUE[name], sorted(some, key=lambda s: -s.gain)) for name, some in found.items()]
     return sorted(groups, key=lambda group: -group[0].gain)
-
-
-def _places(probes: Sequence[Probe]) -> dict[tuple[str, str], float]:
-    """Natural size, by effect and name, of what may be to either side of nothing and switches nothing off: the largest
-    that is tried.
-
-    Were it where a fit begins, a bend that is begun in the middle would be held there.
-    """
-    found: dict[tuple[str, str], float] = {}
-    for effect, at, _ in probes:
-        for parameter in effect.parameters:
-            if parameter.name in at and parameter.off is None and parameter.lower < 0.0:
-                key = effect.id, parameter.name
-                found[key] = max(found.get(key, 0.0), abs(at[parameter.name]))
-    return found
 
 
 def out_of_reach(fit: JointFit, effects: Sequence[Effect], groups: Sequence[Sequence[Suspect]]) -> list[list[Suspect]]:
@@ -175,7 +157,7 @@ def moves_beyond(effect: Effect) -> bool:
     return effect.sudden and Site.OUTPUT not in effect.acts
 
 
-def probes(fit: JointFit, effects: Sequence[Effect]) -> list[Probe]:
+def probes(fit: JointFit, effects: Sequence[Effect]) -> list[tuple[Effect, dict[str, float], dict[str, float]]]:
     """Every probe of some effects in a session's own units, at each value of what is tried and not fitted."""
     sizes, found = sizes_of(fit), []
     for effect in effects:
@@ -213,13 +195,7 @@ def on_rig(model: Model) -> bool:
 
 
 def _suspect(
-    fit: JointFit,
-    clear: Cleared,
-    effect: Effect,
-    at: dict[str, float],
-    held: dict[str, float],
-    places: Mapping[tuple[str, str], float],
-    small: bool,
+    fit: JointFit, clear: Cleared, effect: Effect, at: dict[str, float], held: dict[str, float], small: bool
 ) -> Suspect | None:
     signed = [p for p in effect.amplitudes if p.name in at and p.lower < 0.0]
     points = [at]
@@ -263,7 +239,9 @@ def _suspect(
         }
     names = tuple(p.name for p in (*grown, *signed))
     natural = {p.name: abs(at[p.name]) for p in signed}
-    natural |= {name: size for (effect_id, name), size in places.items() if effect_id == effect.id and name in at}
+    if not effect.sizes.keys().isdisjoint(at):
+        sizes = sizes_of(fit)
+        natural |= {name: sized.value(sizes) for name, sized in effect.sizes.items() if name in at}
     own = float(np.max(np.diag(gram) / clear.size_of(raw)))
     return Suspect(effect.id, start, held, natural, gain, names, own)
 

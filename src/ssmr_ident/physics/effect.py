@@ -103,6 +103,9 @@ class Effect(Shown):
         their nominal values; plain numbers are SI.
     rig_probes : tuple of mapping of parameter to float or Sized
         Further ones on a rig, whose recordings are long and simulated in no time.
+    sizes : mapping of parameter to Sized
+        How far those that switch nothing off, and may have either sign, may go from nothing, which a fit is to know
+        where it begins there.
     holds : mapping of parameter to tuple of float
         Parameters that are not fitted but tried at each of these values.
     forms : tuple of mapping of parameter to float or Sized
@@ -133,6 +136,7 @@ class Effect(Shown):
     rig: bool = False
     probes: tuple[Mapping[str, float | Sized], ...] = ()
     rig_probes: tuple[Mapping[str, float | Sized], ...] = ()
+    sizes: Mapping[str, Sized] = field(default_factory=dict)
     holds: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
     forms: tuple[Mapping[str, float | Sized], ...] = ()
     grows: tuple[str, ...] = ()

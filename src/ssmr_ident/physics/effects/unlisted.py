@@ -99,13 +99,12 @@ _RIDERS: tuple[Mapping[str, float | Sized], ...] = tuple(
 """A ninth between one and the next: the descent finds what is left of that. So small a share, because a straight line
 must tell which frequency it is. Where noise is fast, a recording's motion seems faster than it is: down to a tenth."""
 
-_IN_THE_MIDDLE = Sized(1e-4, "deflection")
-"""Where a bend begins. On a robot, where none is tried off the middle, it stays there."""
+_OFF = 0.4
+"""Share of the largest deflection by which a bend may well be off the middle."""
 
 _TOUCHES: tuple[Mapping[str, float | Sized], ...] = tuple(
-    {"c_abs_s_N_m": Sized(0.05, "stiffness"), "place_m": Sized(share, "deflection")} for share in (-0.4, 0.4)
+    {"c_abs_s_N_m": Sized(0.05, "stiffness"), "place_m": Sized(share, "deflection")} for share in (-_OFF, _OFF)
 )
-"""Off the middle."""
 
 EFFECT = Effect(
     id="unlisted",
@@ -135,8 +134,9 @@ EFFECT = Effect(
     acts={Site.ELEMENT: force},
     rig=True,
     probes=tuple(
-        {name: Sized(0.05, size), **({"place_m": _IN_THE_MIDDLE} if name == "c_abs_s_N_m" else {})}
+        {name: Sized(0.05, size), **({"place_m": 0.0} if name == "c_abs_s_N_m" else {})}
         for name, size in list(zip(TERMS, _SIZES, strict=True))[: PULSE_HZ - 2]
     ),
     rig_probes=(*_PULSES, *_RIDERS, *_TOUCHES),
+    sizes={"place_m": Sized(_OFF, "deflection")},
 )
