@@ -47,7 +47,8 @@ def test_a_spring_that_touches_on_one_side_is_named_with_its_place(side: float, 
     # each recording's zero of the force moves the place as well, and how far zeros may be off is all that tells it: a
     # place held this far from the best, all else led to its best beside it, costs one more, however long recordings are
     law = {**STOP, "place_m": side * 9e-4}
-    (effect,) = diagnose(campaign({"unlisted": law}, RUNS, seed=3, duration=6.0)).effects
+    diagnosed = diagnose(campaign({"unlisted": law}, RUNS, seed=3, duration=6.0))
+    (effect,) = diagnosed.effects
     assert effect.id == "unlisted"
     assert not effect.indistinguishable_from
     found = effect.parameters["place_m"]
@@ -55,6 +56,7 @@ def test_a_spring_that_touches_on_one_side_is_named_with_its_place(side: float, 
     assert found.std is not None
     assert abs(found.value - law["place_m"]) < 3.0 * found.std
     assert found.std == pytest.approx(known, rel=0.1)
+    assert diagnosed.heldout.after < 1.05 * diagnosed.heldout.noise_floor < 0.2 * diagnosed.heldout.before
 
 
 def test_a_bend_is_begun_in_the_middle_and_free_to_leave_it() -> None:
