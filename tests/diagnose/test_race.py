@@ -146,6 +146,12 @@ def test_an_effect_is_begun_as_large_as_it_takes_and_in_units_of_that() -> None:
     assert ended is not None
     assert ended.model.split(ended.point)[1]["nonlinear_stiffness"]["k3_N_m3"] == pytest.approx(1e9, rel=0.005)
     assert race._enlarged(linear, Suspect("quadratic_damping", {"d2_N_s2_m2": 1e-3}, {}, {}, 0.0)) is None
+    # a slope may promise too much as well
+    much = {"k3_N_m3": 4e9}
+    suspect = Suspect("nonlinear_stiffness", much, {}, much, 0.0, ("k3_N_m3",))
+    fits = race._as_large_as_fits(linear, suspect)
+    assert fits.model.split(fits.point)[1]["nonlinear_stiffness"]["k3_N_m3"] == pytest.approx(1e9, rel=0.005)
+    assert fits.cost(linear.counted) < race.started(linear, suspect).cost(linear.counted) - 100.0
 
 
 def test_of_what_acts_beyond_a_threshold_all_sizes_are_begun() -> None:

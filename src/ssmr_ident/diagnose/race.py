@@ -79,6 +79,8 @@ def raced(base: JointFit, groups: Sequence[Sequence[Suspect]], progress: Progres
     starts: list[Callable[[], JointFit | None]] = [partial(started, base, way, plain) for way in ways]
     starts += [partial(started_from_known, base, way, plain) for way in ways] if plain else []
     starts += [partial(_enlarged, base, way) for way in ways] if plain else []
+    likely = [suspect for group in groups for suspect in group if promising(suspect)] if plain else []
+    starts += [partial(_as_large_as_fits, base, suspect) for suspect in likely]
     starts += begun_loose(base, [CATALOGUE[group[0].effect] for group in groups]) if plain else []
     field: list[JointFit] = []
     rounds = len(starts) + (len(groups) if plain else 0)
@@ -210,6 +212,15 @@ def _enlarged(base: JointFit, suspect: Suspect) -> JointFit | None:
     """
     grown = as_large_as_it_takes(base, suspect)
     return descend(grown, 4) if grown.rss < 0.5 * base.rss else None
+
+
+def _as_large_as_fits(base: JointFit, suspect: Suspect) -> JointFit:
+    """A suspect in the size that costs least beside what a fit has not bent.
+
+    A straight line that has to tell relaxation from chattering contacts made 3,586 N/m of 523 (bank 6374), from where a
+    descent ended 26 above the baseline; from the best size it ends 67 below, and 87 from the truth.
+    """
+    return descend(in_its_place(base, suspect, far_off(base)), 2)
 
 
 def _from_what_is_known(fit: JointFit) -> JointFit | None:
