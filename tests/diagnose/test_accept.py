@@ -9,7 +9,7 @@ import pytest
 
 from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.diagnose import accept
-from ssmr_ident.diagnose.accept import mends, promises, relieves, touches, within_file
+from ssmr_ident.diagnose.accept import as_near, mends, promises, relieves, touches, within_file
 from ssmr_ident.diagnose.weigh import Explanation
 from ssmr_ident.identify.coordinates import Model
 from ssmr_ident.identify.joint import JointFit
@@ -97,6 +97,26 @@ def test_an_offset_in_pulls_need_not_mend_one_or_two_that_lie_in_hollows(
     monkeypatch.setattr(accept, "_beyond_noise", lambda explanation: True)
     left = fitted, [1.0, 1.3]
     assert touches(_leaving(*left, slides=True), _leaving(*left, 8.0, slides=True)) is answers
+
+
+@pytest.mark.parametrize(
+    ("fitted", "kept", "near"),
+    [
+        ([12.0, 60.0], [130.0], True),
+        # stribeck beside a stretching cable, in pulls without teeth: four and fifteen times as much is left of these
+        ([30.5, 600.0], [130.0], False),
+        ([12.0, 60.0], [210.0], False),
+        ([30.0, 30.0], [130.0], True),
+    ],
+)
+def test_a_rival_is_near_in_what_was_fitted_and_in_what_was_kept(
+    fitted: list[float], kept: list[float], near: bool
+) -> None:
+    chosen = _leaving([8.0, 40.0], [100.0])
+    assert as_near(_leaving(fitted, kept), chosen) == near
+    more = named("pair", _leaving(fitted, kept))
+    more.fit.model.ids = ("one", "two")  # type: ignore[misc]
+    assert not as_near(more, chosen)
 
 
 def _leaving(fitted: list[float], kept: list[float], bent: float = 0.0, slides: bool = False) -> Explanation:
