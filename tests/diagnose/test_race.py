@@ -8,7 +8,7 @@ from small_rigs import Run, campaign, fitted, prepared
 
 from ssmr_ident.diagnose import explore, race
 from ssmr_ident.diagnose.explain import as_large_as_it_takes, beside
-from ssmr_ident.diagnose.scan import Suspect, scan
+from ssmr_ident.diagnose.scan import Suspect, scan, variants
 from ssmr_ident.identify.descent import descend
 from ssmr_ident.identify.joint import JointFit, differentiate, evaluate
 from ssmr_ident.physics.effects import CATALOGUE
@@ -69,7 +69,7 @@ def test_an_effect_is_begun_in_the_place_of_what_the_baseline_has_left_the_file_
     fit = fitted(prepared(campaign({"nonlinear_stiffness": true}, runs, seed=4, duration=0.5)))
     bent = fitted_at(fit, "stiffness_N_m", 1.7 * race.FAR)
     hardening = scan(bent, [CATALOGUE["nonlinear_stiffness"]])[0][0]
-    beside_it, in_its_place = race._begun(bent, hardening), race._in_its_place(bent, hardening)
+    beside_it, in_its_place = race._begun(bent, hardening), race.begun_in_its_place(bent, hardening, race.HEATS[0][1])
     assert in_its_place.cost(bent.counted) < beside_it.cost(bent.counted) - 30.0
     assert np.max(np.abs(in_its_place.point[: len(bent.point)])) < race.FAR
 
@@ -149,29 +149,29 @@ def test_an_effect_is_begun_as_large_as_it_takes_and_in_units_of_that() -> None:
     # a slope may promise too much as well
     much = {"k3_N_m3": 4e9}
     suspect = Suspect("nonlinear_stiffness", much, {}, much, 0.0, ("k3_N_m3",))
-    fits = race._as_large_as_fits(linear, suspect)
+    fits = race.begun_in_its_place(linear, suspect)
     assert fits.model.split(fits.point)[1]["nonlinear_stiffness"]["k3_N_m3"] == pytest.approx(1e9, rel=0.005)
     assert fits.cost(linear.counted) < race.started(linear, suspect).cost(linear.counted) - 100.0
 
 
 def test_of_what_acts_beyond_a_threshold_all_sizes_are_begun() -> None:
     belts = [Suspect("motor_belt", {"K_b_N_m": size}, {}, {}, gain) for size, gain in ((1e4, 40.0), (4e4, 9.0))]
-    assert race.variants(belts) == belts
+    assert variants(belts) == belts
     springs = [Suspect("nonlinear_stiffness", {"k3_N_m3": k}, {}, {}, gain) for k, gain in ((1e9, 40.0), (-1e9, 9.0))]
-    assert race.variants(springs) == springs[:1]
+    assert variants(springs) == springs[:1]
     # a formula that promises nearly as much is begun as well, of one that promises less nothing
     bends = [
         Suspect("unlisted", {name: 1e3}, {}, {}, gain)
         for name, gain in (("c_s2_N_m2", 167.0), ("c_abs_s_N_m", 159.0), ("c_v2_N_s2_m2", 85.0))
     ]
-    assert race.variants(bends) == bends[:2]
+    assert variants(bends) == bends[:2]
     faint = [Suspect("unlisted", bend.at, {}, {}, 0.05 * bend.gain) for bend in bends]
-    assert race.variants(faint) == faint[:2]
+    assert variants(faint) == faint[:2]
     noise = [Suspect("unlisted", bend.at, {}, {}, 0.03 * bend.gain) for bend in bends]
-    assert race.variants(noise) == noise[:1]
+    assert variants(noise) == noise[:1]
     # what is tried and not fitted is tried all the same
     along = [Suspect("free_play", {"gap_m": 1e-4}, {"share_x": share}, {}, 1.0) for share in (0.0, 1.0)]
-    assert race.variants(along) == along
+    assert variants(along) == along
 
 
 @pytest.mark.parametrize(("close", "led_on"), [(race.CLOSE, True), (-race.CLOSE, False)])

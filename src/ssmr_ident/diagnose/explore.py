@@ -12,22 +12,21 @@ from ssmr_ident.compare.recorded import follow
 from ssmr_ident.compare.roads import by_other_roads
 from ssmr_ident.diagnose.along import begun_along, without_laws
 from ssmr_ident.diagnose.baseline import LAST, WIDE, bent, leaves_much
-from ssmr_ident.diagnose.explain import from_what_is_known, in_its_place
+from ssmr_ident.diagnose.explain import from_what_is_known
 from ssmr_ident.diagnose.from_known import begun_from_known
 from ssmr_ident.diagnose.loose import begun_loose
 from ssmr_ident.diagnose.race import (
     Progress,
-    far_off,
+    begun_in_its_place,
     raced,
     ranked,
     run_on,
     screened,
     started,
     started_from_known,
-    variants,
     within_reach,
 )
-from ssmr_ident.diagnose.scan import Suspect, candidates, moves_beyond, out_of_reach, promising, scan
+from ssmr_ident.diagnose.scan import Suspect, candidates, moves_beyond, out_of_reach, promising, scan, variants
 from ssmr_ident.identify.descent import LOUD, chatters, descend, slides
 from ssmr_ident.identify.horizons import led
 from ssmr_ident.identify.joint import JointFit
@@ -133,7 +132,7 @@ def search(
         starts += [partial(from_what_is_known, base, s, lengths) for group in beyond for s in variants(group)]
         starts += [partial(started_from_known, base, group[0], pulls) for group in chosen if alone]
         same += [g[0] for g in beyond if alone]  # what a belt gives, a baseline puts into the tires
-        starts += [partial(_instead, base, s) for s in same]
+        starts += [partial(begun_in_its_place, base, s) for s in same]
         starts += begun_loose(base, asked) if pulls else []
         rough = run_on(list(side_by_side(lambda begin: begin(), starts)))
         if pulls and rough and CATALOGUE[rough[0].model.ids[-1]].loosens:
@@ -173,10 +172,6 @@ def _has(fits: Sequence[JointFit], suspect: Suspect) -> bool:
     """Whether a suspect's effect was refitted in its formula."""
     forms = [(f.model.ids[-1], {c.parameter.name for c in f.model.free if c.effect == f.model.ids[-1]}) for f in fits]
     return (suspect.effect, set(suspect.at)) in forms
-
-
-def _instead(base: JointFit, suspect: Suspect) -> JointFit:
-    return descend(in_its_place(base, suspect, far_off(base)), 2)
 
 
 def _to_the_end(

@@ -14,7 +14,6 @@ from ssmr_ident.diagnose.explain import as_large_as_it_takes, beside, in_its_pla
 from ssmr_ident.diagnose.gathered import gathered
 from ssmr_ident.diagnose.loose import begun_loose
 from ssmr_ident.diagnose.scan import Suspect, both_ways, promising
-from ssmr_ident.diagnose.weigh import CERTAIN
 from ssmr_ident.identify.descent import chatters, descend, slides
 from ssmr_ident.identify.horizons import STEPS, led
 from ssmr_ident.identify.joint import JointFit, each_best, evaluate
@@ -35,9 +34,6 @@ REPLACED = 3
 CLOSE = 1.5
 """Difference in the logarithm of the unexplained variance, before refits have come to rest, up to which an effect may
 still overtake another: a factor of 4.5."""
-
-AS_LIKELY = 2.0 * CERTAIN
-"""Fall of n ln(RSS) by which one formula of an effect may promise less than another, and be begun as well."""
 
 HEATS = ((0, 1), (12, 3), (6, 4))
 """Rounds in which probes are tried: how many go in, and Gauss-Newton steps in each. All probes go into the first, on
@@ -80,7 +76,7 @@ def raced(base: JointFit, groups: Sequence[Sequence[Suspect]], progress: Progres
     starts += [partial(started_from_known, base, way, plain) for way in ways] if plain else []
     starts += [partial(_enlarged, base, way) for way in ways] if plain else []
     likely = [suspect for group in groups for suspect in group if promising(suspect)] if plain else []
-    starts += [partial(_as_large_as_fits, base, suspect) for suspect in likely]
+    starts += [partial(begun_in_its_place, base, suspect) for suspect in likely]
     starts += begun_loose(base, [CATALOGUE[group[0].effect] for group in groups]) if plain else []
     field: list[JointFit] = []
     rounds = len(starts) + (len(groups) if plain else 0)
@@ -173,7 +169,7 @@ def screened(
     begins = [partial(_begun, *start) for start in starts]
     if known is not None:
         # a baseline that has stiffened round a tire that hardens leaves that no room
-        begins += [partial(_in_its_place, first, group[0]) for group in groups[:REPLACED]]
+        begins += [partial(begun_in_its_place, first, group[0], HEATS[0][1]) for group in groups[:REPLACED]]
     field: list[JointFit] = []
     rounds = len(begins) + 3
     for fit in side_by_side(lambda begin: begin(), begins):
@@ -214,15 +210,6 @@ def _enlarged(base: JointFit, suspect: Suspect) -> JointFit | None:
     return descend(grown, 4) if grown.rss < 0.5 * base.rss else None
 
 
-def _as_large_as_fits(base: JointFit, suspect: Suspect) -> JointFit:
-    """A suspect in the size that costs least beside what a fit has not bent.
-
-    A straight line that has to tell relaxation from chattering contacts made 3,586 N/m of 523 (bank 6374), from where a
-    descent ended 26 above the baseline; from the best size it ends 67 below, and 87 from the truth.
-    """
-    return descend(in_its_place(base, suspect, far_off(base)), 2)
-
-
 def _from_what_is_known(fit: JointFit) -> JointFit | None:
     """The physics that is known beside a baseline that has left it; None where that has not.
 
@@ -233,8 +220,14 @@ def _from_what_is_known(fit: JointFit) -> JointFit | None:
     return descend(follow(fit.trials, fit.model, fit.model.as_known(fit.point)), 2)
 
 
-def _in_its_place(first: JointFit, suspect: Suspect) -> JointFit:
-    return descend(in_its_place(first, suspect, far_off(first)), HEATS[0][1])
+def begun_in_its_place(base: JointFit, suspect: Suspect, steps: int = 2) -> JointFit:
+    """A suspect in the place of what a baseline has bent, in the size that costs least there.
+
+    Where nothing is bent the size is worth it by itself: a straight line that has to tell relaxation from chattering
+    contacts made 3,586 N/m of 523 (bank 6374), from where a descent ended 26 above the baseline; from the best size it
+    ends 67 below, and 87 from the truth.
+    """
+    return descend(in_its_place(base, suspect, far_off(base)), steps)
 
 
 def _begun(first: JointFit, suspect: Suspect) -> JointFit:
@@ -296,16 +289,3 @@ def started_from_known(base: JointFit, suspect: Suspect, plain: bool = False) ->
     """
     model, point = with_suspect(base, suspect)
     return descend(evaluate(base.trials, model, model.as_known(point), base.nuisances), 4, plain=plain)
-
-
-def variants(group: Sequence[Suspect]) -> list[Suspect]:
-    """The best probe of an effect, for each value of what is tried and not fitted, and for each formula that promises
-    as much; all of what acts beyond a threshold, of which a straight line promises nothing.
-    """
-    found: dict[tuple[object, ...], Suspect] = {}
-    for suspect in group:
-        begun = suspect.at.items() if CATALOGUE[suspect.effect].sudden else ()
-        likely = promising(suspect) and group[0].gain - suspect.gain < AS_LIKELY
-        form = frozenset(suspect.at if likely else group[0].at)
-        found.setdefault((form, *sorted(suspect.held.items()), *begun), suspect)
-    return list(found.values())

@@ -16,6 +16,7 @@ import numpy as np
 from ssmr_ident.core.parameter import Parameter
 from ssmr_ident.diagnose.cleared import Cleared
 from ssmr_ident.diagnose.sizes import sizes_of
+from ssmr_ident.diagnose.weigh import CERTAIN
 from ssmr_ident.identify.coordinates import Model
 from ssmr_ident.identify.joint import JointFit, over
 from ssmr_ident.identify.parallel import side_by_side
@@ -34,6 +35,9 @@ PROMISING = 6.0
 
 LEAST = 1e-3
 """Smallest share of a probe at which an effect is tried."""
+
+AS_LIKELY = 2.0 * CERTAIN
+"""Fall of n ln(RSS) by which one formula of an effect may promise less than another, and be begun as well."""
 
 PLACES = 3
 """Most probes that go on of those that differ in a frequency alone: a straight line tells these apart."""
@@ -81,6 +85,19 @@ class Suspect:
 def promising(suspect: Suspect) -> bool:
     """Whether a suspect is worth a refit."""
     return suspect.gain > PROMISING + len(suspect.at)
+
+
+def variants(group: Sequence[Suspect]) -> list[Suspect]:
+    """The best probe of an effect, for each value of what is tried and not fitted, and for each formula that promises
+    as much; all of what acts beyond a threshold, of which a straight line promises nothing.
+    """
+    found: dict[tuple[object, ...], Suspect] = {}
+    for suspect in group:
+        begun = suspect.at.items() if CATALOGUE[suspect.effect].sudden else ()
+        likely = promising(suspect) and group[0].gain - suspect.gain < AS_LIKELY
+        form = frozenset(suspect.at if likely else group[0].at)
+        found.setdefault((form, *sorted(suspect.held.items()), *begun), suspect)
+    return list(found.values())
 
 
 def both_ways(suspect: Suspect) -> list[Suspect]:
