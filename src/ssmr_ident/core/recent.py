@@ -10,6 +10,21 @@ from typing import Generic, TypeVar
 T = TypeVar("T")
 
 
+class Same:
+    """A key that stands for one object, however many are equal to it; the object is not changed while it is one."""
+
+    __slots__ = ("it",)
+
+    def __init__(self, it: object) -> None:
+        self.it = it
+
+    def __hash__(self) -> int:
+        return id(self.it)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Same) and self.it is other.it
+
+
 class Recent(Generic[T]):
     """Keeps the last few of what it was asked for, for all threads.
 

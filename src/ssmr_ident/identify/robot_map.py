@@ -11,7 +11,7 @@ import numpy as np
 from scipy.stats import t as student
 
 from ssmr_ident.core.parameter import ParameterSet
-from ssmr_ident.core.recent import Recent
+from ssmr_ident.core.recent import Recent, Same
 from ssmr_ident.identify.coupled import FURTHER, body_modes
 from ssmr_ident.identify.decay_result import DecayFit, Mode
 from ssmr_ident.identify.posterior import Observation, Unknown
@@ -126,6 +126,21 @@ class RobotBuilder:
     def of(parameters: ParameterSet) -> RobotBuilder:
         return RobotBuilder(robot_from_parameters(parameters))
 
+    @staticmethod
+    def once(nominal: Robot) -> RobotBuilder:
+        """One for all that ask for an equal robot."""
+        return _BUILDERS.of(_by_value(nominal), lambda: RobotBuilder(nominal))
+
+    def read(self, values: Mapping[str, float]) -> tuple[Robot, np.ndarray]:
+        """A robot whose axes read what they nominally do, and by what they differ from that, (3,); worked out once for
+        each mapping, which all recordings of a fit ask for."""
+        return self._read.of(Same(values), lambda: self._apart(values))
+
+    def _apart(self, values: Mapping[str, float]) -> tuple[Robot, np.ndarray]:
+        # what axes read of a motion does not change it: three columns of a slope are one simulation
+        robot = self({name: value for name, value in values.items() if name not in GAINS})
+        return robot, self.gains(values) / robot.accelerometer.gain
+
     def __call__(self, values: Mapping[str, float]) -> Robot:
         return _MADE.of((self._print, *values.items()), lambda: self._made(values))
 
@@ -133,6 +148,10 @@ class RobotBuilder:
         """What each axis reads of a true acceleration, (3,)."""
         own = self.nominal.accelerometer.gain
         return np.array([values.get(name, gain) for name, gain in zip(GAINS, own, strict=True)])
+
+    @cached_property
+    def _read(self) -> Recent[tuple[Robot, np.ndarray]]:
+        return Recent()
 
     @cached_property
     def _print(self) -> Hashable:
@@ -174,6 +193,9 @@ class RobotBuilder:
                 bandwidth_hz=values.get("accelerometer.bandwidth_hz", robot.accelerometer.bandwidth_hz),
             ),
         )
+
+
+_BUILDERS: Recent[RobotBuilder] = Recent()
 
 
 def geometry_of(robot: Robot) -> Geometry:

@@ -32,6 +32,7 @@ from ssmr_ident.physics.slots import (
     RELAXATION_STIFFNESS,
     RELAXATION_TIME,
     SLIDER,
+    UNLISTED,
     YIELD,
 )
 
@@ -129,4 +130,15 @@ def inner_slots(e):
         e[0], e[1], e[2], e[3], e[4], e[5], e[6], e[7], e[8], e[9],
         e[10], e[11], e[12], e[13], e[14], e[15], e[16], e[17], e[18], e[19], e[20], e[21], e[22], e[23], e[24],
         e[25],
+    )  # fmt: skip
+
+
+@kernel
+def free_slots(e):
+    """The slots of what is unlisted, as a tuple to be made where they are asked for: kept through the whole loop, so
+    many numbers leave no room for others, and cost a third of every step with any effect."""
+    f = UNLISTED
+    return (
+        e[f], e[f + 1], e[f + 2], e[f + 3], e[f + 4], e[f + 5], e[f + 6], e[f + 7], e[f + 8], e[f + 9], e[f + 10],
+        e[f + 11], e[f + 12], e[f + 13], 0.0, 0.0, 0.0, e[f + 17],
     )  # fmt: skip

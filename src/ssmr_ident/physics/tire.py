@@ -146,19 +146,19 @@ def sliding_force(deflection, velocity, slip, beside, stiffness, damping, mass, 
     inertia, half = mass / step, 0.5 * step
     push_x = force_x + half * stiffness[0] * slip[0] + inertia * velocity[0]
     push_y = force_y + half * stiffness[1] * slip[1] + inertia * velocity[1]
-    length = math.sqrt(push_x * push_x + push_y * push_y)
-    slides = length > limit
+    square = push_x * push_x + push_y * push_y
+    slides = square > limit * limit  # most contacts stand, and a root costs as much as twenty sums
     if not anywhere(slides):
-        return slides, 0.0 * length, 0.0 * length, -force_x, -force_y
+        return slides, 0.0 * square, 0.0 * square, -force_x, -force_y
     drag_x = damping[0] + inertia + half * stiffness[0]
     drag_y = damping[1] + inertia + half * stiffness[1]
-    speed = (length - limit) / max(drag_x, drag_y)  # never above the root, so Newton comes from one side
+    speed = (math.sqrt(square) - limit) / max(drag_x, drag_y)  # never above the root, so Newton comes from one side
     coming = slides
     for _ in range(20):
-        along_x, along_y = push_x / (drag_x * speed + limit), push_y / (drag_y * speed + limit)
+        one_x, one_y = 1.0 / (drag_x * speed + limit), 1.0 / (drag_y * speed + limit)
+        along_x, along_y = push_x * one_x, push_y * one_y
         square = along_x * along_x + along_y * along_y
-        slope = drag_x * along_x * along_x / (drag_x * speed + limit)
-        slope += drag_y * along_y * along_y / (drag_y * speed + limit)
+        slope = drag_x * along_x * along_x * one_x + drag_y * along_y * along_y * one_y
         change = (math.sqrt(square) - 1.0) * square / slope
         speed = where(coming, speed + change, speed)
         coming = coming & (abs(change) > 1e-12 * speed)

@@ -31,6 +31,7 @@ from ssmr_ident.simulate.scenarios import Scenario
 
 LOADED, POINTS, UNSEEN = k.LOADED, k.POINTS, k.UNSEEN
 FLAT = np.zeros((1, 1))
+_AS_IT_IS = [1.0, 1.0, 1.0]
 _UNEVEN = np.array([JOINT_DEPTH, ECCENTRICITY, ROUGHNESS])
 _POSE = ("x", "y", "z", "roll", "pitch", "yaw")
 AWAY = (*_POSE, "brace_x", "brace_y", "sway_x", "sway_y", "loaded", "unseen")
@@ -81,18 +82,23 @@ class Body:
     @cached_property
     def uneven(self) -> np.ndarray | None:
         """The floor, (n, n) float [m], where anything makes it uneven; None where it is flat."""
-        return self.floor if np.any(self.e[_UNEVEN] != 0.0) else None
+        return self.floor if any(self.e[_UNEVEN].tolist()) else None
 
     @cached_property
-    def switches(self) -> bytes:
-        """Which of the effects that the loop asks of all lanes in common are off."""
-        return (self.e[_SWITCHES] != _OFF).tobytes()
+    def alike(self) -> tuple[object, ...]:
+        """What bodies have in common that go in lanes: which effects are off, and what the loop asks of all wheels."""
+        p = self.packed
+        switches, ahead = self.e[_SWITCHES] != _OFF, p[POINTS : POINTS + 12 : 3] > 0.0
+        return (
+            self.beyond, switches.tobytes(), ahead.tobytes(), p[k.SLIDING_SPEED] > 0.0, p[k.SLIP_COUPLING] != 0.0,
+            id(self.uneven),
+        )  # fmt: skip
 
     @cached_property
     def scaled(self) -> np.ndarray | None:
         """By what all outputs are read too large, (outputs,) float; None where they are read as they are."""
         gain = self.robot.accelerometer.gain
-        return np.append(gain, np.ones(len(k.OUTPUTS) - 3)) if np.any(gain != 1.0) else None
+        return None if gain.tolist() == _AS_IT_IS else np.append(gain, np.ones(len(k.OUTPUTS) - 3))
 
     @cached_property
     def rest(self) -> np.ndarray:
@@ -163,6 +169,13 @@ def pack_robot(robot: Robot) -> np.ndarray:
     p[k.GRIPPING : k.GRIPPING + 4] = 1.0
     p[k.SLIDING_SPEED] = robot.sliding_speed
     return p
+
+
+@kernel
+def let_all_go(p, rest, away, moving, out):
+    """``let_go`` for every row of its arguments."""
+    for j in range(len(p)):
+        let_go(p[j], rest[j], away[j], moving[j], out[j])
 
 
 @kernel

@@ -11,17 +11,16 @@ from ssmr_ident.core.errors import InputError
 from ssmr_ident.physics.robot import Robot
 from ssmr_ident.physics.slots import Effects
 from ssmr_ident.simulate import layout
-from ssmr_ident.simulate.body import Body, body_of, let_go
-from ssmr_ident.simulate.pulling import PULLING
+from ssmr_ident.simulate.body import Body, body_of, let_all_go
 from ssmr_ident.simulate.scenarios import Scenario
 from ssmr_ident.simulate.sensed import sensed
 from ssmr_ident.simulate.simulation import grid, prepared
-from ssmr_ident.simulate.together import Run, run_together
+from ssmr_ident.simulate.together import STILL, Run, run_together
 
 SENSED = ("ax", "ay", "az", "wx", "wy", "wz", "force", "head")
 """What sensors see, and effects on them may read: one axis of a turned sensor reads all three."""
 
-STILL, NO_HEAD, AT_REST = np.zeros(PULLING), np.zeros(1), np.zeros((1, 2))
+NO_HEAD, AT_REST = np.zeros(1), np.zeros((1, 2))
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,12 +62,18 @@ def simulate_many(
         NaN all through where a state was no longer finite, or the robot cannot have its effects.
     """
     bodies = _bodies(releases)
-    starts = np.zeros((len(releases), layout.START))
-    runs = []
-    for body, release, start in zip(bodies, releases, starts, strict=True):
-        if body is not None:
-            let_go(body.packed, body.rest, release.away, release.moving, start)
-        runs.append(None if body is None else Run(body, body.packed, start, STILL, NO_HEAD))
+    there = [(body, release) for body, release in zip(bodies, releases, strict=True) if body is not None]
+    starts = np.zeros((len(there), layout.START))
+    if there:
+        let_all_go(
+            np.array([body.packed for body, _ in there]),
+            np.array([body.rest for body, _ in there]),
+            np.array([release.away for _, release in there]),
+            np.array([release.moving for _, release in there]),
+            starts,
+        )
+    begin = iter(starts)
+    runs = [None if body is None else Run(body, body.packed, next(begin), STILL, NO_HEAD) for body in bodies]
     return _channels(runs, duration, sample_rate, step, names, 1.0, AT_REST, 1.0)
 
 
@@ -111,15 +116,18 @@ def _channels(
     """What the sensors read of runs, (k, n, c) float."""
     step, stride, samples = grid(duration, sample_rate, step)
     read = tuple(names)
-    if any(one is not None and one.body.read_otherwise for one in runs):
-        read = tuple(dict.fromkeys((*names, *SENSED)))
-    kept = np.array([layout.OUTPUTS.index(name) for name in read])
     there = [index for index, one in enumerate(runs) if one is not None]
     possible = [one for one in runs if one is not None]
+    otherwise = any(one.body.read_otherwise for one in possible)
+    if otherwise:
+        read = tuple(dict.fromkeys((*names, *SENSED)))
+    kept = np.array([layout.OUTPUTS.index(name) for name in read])
     out = run_together(possible, head_step, rates, rate_step, step, stride, samples, kept)
     if len(possible) < len(runs):
         found, out = out, np.full((len(runs), samples, len(read)), np.nan)
         out[there] = found
+    if not otherwise and all(one.body.scaled is None for one in possible):
+        return out
     time = np.arange(samples) / sample_rate
     for result, one in zip(out, runs, strict=True):
         if one is None:

@@ -24,7 +24,7 @@ from ssmr_ident.physics.effects import (
     unlisted,
 )
 from ssmr_ident.physics.effects import wheel_lift as lift_effect
-from ssmr_ident.physics.element import STATES, element_force, element_loaded, element_next, inner_slots
+from ssmr_ident.physics.element import STATES, element_force, element_loaded, element_next, free_slots, inner_slots
 from ssmr_ident.physics.sensor import filter_step
 from ssmr_ident.physics.slots import (
     BELT_DAMPING,
@@ -131,7 +131,7 @@ def run(
     float
         The step at which a state was no longer finite, or -1.
     """
-    mass, gravity = p[MASS], p[GRAVITY_G]
+    mass, per_mass, gravity = p[MASS], 1.0 / p[MASS], p[GRAVITY_G]
     kx, ky, kz, dx, dy, dz = p[KX], p[KY], p[KZ], p[DX], p[DY], p[DZ]
     patch, radius, lambda_max, gain = p[PATCH_MASS], p[RADIUS], p[LAMBDA_MAX], p[MOTOR_GAIN]
     coupling, nominal_load = p[SLIP_COUPLING], 0.25 * p[MASS] * p[GRAVITY_G]
@@ -175,11 +175,6 @@ def run(
     sliding = space(p, 4, 2)  # 1 where a contact slides
     hidden = space(p, 12, STATES)  # of x, y, z of the first wheel, then of the next
     law = inner_slots(e)
-    f = _FREE
-    free = (
-        e[f], e[f + 1], e[f + 2], e[f + 3], e[f + 4], e[f + 5], e[f + 6], e[f + 7], e[f + 8], e[f + 9], e[f + 10],
-        e[f + 11], e[f + 12], e[f + 13], 0.0, 0.0, 0.0, e[f + 17],
-    )  # fmt: skip
     if beside and anywhere(start[LOADED] != 0.0):
         for i in range(12):
             pressed = start[LOADED + 1 + i // 3] if i % 3 == 2 else deflection[i // 3, i % 3]
@@ -284,6 +279,7 @@ def run(
                 kept = hidden[3 * i + 1, 0], hidden[3 * i + 1, 1], hidden[3 * i + 1, 2]
                 beside_y = element_force(deflection[i, 1], rate_y, kept, ky, 1.0, 1.0, True, law)
             if smooth:
+                free = free_slots(e)
                 beside_x += _unlisted(deflection[i, 0], slip[i, 0] - contact[i, 0], t, kx / ky, free)
                 beside_y += _unlisted(deflection[i, 1], hub_y - contact[i, 1], t, 1.0, free)
             if together:
@@ -363,7 +359,7 @@ def run(
             bx, by, bz = solved[0, 3], solved[0, 4], solved[0, 5]
             sway[2, 0], sway[2, 1] = solved[0, 6], solved[0, 7]
         else:
-            au, av, aw = fx / mass, fy / mass, fz / mass - gravity
+            au, av, aw = per_mass * fx, per_mass * fy, per_mass * fz - gravity
             bx = p[inv + 0] * body_x + p[inv + 1] * body_y + p[inv + 2] * body_z
             by = p[inv + 3] * body_x + p[inv + 4] * body_y + p[inv + 5] * body_z
             bz = p[inv + 6] * body_x + p[inv + 7] * body_y + p[inv + 8] * body_z

@@ -11,11 +11,14 @@ from ssmr_ident.core.kernel import kernel
 from ssmr_ident.core.lanes import WIDTH, lane, lanes_of
 from ssmr_ident.physics.sensor import low_pass_coefficients
 from ssmr_ident.simulate.body import Body
-from ssmr_ident.simulate.layout import OUTPUTS, POINTS, SLIDING_SPEED, SLIP_COUPLING
-from ssmr_ident.simulate.pulling import HELD, PULLED
+from ssmr_ident.simulate.layout import OUTPUTS
+from ssmr_ident.simulate.pulling import HELD, PULLED, PULLING
 from ssmr_ident.simulate.robot_kernel import run
 
 _COLUMNS = len(OUTPUTS)
+
+STILL = np.zeros(PULLING)
+"""Nothing pulls."""
 
 FEWEST = 3
 """Runs from which lanes are quicker than one run after the other."""
@@ -50,19 +53,17 @@ class Run:
         return self.body.beyond or bool(self.pulling[PULLED] > 0.5)
 
     @property
+    def bandwidth_hz(self) -> float:
+        """Of its accelerometer."""
+        return self.body.robot.accelerometer.bandwidth_hz
+
+    @property
     def alike(self) -> tuple[object, ...]:
-        """What runs have in common that go in lanes."""
-        return (
-            self.beyond,
-            self.body.switches,
-            (self.p[POINTS + 1 : POINTS + 12 : 3] > 0.0).tobytes(),
-            self.p[SLIDING_SPEED] > 0.0,
-            self.p[SLIP_COUPLING] != 0.0,
-            self.pulling[PULLED],
-            self.pulling[HELD],
-            len(self.head),
-            id(self.body.uneven),
-        )
+        """What runs have in common that go in lanes; wheels that grip differ from lane to lane."""
+        own = self.body.alike
+        if self.pulling is STILL:
+            return (own, len(self.head))
+        return (own, len(self.head), self.pulling[PULLED], self.pulling[HELD])
 
 
 def run_together(
@@ -95,8 +96,9 @@ def run_together(
     groups: dict[tuple[object, ...], list[int]] = {}
     for index, one in enumerate(runs):
         groups.setdefault(one.alike, []).append(index)
-    for alike, members in groups.items():
+    for members in groups.values():
         own = [runs[index] for index in members]
+        filters = {hertz: low_pass_coefficients(hertz, step) for hertz in {one.bandwidth_hz for one in own}}
         _in_turn(
             np.array([one.p for one in own]),
             np.array([one.body.e for one in own]),
@@ -108,12 +110,12 @@ def run_together(
             reference,
             reference_step,
             np.array([one.start for one in own]),
-            np.array([low_pass_coefficients(one.body.robot.accelerometer.bandwidth_hz, step) for one in own]),
+            np.array([filters[one.bandwidth_hz] for one in own]),
             np.array(members),
             step,
             (samples - 1) * stride,
             stride,
-            True if alike[0] else None,
+            True if own[0].beyond else None,
             kept,
             out,
         )

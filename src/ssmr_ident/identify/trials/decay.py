@@ -15,7 +15,7 @@ from ssmr_ident.identify.decay_record import spread
 from ssmr_ident.identify.free_decays import BodyDecay, body_decay
 from ssmr_ident.identify.noise import AutoregressiveNoise
 from ssmr_ident.identify.output_error import START_SCALES
-from ssmr_ident.identify.robot_map import GAINS, RobotBuilder
+from ssmr_ident.identify.robot_map import RobotBuilder
 from ssmr_ident.identify.trials.pure_rotation import PureRotation, seen_axis
 from ssmr_ident.identify.trials.trial import Array, Asked, Course, Trial, Values
 from ssmr_ident.physics.linear import COORDINATES
@@ -86,7 +86,7 @@ def decay_trial(measurement: Measurement, builder: RobotBuilder, decoupled: bool
         No accelerations, or nothing that decays.
     """
     # a wheel that is nearly off the floor slides, and along one axis it holds nothing while it slides along the other
-    builder = RobotBuilder(builder.nominal.sliding_together())
+    builder = RobotBuilder.once(builder.nominal.sliding_together())
     recording, sensor = measurement.recording, builder.nominal.accelerometer
     wanted = (seen_axis(measurement),) if decoupled else AXES
     names = tuple(name for name in wanted if name in recording and np.ptp(recording[name]) > 0)
@@ -139,23 +139,22 @@ def _trial(whole: BodyDecay, kept: int, facts: _Facts) -> Trial:
 
     def simulated(asked: Sequence[Asked], samples: int, step: float) -> tuple[Array, Array, Array]:
         """Releases that differ, which of them each is asked for, and by what its axes' gains differ."""
-        releases: dict[tuple[int, int, bytes], Release] = {}
-        own, gains = [], []
-        last, robot, gain = None, builder.nominal, np.ones(len(decay.axes))
-        for values, effects, nuisance in asked:
-            if values is not last:  # most columns of a slope differ by the state at the release alone
-                # what axes read of a motion does not change it: three columns of a slope are one simulation
-                last, robot = values, builder({name: value for name, value in values.items() if name not in GAINS})
-                gain = (builder.gains(values) / robot.accelerometer.gain)[list(decay.axes)]
-            state = nuisance * SCALES
-            own.append((id(robot), id(effects), state.tobytes()))
+        states = np.array([nuisance for _, _, nuisance in asked]) * SCALES
+        away, moving = states[:, _OFFSETS], states[:, _VELOCITIES]
+        places: dict[tuple[int, int, bytes], int] = {}
+        releases: list[Release] = []
+        rows, gains = [], []
+        for index, (values, effects, nuisance) in enumerate(asked):
+            robot, gain = builder.read(values)
+            place = places.setdefault((id(robot), id(effects), nuisance.tobytes()), len(releases))
+            if place == len(releases):
+                releases.append(Release(robot, effects, away[index], moving[index]))
+            rows.append(place)
             gains.append(gain)
-            releases.setdefault(own[-1], Release(robot, effects, state[_OFFSETS], state[_VELOCITIES]))
         seconds = decay.record.step
         names = [AXES[axis] for axis in decay.axes]
-        found = simulate_many(list(releases.values()), samples * seconds, 1.0 / seconds, step, names)
-        places = {key: place for place, key in enumerate(releases)}
-        return found, np.array([places[key] for key in own]), np.array(gains)
+        found = simulate_many(releases, samples * seconds, 1.0 / seconds, step, names)
+        return found, np.array(rows), np.array(gains)[:, list(decay.axes)]
 
     def read(asked: Sequence[Asked], samples: int, step: float) -> Array:
         found, rows, gain = simulated(asked, samples, step)

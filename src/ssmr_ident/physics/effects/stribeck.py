@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ssmr_ident.core.exponential import exp
 from ssmr_ident.core.kernel import kernel
-from ssmr_ident.core.lanes import lanewise
+from ssmr_ident.core.lanes import anywhere, lanewise
 from ssmr_ident.core.parameter import Parameter
 from ssmr_ident.physics.effect import Effect, Site
 
@@ -18,6 +18,8 @@ def _power(ratio, exponent):
 @kernel
 def coefficient(mu_static, share, speed, width, exponent):
     """mu_s·(r + (1 - r)·exp(-(u/v_s)^δ)); speed u, width v_s : float [m/s], share r = mu_k/mu_s, exponent δ : float."""
+    if not anywhere(speed != 0.0):
+        return mu_static * (share + (1.0 - share))
     return mu_static * (share + (1.0 - share) * exp(-_power(speed / width, exponent)))
 
 
