@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -55,40 +56,50 @@ class Curvature:
             sides[index, :k, p] = weight * (residual @ b) - nuisance
         return Curvature(fit.point, shared, right, own, sides, counts)
 
-    def normal_equations(self, damping: float = 0.0) -> tuple[Array, Array]:
+    def normal_equations(self) -> tuple[Array, Array]:
         """Matrix and right side in the shared coordinates, nuisances eliminated (Schur complement)."""
-        return self._reduced(np.linalg.solve(self._damped(damping), self.sides))
+        matrices, right = self._reduced(np.linalg.solve(self._damped(np.zeros(1)), self.sides))
+        return matrices[0], right[0]
 
     def step(self, damping: float, shared: bool = True) -> tuple[Array, list[Array]]:
+        """``steps`` for one damping."""
+        return self.steps([damping], shared)[0]
+
+    def steps(self, dampings: Sequence[float], shared: bool = True) -> list[tuple[Array, list[Array]]]:
         """Of the shared coordinates and of each recording's nuisances (Levenberg 1944, Marquardt 1963).
 
         Parameters
         ----------
-        damping : float
+        dampings : sequence of float
         shared : bool
             False moves the nuisances alone.
         """
-        count = len(self.point)
-        move, matrices = np.zeros(count), self._damped(damping)
+        count, raised = len(self.point), np.asarray(dampings, float)
+        moves, matrices = np.zeros((len(raised), count)), self._damped(raised)
         if not shared or not count:
-            found = np.linalg.solve(matrices, self.sides[:, :, count:])[:, :, 0]
+            found = np.linalg.solve(matrices, self.sides[:, :, count:])[..., 0]
         else:
             solved = np.linalg.solve(matrices, self.sides)
-            matrix, right = self._reduced(solved)
-            matrix.flat[:: count + 1] *= 1.0 + damping
-            move = np.linalg.solve(matrix, right)
-            found = solved[:, :, count] - solved[:, :, :count] @ move
-        return move, [own[:k] for own, k in zip(found, self.counts, strict=True)]
+            shares, right = self._reduced(solved)
+            diagonal = np.einsum("dpp->dp", shares)
+            diagonal *= 1.0 + raised[:, None]
+            moves = np.linalg.solve(shares, right[..., None])[..., 0]
+            found = solved[..., count] - (solved[..., :count] @ moves[:, None, :, None])[..., 0]
+        return [
+            (move, [one[:k] for one, k in zip(own, self.counts, strict=True)])
+            for move, own in zip(moves, found, strict=True)
+        ]
 
     def _reduced(self, solved: Array) -> tuple[Array, Array]:
+        """Of each damping, (d, p, p) and (d, p) float."""
         count = len(self.point)
-        taken = (np.swapaxes(self.sides[:, :, :count], 1, 2) @ solved).sum(axis=0)
-        return self.shared - taken[:, :count], self.right - taken[:, count]
+        taken = (np.swapaxes(self.sides[:, :, :count], 1, 2) @ solved).sum(axis=1)
+        return self.shared - taken[..., :count], self.right - taken[..., count]
 
-    def _damped(self, damping: float) -> Array:
-        """Curvature along nuisances, their priors of unit width in it."""
-        found = self.own.copy()
-        diagonal = np.einsum("tkk->tk", found)
+    def _damped(self, dampings: Array) -> Array:
+        """Curvature along nuisances, their priors of unit width in it, raised by each damping; (d, t, k, k) float."""
+        found = np.repeat(self.own[None], len(dampings), axis=0)
+        diagonal = np.einsum("dtkk->dtk", found)
         diagonal += 1.0
-        diagonal *= 1.0 + damping
+        diagonal *= 1.0 + dampings[:, None, None]
         return found

@@ -145,7 +145,7 @@ def best_step(fit: JointFit, counted: Array, rung: int, shared: bool, plain: boo
     def tried(candidates: Sequence[int]) -> Iterator[tuple[int, JointFit]]:
         for begin in range(0, len(candidates), ahead):
             together = candidates[begin : begin + ahead]
-            moves = [curvature.step(DAMPINGS[candidate], shared) for candidate in together]
+            moves = curvature.steps([DAMPINGS[candidate] for candidate in together], shared)
             places = [
                 (fit.point + move, [n + o for n, o in zip(fit.nuisances, own, strict=True)]) for move, own in moves
             ]

@@ -186,10 +186,7 @@ def evaluate_all(
 
     What is left of the recordings is worked out one place after the other, as they are asked for.
     """
-    sane = [
-        bool(np.all(np.isfinite(point))) and all(np.all(np.isfinite(n)) for n in nuisances)
-        for point, nuisances in places
-    ]
+    sane = [bool(np.all(np.isfinite(np.concatenate([point, *nuisances])))) for point, nuisances in places]
     split = [model.split(point) for point, _ in places]
 
     def simulated(index: int) -> list[Array]:
@@ -199,7 +196,7 @@ def evaluate_all(
         return [next(found) if good else np.full_like(trial.target, np.nan) for good in sane]
 
     def left(trial: Trial, simulated: Array) -> tuple[Array, Array]:
-        if not np.all(np.abs(simulated) < BURST):
+        if not (simulated.max() < BURST and simulated.min() > -BURST):
             simulated = np.full_like(trial.target, np.nan)
         return simulated, trial.white_target - trial.whitened(simulated)
 
@@ -249,11 +246,11 @@ def differentiate(fit: JointFit, shared: bool = True) -> JointFit:
                 aside[column] += side * width
                 asked.append((*here, aside))
         columns, own = np.zeros((len(centre), len(point))), np.zeros((len(centre), len(nuisance)))
-        found = iter(trial.whitened(trial.runs(asked)).T if asked else ())
-        for column in seen:
-            slope = (next(found) - centre) / moved[trial.coarse][column][0]
-            # where a step leaves what can be simulated, the fit stays along this coordinate
-            columns[:, column] = slope if np.all(np.abs(slope) < BURST) else 0.0
+        whitened = trial.whitened(trial.runs(asked)) if asked else np.zeros((len(centre), 0))
+        slopes = (whitened[:, : len(seen)] - centre[:, None]) / [moved[trial.coarse][column][0] for column in seen]
+        # where a step leaves what can be simulated, the fit stays along this coordinate
+        columns[:, seen] = np.where(np.all(np.abs(slopes) < BURST, axis=0), slopes, 0.0)
+        found = iter(whitened[:, len(seen) :].T)
         for column in own_columns:
             ahead = next(found)
             even = trial.nuisances[column] in trial.even

@@ -30,6 +30,13 @@ SENSOR = tuple(f"accelerometer.position_m.{axis}" for axis in "xyz")
 GAINS = tuple(f"accelerometer.gain.{axis}" for axis in "xyz")
 """What each axis reads of a true acceleration."""
 
+_TENSOR = tuple(
+    (row, column, f"inertia_kg_m2.{axes}")
+    for row, column, axes in ((0, 0, "xx"), (1, 1, "yy"), (2, 2, "zz"), (0, 2, "xz"), (0, 1, "xy"), (1, 2, "yz"))
+)
+_STIFFNESS = tuple(f"tire.stiffness_{axis}_N_m" for axis in "xyz")
+_DAMPING = tuple(f"tire.damping_{axis}_N_s_m" for axis in "xyz")
+
 LINEAR_FREQUENCY = 0.001
 LINEAR_DAMPING = 0.01
 """Shares by which modes of small motions may differ from those of the motions that were recorded (finite angles,
@@ -38,8 +45,8 @@ sensor, rest pose). Simulated decays whose robot is known differ by at most 0.04
 _KEYS = (
     *("mass_kg", "inertia_kg_m2.xx", "inertia_kg_m2.yy", "inertia_kg_m2.zz"),
     *("inertia_kg_m2.xz", "inertia_kg_m2.xy", "inertia_kg_m2.yz"),
-    *(f"tire.stiffness_{axis}_N_m" for axis in "xyz"),
-    *(f"tire.damping_{axis}_N_s_m" for axis in "xyz"),
+    *_STIFFNESS,
+    *_DAMPING,
     *("tire.mu_static", "tire.mu_kinetic", "cable.stiffness_N_m"),
 )
 
@@ -142,7 +149,7 @@ class RobotBuilder:
         return robot, self.gains(values) / robot.accelerometer.gain
 
     def __call__(self, values: Mapping[str, float]) -> Robot:
-        return _MADE.of((self._print, *values.items()), lambda: self._made(values))
+        return _MADE.of((self._print, tuple(values), tuple(values.values())), lambda: self._made(values))
 
     def gains(self, values: Mapping[str, float]) -> np.ndarray:
         """What each axis reads of a true acceleration, (3,)."""
@@ -154,15 +161,17 @@ class RobotBuilder:
         return Recent()
 
     @cached_property
-    def _print(self) -> Hashable:
-        return _by_value(self.nominal)
+    def _print(self) -> object:
+        """The same for equal robots, and quicker to look up than all of their numbers."""
+        return _PRINTS.of(_by_value(self.nominal), object)
 
     def _made(self, values: Mapping[str, float]) -> Robot:
         robot = self.nominal
         mu_static = values.get("tire.mu_static", robot.mu_static)
         inertia = robot.inertia.copy()
-        for row, column, axis in ((0, 0, "xx"), (1, 1, "yy"), (2, 2, "zz"), (0, 2, "xz"), (0, 1, "xy"), (1, 2, "yz")):
-            inertia[row, column] = inertia[column, row] = values.get(f"inertia_kg_m2.{axis}", inertia[row, column])
+        for row, column, name in _TENSOR:
+            if name in values:
+                inertia[row, column] = inertia[column, row] = values[name]
         points = robot.contact_points.copy()
         for index, name in enumerate(SHIFTS):
             points[:, index] += values.get(name, 0.0)
@@ -176,10 +185,8 @@ class RobotBuilder:
             mass=values.get("mass_kg", robot.mass),
             inertia=inertia,
             contact_points=points,
-            stiffness=np.array(
-                [values.get(f"tire.stiffness_{a}_N_m", robot.stiffness[i]) for i, a in enumerate("xyz")]
-            ),
-            damping=np.array([values.get(f"tire.damping_{a}_N_s_m", robot.damping[i]) for i, a in enumerate("xyz")]),
+            stiffness=np.array([values.get(name, robot.stiffness[i]) for i, name in enumerate(_STIFFNESS)]),
+            damping=np.array([values.get(name, robot.damping[i]) for i, name in enumerate(_DAMPING)]),
             mu_static=mu_static,
             # one coefficient in the file stays one, unless a fit gives both
             mu_kinetic=values.get(
@@ -196,6 +203,7 @@ class RobotBuilder:
 
 
 _BUILDERS: Recent[RobotBuilder] = Recent()
+_PRINTS: Recent[object] = Recent()
 
 
 def geometry_of(robot: Robot) -> Geometry:

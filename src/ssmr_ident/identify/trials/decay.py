@@ -141,12 +141,12 @@ def _trial(whole: BodyDecay, kept: int, facts: _Facts) -> Trial:
         """Releases that differ, which of them each is asked for, and by what its axes' gains differ."""
         states = np.array([nuisance for _, _, nuisance in asked]) * SCALES
         away, moving = states[:, _OFFSETS], states[:, _VELOCITIES]
-        places: dict[tuple[int, int, bytes], int] = {}
+        places: dict[tuple[int, int, int], int] = {}
         releases: list[Release] = []
         rows, gains = [], []
         for index, (values, effects, nuisance) in enumerate(asked):
             robot, gain = builder.read(values)
-            place = places.setdefault((id(robot), id(effects), nuisance.tobytes()), len(releases))
+            place = places.setdefault((id(robot), id(effects), id(nuisance)), len(releases))
             if place == len(releases):
                 releases.append(Release(robot, effects, away[index], moving[index]))
             rows.append(place)

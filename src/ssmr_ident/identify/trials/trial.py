@@ -205,7 +205,7 @@ class Trial:
         """``run`` for each of (values, effects, nuisance), one behind the other in the last axis; (n, c, k)."""
         if self.many is None:
             return np.stack([self.run(*one) for one in asked], axis=-1)
-        return np.moveaxis(self.many(asked), 0, -1)
+        return self.many(asked).transpose(1, 2, 0)
 
     def sees(self, name: str) -> bool:
         """False for a parameter that this recording does not depend on, whatever its value."""
