@@ -24,6 +24,7 @@ from ssmr_ident.diagnose.within import REACH, measure_of
 from ssmr_ident.diagnose.words import law, missing, nothing, readable, told, undetermined
 from ssmr_ident.diagnose.worth import BY_CHANCE, grows_with_motion, overlays, predictions, reddest, without_jolts, worth
 from ssmr_ident.identify.joint import JointFit, differentiate
+from ssmr_ident.identify.parallel import side_by_side
 
 METRIC = "nrmse_percent"
 
@@ -185,10 +186,10 @@ def _named(outcome: Outcome, fitted: Mapping[str, Mapping[str, Estimate]]) -> tu
 
 
 def _tried(outcome: Outcome) -> tuple[Tried, ...]:
-    rows = [
-        Tried(e.id, worth(p := predictions(e.kept), p, ()).before, float(outcome.found[e.id])) for e in outcome.tried
-    ]
-    return tuple(sorted(rows, key=lambda t: -t.log_evidence))
+    def row(e: Explanation) -> Tried:
+        return Tried(e.id, worth(p := predictions(e.kept), p, ()).before, float(outcome.found[e.id]))
+
+    return tuple(sorted(side_by_side(row, outcome.tried), key=lambda t: -t.log_evidence))
 
 
 def _elsewhere(free: Explanation, within: Explanation, conflicts: tuple[Conflict, ...]) -> tuple[str, ...]:
