@@ -20,7 +20,8 @@ from ssmr_ident.identify.coupled import body_modes
 from ssmr_ident.identify.fit_body import BodyFit, fit_body
 from ssmr_ident.identify.free_decays import BodyDecay, body_decay
 from ssmr_ident.identify.posterior import Unknown
-from ssmr_ident.identify.robot_map import RobotBuilder, robot_unknowns
+from ssmr_ident.identify.robot_builder import RobotBuilder
+from ssmr_ident.identify.robot_map import robot_unknowns
 from ssmr_ident.identify.tire_parameters import MOTIONS
 from ssmr_ident.physics.linear import COORDINATES, accelerometer_rows, linear_robot
 from ssmr_ident.physics.robot import GRAVITY, Robot

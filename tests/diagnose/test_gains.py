@@ -11,7 +11,7 @@ from ssmr_ident.campaign import Campaign
 from ssmr_ident.compare.recorded import follow
 from ssmr_ident.core.parameter import Estimate
 from ssmr_ident.diagnose.setup import set_up
-from ssmr_ident.identify.robot_map import GAINS
+from ssmr_ident.identify.robot_builder import GAINS
 from ssmr_ident.pipeline.diagnose import diagnose
 
 SEED = 187486

@@ -15,7 +15,7 @@ from ssmr_ident.core.errors import InputError
 from ssmr_ident.identify.inverse_dynamics import fit_drive
 from ssmr_ident.identify.pull_model import pull_stiffness
 from ssmr_ident.identify.rig import ForcedRecord, fit_rig
-from ssmr_ident.identify.robot_map import HEIGHT, RobotBuilder
+from ssmr_ident.identify.robot_builder import HEIGHT, RobotBuilder
 from ssmr_ident.physics.linear import linear_robot
 from ssmr_ident.pipeline.fit import fit_session
 from ssmr_ident.session import read_parameters, write_parameters

@@ -11,7 +11,7 @@ from ssmr_ident.identify.findings import conflicts, posterior_findings
 from ssmr_ident.identify.geometry import assemble, box, from_two_weighings, height_from_tilting
 from ssmr_ident.identify.posterior import Observation, Unknown, most_probable
 from ssmr_ident.identify.pull_model import pull_stiffness
-from ssmr_ident.identify.robot_map import RobotBuilder
+from ssmr_ident.identify.robot_builder import RobotBuilder
 from ssmr_ident.physics.robot import GRAVITY
 from ssmr_ident.session import read_parameters
 

@@ -15,7 +15,8 @@ from ssmr_ident.identify.free_decays import BodyDecay, body_decay
 from ssmr_ident.identify.noise import AutoregressiveNoise
 from ssmr_ident.identify.output_error import START_SCALES, DecaySamples
 from ssmr_ident.identify.posterior import most_probable
-from ssmr_ident.identify.robot_map import RobotBuilder, robot_unknowns
+from ssmr_ident.identify.robot_builder import RobotBuilder
+from ssmr_ident.identify.robot_map import robot_unknowns
 from ssmr_ident.physics.linear import linear_robot, responses
 from ssmr_ident.session import read_parameters
 from ssmr_ident.simulate.scenarios import Scenario

@@ -14,7 +14,7 @@ from ssmr_ident.identify import parallel
 from ssmr_ident.identify.coordinates import Model
 from ssmr_ident.identify.joint import differentiate, evaluate
 from ssmr_ident.identify.objective import Unknown
-from ssmr_ident.identify.robot_map import RobotBuilder
+from ssmr_ident.identify.robot_builder import RobotBuilder
 from ssmr_ident.identify.trials.decay import decay_trial
 from ssmr_ident.physics.robot import Robot, robot_from_parameters
 from ssmr_ident.physics.slots import Effects

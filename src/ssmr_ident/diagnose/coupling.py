@@ -12,7 +12,7 @@ from ssmr_ident.diagnose.setup import COUPLING, Setup
 from ssmr_ident.diagnose.weigh import Explanation
 from ssmr_ident.identify.descent import descend
 from ssmr_ident.identify.joint import evaluate
-from ssmr_ident.identify.robot_map import RobotBuilder
+from ssmr_ident.identify.robot_builder import RobotBuilder
 from ssmr_ident.identify.trials import Trial
 from ssmr_ident.identify.trials.decay import decay_trial
 

@@ -10,7 +10,7 @@ from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.diagnose.setup import twin
 from ssmr_ident.identify.descent import chatters
 from ssmr_ident.identify.joint import JointFit
-from ssmr_ident.identify.robot_map import HEIGHT, SENSOR, SHIFTS
+from ssmr_ident.identify.robot_builder import HEIGHT, SENSOR, SHIFTS
 from ssmr_ident.identify.roughness import scatter_of
 from ssmr_ident.physics.effects import CATALOGUE
 

@@ -13,7 +13,8 @@ from ssmr_ident.diagnose.arranged import loudness
 from ssmr_ident.identify.coordinates import Model
 from ssmr_ident.identify.joint import JointFit
 from ssmr_ident.identify.objective import Unknown
-from ssmr_ident.identify.robot_map import GAINS, robot_unknowns
+from ssmr_ident.identify.robot_builder import GAINS
+from ssmr_ident.identify.robot_map import robot_unknowns
 from ssmr_ident.identify.trials import Trial, trial_of
 from ssmr_ident.identify.trials.make import EXPERIMENTS
 from ssmr_ident.physics.rig import RIG_KEYS

@@ -18,13 +18,8 @@ from ssmr_ident.identify.descent import search_again
 from ssmr_ident.identify.joint import JointFit, differentiate, evaluate
 from ssmr_ident.identify.posterior import most_probable
 from ssmr_ident.identify.rig import DERIVATIVES, ForcedRecord, fit_rig
-from ssmr_ident.identify.robot_map import (
-    RobotBuilder,
-    match_further,
-    modal_observations,
-    pick_mode,
-    predicted_modes,
-)
+from ssmr_ident.identify.robot_builder import RobotBuilder
+from ssmr_ident.identify.robot_map import match_further, modal_observations, pick_mode, predicted_modes
 from ssmr_ident.identify.trials import Trial
 from ssmr_ident.physics.rig import RIG_KEYS, rig_from_parameters
 

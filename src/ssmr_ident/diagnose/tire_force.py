@@ -16,7 +16,7 @@ from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.motion import filtered, main_channel, main_frequency
 from ssmr_ident.identify.joint import JointFit
 from ssmr_ident.identify.output_error import START_SCALES
-from ssmr_ident.identify.robot_map import RobotBuilder
+from ssmr_ident.identify.robot_builder import RobotBuilder
 from ssmr_ident.identify.trials.decay import SCALES
 from ssmr_ident.identify.trials.trial import Trial
 from ssmr_ident.physics.linear import LinearRobot, accelerometer_rows, linear_robot, responses

@@ -9,7 +9,7 @@ import numpy as np
 from ssmr_ident.identify.friction import gripping_load
 from ssmr_ident.identify.posterior import Observation, Unknown
 from ssmr_ident.identify.pull_model import pull_stiffness
-from ssmr_ident.identify.robot_map import SHIFTS, RobotBuilder
+from ssmr_ident.identify.robot_builder import SHIFTS, RobotBuilder
 
 SLOPE_SHARE = 0.003
 """The same for the slope of a pull's first rise; there the largest difference seen is 0.3 %."""

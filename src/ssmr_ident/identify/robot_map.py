@@ -3,50 +3,30 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Hashable, Mapping, Sequence
-from dataclasses import dataclass, fields, is_dataclass, replace
-from functools import cached_property
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 from scipy.stats import t as student
 
 from ssmr_ident.core.parameter import ParameterSet
-from ssmr_ident.core.recent import Recent, Same
 from ssmr_ident.identify.coupled import FURTHER, body_modes
 from ssmr_ident.identify.decay_result import DecayFit, Mode
 from ssmr_ident.identify.posterior import Observation, Unknown
+from ssmr_ident.identify.robot_builder import DAMPING, HEIGHT, SENSOR, SHIFTS, STIFFNESS, RobotBuilder
 from ssmr_ident.identify.tire_parameters import Geometry, rotation_modes
-from ssmr_ident.physics.robot import Robot, robot_from_parameters
-
-HEIGHT = "height_m"
-"""Height of the centre of mass; the contact points' common z in the file."""
-
-SHIFTS = ("contact_shift_x_m", "contact_shift_y_m")
-"""How far the contact points lie from where the file has them, all alike: the centre of mass along x and y."""
-
-SENSOR = tuple(f"accelerometer.position_m.{axis}" for axis in "xyz")
-"""Place of the accelerometer, coordinate by coordinate."""
-
-GAINS = tuple(f"accelerometer.gain.{axis}" for axis in "xyz")
-"""What each axis reads of a true acceleration."""
-
-_TENSOR = tuple(
-    (row, column, f"inertia_kg_m2.{axes}")
-    for row, column, axes in ((0, 0, "xx"), (1, 1, "yy"), (2, 2, "zz"), (0, 2, "xz"), (0, 1, "xy"), (1, 2, "yz"))
-)
-_STIFFNESS = tuple(f"tire.stiffness_{axis}_N_m" for axis in "xyz")
-_DAMPING = tuple(f"tire.damping_{axis}_N_s_m" for axis in "xyz")
+from ssmr_ident.physics.robot import Robot
 
 LINEAR_FREQUENCY = 0.001
-LINEAR_DAMPING = 0.01
+LINEARDAMPING = 0.01
 """Shares by which modes of small motions may differ from those of the motions that were recorded (finite angles,
 sensor, rest pose). Simulated decays whose robot is known differ by at most 0.04 % and 1.2 %."""
 
 _KEYS = (
     *("mass_kg", "inertia_kg_m2.xx", "inertia_kg_m2.yy", "inertia_kg_m2.zz"),
     *("inertia_kg_m2.xz", "inertia_kg_m2.xy", "inertia_kg_m2.yz"),
-    *_STIFFNESS,
-    *_DAMPING,
+    *STIFFNESS,
+    *DAMPING,
     *("tire.mu_static", "tire.mu_kinetic", "cable.stiffness_N_m"),
 )
 
@@ -104,106 +84,6 @@ def set_aside(unknowns: Sequence[Unknown], motions: Collection[str]) -> tuple[Un
     if free:
         free |= {f"tire.damping_{axis}_N_s_m" for axis in "xyz"}
     return tuple(replace(u, prior_std=None) if u.name in free else u for u in unknowns)
-
-
-_MADE: Recent[Robot] = Recent()
-"""Recordings of a session ask for the same robots in turn, and what is worked out of a robot is kept beside it."""
-
-
-def _by_value(thing: object) -> Hashable:
-    """What is equal for equal arrays and numbers, however often they were made."""
-    if is_dataclass(thing):
-        return tuple(_by_value(getattr(thing, field.name)) for field in fields(thing))
-    return (thing.shape, thing.tobytes()) if isinstance(thing, np.ndarray) else thing
-
-
-@dataclass(frozen=True)
-class RobotBuilder:
-    """From parameter values to a robot.
-
-    Parameters
-    ----------
-    nominal : Robot
-        As the file has it.
-    """
-
-    nominal: Robot
-
-    @staticmethod
-    def of(parameters: ParameterSet) -> RobotBuilder:
-        return RobotBuilder(robot_from_parameters(parameters))
-
-    @staticmethod
-    def once(nominal: Robot) -> RobotBuilder:
-        """One for all that ask for an equal robot."""
-        return _BUILDERS.of(_by_value(nominal), lambda: RobotBuilder(nominal))
-
-    def read(self, values: Mapping[str, float]) -> tuple[Robot, np.ndarray]:
-        """A robot whose axes read what they nominally do, and by what they differ from that, (3,); worked out once for
-        each mapping, which all recordings of a fit ask for."""
-        return self._read.of(Same(values), lambda: self._apart(values))
-
-    def _apart(self, values: Mapping[str, float]) -> tuple[Robot, np.ndarray]:
-        # what axes read of a motion does not change it: three columns of a slope are one simulation
-        robot = self({name: value for name, value in values.items() if name not in GAINS})
-        return robot, self.gains(values) / robot.accelerometer.gain
-
-    def __call__(self, values: Mapping[str, float]) -> Robot:
-        return _MADE.of((self._print, tuple(values), tuple(values.values())), lambda: self._made(values))
-
-    def gains(self, values: Mapping[str, float]) -> np.ndarray:
-        """What each axis reads of a true acceleration, (3,)."""
-        own = self.nominal.accelerometer.gain
-        return np.array([values.get(name, gain) for name, gain in zip(GAINS, own, strict=True)])
-
-    @cached_property
-    def _read(self) -> Recent[tuple[Robot, np.ndarray]]:
-        return Recent()
-
-    @cached_property
-    def _print(self) -> object:
-        """The same for equal robots, and quicker to look up than all of their numbers."""
-        return _PRINTS.of(_by_value(self.nominal), object)
-
-    def _made(self, values: Mapping[str, float]) -> Robot:
-        robot = self.nominal
-        mu_static = values.get("tire.mu_static", robot.mu_static)
-        inertia = robot.inertia.copy()
-        for row, column, name in _TENSOR:
-            if name in values:
-                inertia[row, column] = inertia[column, row] = values[name]
-        points = robot.contact_points.copy()
-        for index, name in enumerate(SHIFTS):
-            points[:, index] += values.get(name, 0.0)
-        place = robot.accelerometer.position
-        if any(name in values for name in SENSOR):
-            place = np.array([values.get(name, place[index]) for index, name in enumerate(SENSOR)])
-        if HEIGHT in values:
-            points[:, 2] -= values[HEIGHT] - robot.height
-        return replace(
-            robot,
-            mass=values.get("mass_kg", robot.mass),
-            inertia=inertia,
-            contact_points=points,
-            stiffness=np.array([values.get(name, robot.stiffness[i]) for i, name in enumerate(_STIFFNESS)]),
-            damping=np.array([values.get(name, robot.damping[i]) for i, name in enumerate(_DAMPING)]),
-            mu_static=mu_static,
-            # one coefficient in the file stays one, unless a fit gives both
-            mu_kinetic=values.get(
-                "tire.mu_kinetic", mu_static if robot.mu_kinetic == robot.mu_static else robot.mu_kinetic
-            ),
-            cable_stiffness=values.get("cable.stiffness_N_m", robot.cable_stiffness),
-            accelerometer=replace(
-                robot.accelerometer,
-                position=place,
-                gain=self.gains(values),
-                bandwidth_hz=values.get("accelerometer.bandwidth_hz", robot.accelerometer.bandwidth_hz),
-            ),
-        )
-
-
-_BUILDERS: Recent[RobotBuilder] = Recent()
-_PRINTS: Recent[object] = Recent()
 
 
 def geometry_of(robot: Robot) -> Geometry:
@@ -267,7 +147,7 @@ def combine_trials(modes: Mapping[str, Sequence[Mode]]) -> dict[str, tuple[np.nd
         points = np.array([[mode.omega_n, mode.xi] for mode in trials])
         mean = points.mean(axis=0)
         own = np.mean([[mode.omega_n_std**2, mode.xi_std**2] for mode in trials], axis=0)
-        floor = np.array([LINEAR_FREQUENCY, LINEAR_DAMPING]) * np.abs(mean)
+        floor = np.array([LINEAR_FREQUENCY, LINEARDAMPING]) * np.abs(mean)
         variance = np.maximum(own, (share * mean) ** 2) / len(trials) + floor**2
         combined[motion] = (mean, np.diag(variance))
     return combined

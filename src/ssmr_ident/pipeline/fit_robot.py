@@ -14,8 +14,8 @@ from ssmr_ident.identify.decay import fit_decay
 from ssmr_ident.identify.findings import amplitude_findings, conflicts, posterior_findings
 from ssmr_ident.identify.force_observations import SHARES, with_shifts_unknown
 from ssmr_ident.identify.posterior import Unknown, most_probable
+from ssmr_ident.identify.robot_builder import RobotBuilder
 from ssmr_ident.identify.robot_map import (
-    RobotBuilder,
     match_further,
     modal_observations,
     pick_mode,

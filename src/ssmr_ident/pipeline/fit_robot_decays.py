@@ -11,7 +11,7 @@ from ssmr_ident.identify.fit_body import BodyFit, fit_body
 from ssmr_ident.identify.free_decays import BodyDecay, body_decay
 from ssmr_ident.identify.noise import whiteness
 from ssmr_ident.identify.posterior import Posterior, Unknown
-from ssmr_ident.identify.robot_map import RobotBuilder
+from ssmr_ident.identify.robot_builder import RobotBuilder
 from ssmr_ident.physics.slots import effect_values
 from ssmr_ident.pipeline.fit_robot_forces import Gathered
 

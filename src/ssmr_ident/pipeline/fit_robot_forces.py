@@ -19,7 +19,7 @@ from ssmr_ident.identify.force_observations import (
 )
 from ssmr_ident.identify.friction import friction_of, full_teeth, gripping_load
 from ssmr_ident.identify.posterior import Observation, Posterior, Unknown
-from ssmr_ident.identify.robot_map import SHIFTS, RobotBuilder
+from ssmr_ident.identify.robot_builder import SHIFTS, RobotBuilder
 from ssmr_ident.identify.sawtooth import machine_moves, mean_with_wander, take_apart
 from ssmr_ident.pipeline.fit_robot_result import ON_FLOOR, ROPE
 from ssmr_ident.pipeline.fit_speeds import AtSpeed

@@ -13,7 +13,8 @@ from ssmr_ident.identify.findings import at_bound, table_5_2
 from ssmr_ident.identify.force_observations import SHARES
 from ssmr_ident.identify.lmfit_report import Variable
 from ssmr_ident.identify.posterior import Posterior, Unknown
-from ssmr_ident.identify.robot_map import HEIGHT, SENSOR, SHIFTS, RobotBuilder, geometry_of
+from ssmr_ident.identify.robot_builder import HEIGHT, SENSOR, SHIFTS, RobotBuilder
+from ssmr_ident.identify.robot_map import geometry_of
 from ssmr_ident.identify.tire_parameters import MOTIONS, damping_as_printed, solve_damping
 
 UNINFORMED = 0.19

@@ -15,7 +15,7 @@ from ssmr_ident.identify.decay_record import spread
 from ssmr_ident.identify.free_decays import BodyDecay, body_decay
 from ssmr_ident.identify.noise import AutoregressiveNoise
 from ssmr_ident.identify.output_error import START_SCALES
-from ssmr_ident.identify.robot_map import RobotBuilder
+from ssmr_ident.identify.robot_builder import RobotBuilder
 from ssmr_ident.identify.trials.pure_rotation import PureRotation, seen_axis
 from ssmr_ident.identify.trials.trial import Array, Asked, Course, Trial, Values
 from ssmr_ident.physics.linear import COORDINATES
