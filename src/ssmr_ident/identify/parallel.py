@@ -43,7 +43,8 @@ class Pool:
     Who asks works as well. Whole fits are worth more side by side than the recordings of one: a thread without work
     takes from the call that was begun first, and what is called from within another call goes one by one as long as
     every thread has work. Who waits for an item that another has taken takes from calls begun later than its own,
-    that other's among them, so that nothing waits for a thread that waits for it.
+    that other's among them, so that nothing waits for a thread that waits for it. What holds a lock of its own, as a
+    cached property does while it is worked out, must not ask. Why: decision 23.
 
     Parameters
     ----------
