@@ -11,7 +11,7 @@ from ssmr_ident.diagnose.baseline import best_baseline
 from ssmr_ident.diagnose.explore import search
 from ssmr_ident.diagnose.from_known import SHARES, begun_from_known
 from ssmr_ident.diagnose.setup import set_up
-from ssmr_ident.identify.joint import JointFit
+from ssmr_ident.identify.joint import JointFit, evaluate
 from ssmr_ident.physics.effects import CATALOGUE
 
 
@@ -42,6 +42,27 @@ def test_where_an_effect_explains_the_recordings_nothing_is_begun_anew(monkeypat
     monkeypatch.setattr(explore, "candidates", lambda *_: (CATALOGUE["nonlinear_stiffness"],))
     monkeypatch.setattr(explore, "begun_from_known", lambda *_: pytest.fail("begun anew"))
     assert np.median(_left(search(base, "rigid6", lengths).tried[0])) < 2.0
+
+
+def test_an_effect_that_has_lost_its_way_is_led_home_before_all_are_begun_anew(monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn = draw("decays", "one", 3, "nonlinear_stiffness", 0.5, short=True)
+    setup = set_up(drawn.campaign, drawn.campaign.parameters)
+    base, lengths = best_baseline(setup.fitted, setup, drawn.campaign.parameters)
+    monkeypatch.setattr(explore, "candidates", lambda *_: (CATALOGUE["nonlinear_stiffness"],))
+    found = search(base, "rigid6", lengths).tried[0]
+    # each release the other way round: the effect has its size, and all else is wrong
+    away = evaluate(found.trials, found.model, found.point, [-n for n in found.nuisances])
+    assert np.median(_left(away)) > 10.0
+    monkeypatch.setattr(explore, "to_the_end", lambda *_, **__: [away])
+    monkeypatch.setattr(explore, "begun_from_known", lambda *_: pytest.fail("begun anew"))
+    (home,) = search(base, "rigid6", lengths).tried
+    assert np.median(_left(home)) < 2.0
+    # where that does not help, all effects are begun in all sizes
+    begun: list[str] = []
+    monkeypatch.setattr(explore, "anew", lambda fit, _: fit)
+    monkeypatch.setattr(explore, "begun_from_known", lambda *_: begun.append("anew") or [])
+    assert search(base, "rigid6", lengths).tried == (away,)
+    assert begun == ["anew"]
 
 
 def test_every_formula_is_begun_at_sizes_far_apart_on_the_first_horizon(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -7,9 +7,9 @@ import pytest
 from bank import draw
 
 from ssmr_ident.compare.roads import by_other_roads
-from ssmr_ident.diagnose import explore
+from ssmr_ident.diagnose import finals
 from ssmr_ident.diagnose.baseline import best_baseline
-from ssmr_ident.diagnose.explore import mended
+from ssmr_ident.diagnose.finals import mended
 from ssmr_ident.diagnose.setup import set_up
 from ssmr_ident.identify.descent import LOUD
 from ssmr_ident.identify.joint import JointFit, each_best, evaluate, together
@@ -56,7 +56,7 @@ def test_a_fit_is_mended_where_one_recording_is_astray(released: JointFit, astra
 def test_what_is_left_as_well_without_the_effect_is_no_reason(
     released: JointFit, astray: JointFit, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(explore, "by_other_roads", lambda *_, **__: pytest.fail("a hundred simulations for nothing"))
+    monkeypatch.setattr(finals, "by_other_roads", lambda *_, **__: pytest.fail("a hundred simulations for nothing"))
     assert mended(astray, astray) is astray
     assert mended(released) is released
     # of a model that leaves most of them it is no start that is wanting
@@ -75,12 +75,12 @@ def test_recordings_are_taken_from_the_fit_that_leaves_least_of_them(released: J
 
 
 def test_starts_are_looked_for_only_where_they_may_decide(released: JointFit, astray: JointFit) -> None:
-    assert explore._may_lead(released, [released])
-    assert explore._may_lead(astray, [released])
+    assert finals._may_lead(released, [released])
+    assert finals._may_lead(astray, [released])
     # far behind in every recording: none of them is what holds it back
     point = released.point.copy()
     point[0] += 30.0
     behind = evaluate(released.trials, released.model, point, released.nuisances)
     counted = released.counted
     assert behind.cost(counted) > astray.cost(counted)
-    assert not explore._may_lead(behind, [released])
+    assert not finals._may_lead(behind, [released])

@@ -138,7 +138,7 @@ def _examined(setup: Setup, parameters: ParameterSet, progress: Progress | None)
         tried = joined(tried, new)
         # or for two
         single = vague if vague is not None and (not good or leader is vague) else leader
-        if first and (single is vague or (not good and certain(leader, chosen) and loud(chosen.fit))):
+        if first and (single is vague or (not good and certain(leader, chosen) and _lacks(chosen))):
             together = with_a_second(single, chosen, kept, setup.campaign.session.baseline, lengths, progress)
             tried = joined(tried, together)
             if together and good_enough(together[0], chosen, first) and significant(together[0].fit):
@@ -208,6 +208,12 @@ def informed(setup: Setup, parameters: ParameterSet) -> Setup:
         for u, p, s in zip(setup.model.physics, fit.point, stds, strict=True)
     )
     return replace(setup, model=replace(setup.model, physics=physics), begun=None)
+
+
+def _lacks(baseline: Explanation) -> bool:
+    """Whether a baseline leaves so much that something is missing, though no one effect be good enough: in most of the
+    recordings that were fitted, or more in any than null sessions leave by their hollows."""
+    return loud(baseline.fit) or not (swings_alone(baseline.fit) and swings_alone(baseline.kept))
 
 
 def _cost(explanation: Explanation, reference: Explanation) -> float:

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
 
-from ssmr_ident.compare.recorded import follow
-from ssmr_ident.compare.roads import by_other_roads
 from ssmr_ident.diagnose.along import begun_along, without_laws
-from ssmr_ident.diagnose.baseline import LAST, WIDE, bent, leaves_much
+from ssmr_ident.diagnose.baseline import WIDE, bent, leaves_much
 from ssmr_ident.diagnose.explain import from_what_is_known
+from ssmr_ident.diagnose.finals import REFITTED, anew, each_once, led_on, to_the_end
 from ssmr_ident.diagnose.from_known import begun_from_known
 from ssmr_ident.diagnose.loose import begun_loose
 from ssmr_ident.diagnose.race import (
@@ -27,20 +26,13 @@ from ssmr_ident.diagnose.race import (
     within_reach,
 )
 from ssmr_ident.diagnose.scan import Suspect, candidates, moves_beyond, out_of_reach, promising, scan, variants
-from ssmr_ident.diagnose.weigh import NEAR
 from ssmr_ident.identify.descent import LOUD, chatters, descend, slides
-from ssmr_ident.identify.horizons import led
 from ssmr_ident.identify.joint import JointFit
 from ssmr_ident.identify.parallel import side_by_side
 from ssmr_ident.physics.effects import CATALOGUE
 
-SCREENED, REFITTED = 8, 3
-"""Effects that are refitted on the first horizons, and to the end."""
-
-AS_MUCH = 0.2
-"""Difference in the logarithm of what two fits leave of a recording, up to which they leave as much: of 31 fits whose
-loudest recordings were begun elsewhere (14 sessions) six fell by 490 to 4,400 in cost, and had left those more than
-three times as loud or as quiet as the other; none of the rest fell by more than 29."""
+SCREENED = 8
+"""Effects that are refitted on the first horizons."""
 
 SAME = 0.01
 """Share of a change's square below which the baseline makes it as well: steps of a tenth of a change leave so much."""
@@ -110,7 +102,7 @@ def search(
         begun = ranked(list(side_by_side(lambda fit: descend(fit, 2), begun)))
         effects = list(dict.fromkeys(fit.model.ids for fit in begun))[:REFITTED]
         few = [fit for fit in begun if fit.model.ids in effects and within_reach(begun, fit)]
-        tried = _led_on(base, few, rest, lengths, progress)
+        tried = led_on(base, few, rest, lengths, progress)
         if tried and not leaves_much(ranked(tried)[0]):
             # every law has been begun as well as it could be; what is none may do as much
             field = without_laws(groups)
@@ -140,23 +132,28 @@ def search(
             known = replace(base, point=base.model.as_known(base.point))
             begun = list(side_by_side(lambda begin: begin(), begun_loose(known, asked)))
             rough = ranked([*rough, *run_on(begun)])
-    tried += _to_the_end(base, rough, rest, lengths, progress)
+    tried += to_the_end(base, rough, rest, lengths, progress)
     if loud and len(lengths) > 1 and not chatters(base) and field and promising(field[0][0]):
         # what grows while a recording lasts hardly shows on a first horizon, and is left behind there
         first = field[0][0]
-        tried += [] if _has(tried, first) else _to_the_end(base, [started(base, first)], [np.inf], lengths, progress)
+        tried += [] if _has(tried, first) else to_the_end(base, [started(base, first)], [np.inf], lengths, progress)
     if loud and baseline == "sdof" and len(lengths) > 1 and tried and leaves_much(ranked(tried)[0]):
         # what a first horizon tells of two recordings had put something else in front; laws have been begun along the
         # paths, unless nothing holds the mass
         others = without_laws(groups) if begun else groups
-        tried += _to_the_end(base, raced(base, others, progress), [np.inf], lengths, progress) if others else []
+        tried += to_the_end(base, raced(base, others, progress), [np.inf], lengths, progress) if others else []
     if loud and baseline != "sdof" and len(lengths) > 1 and not further and _astray(tried):
-        begun = begun_from_known(base, baseline, lengths[0], progress)
-        tried += _to_the_end(base, begun, lengths[1:], lengths, progress, starts=2)
+        # the first may only have lost its way, and knows its size; all effects in all sizes take ten times as long
+        home = [anew(fit, tuple(lengths)) for fit in ranked(tried)[:1]]
+        if home and float(np.median(home[0].parts / [t.size for t in base.trials])) < LOUD:
+            tried += home
+        else:
+            begun = begun_from_known(base, baseline, lengths[0], progress)
+            tried += to_the_end(base, begun, lengths[1:], lengths, progress, starts=2)
     if progress:
         progress("refitting explanations", 1, 1)
     # of two fits of pulls all recordings decide, those kept back as well
-    ends = tried if slides(base) else _each_once(tried)
+    ends = tried if slides(base) else each_once(tried)
     return Search(base, tuple(tuple(g) for g in groups), tuple(ends), tuple(lengths))
 
 
@@ -175,126 +172,5 @@ def _has(fits: Sequence[JointFit], suspect: Suspect) -> bool:
     return (suspect.effect, set(suspect.at)) in forms
 
 
-def _to_the_end(
-    base: JointFit,
-    rough: Sequence[JointFit],
-    rest: Sequence[float],
-    lengths: Sequence[float],
-    progress: Progress | None,
-    starts: int = 1,
-) -> list[JointFit]:
-    """The first few of what was tried, refitted to all recordings at their full length."""
-    few = _finalists([fit for fit in rough if within_reach(rough, fit)], starts=2 if slides(base) else starts)
-    return _led_on(base, few, rest, lengths, progress)
-
-
-def _led_on(
-    base: JointFit,
-    rough: Sequence[JointFit],
-    rest: Sequence[float],
-    lengths: Sequence[float],
-    progress: Progress | None,
-) -> list[JointFit]:
-    """Fits refitted to all recordings at their full length, side by side."""
-
-    def halfway(fit: JointFit) -> JointFit:
-        if chatters(base):
-            fit = descend(fit, LAST // 2, plain=True)
-        return led(base.trials, fit.model, fit.point, rest, LAST // 2, _all_nuisances(base, fit, lengths))
-
-    def ended(fit: JointFit) -> JointFit:
-        # what is as far behind as this halfway does not win, and where exactly it ends decides nothing
-        return descend(fit, LAST - LAST // 2) if within_reach(order, fit) else fit
-
-    def freed(k: int) -> JointFit:
-        return mended(ends[k], base) if within_reach(order, halves[k]) and _may_lead(ends[k], best) else ends[k]
-
-    halves = _told(side_by_side(halfway, rough), 0, 2 * len(rough), progress)
-    order = ranked(halves)
-    ends = _told(side_by_side(ended, halves), len(rough), 2 * len(rough), progress)
-    best = ranked(ends)[:1]
-    return list(side_by_side(freed, range(len(ends))))
-
-
-def _may_lead(fit: JointFit, best: Sequence[JointFit]) -> bool:
-    """Whether a fit would come near the best, fell its cost by twice what its loud recordings leave beyond the median
-    one: of 14 fits of decays whose recordings were begun elsewhere none fell by more than a hundredth of that."""
-    counted = best[0].counted
-    left = fit.parts / [t.size for t in fit.trials]
-    beyond = float(counted @ np.maximum(np.log(left / max(float(np.median(left)), 1.0)), 0.0))
-    return fit.cost(counted) - 2.0 * beyond < best[0].cost(counted) + 2.0 * NEAR
-
-
-def _told(fits: Iterable[JointFit], done: int, count: int, progress: Progress | None) -> list[JointFit]:
-    """Fits as they come, each counted."""
-    found: list[JointFit] = []
-    for fit in fits:
-        if progress:
-            progress("refitting explanations", done + len(found), count)
-        found.append(fit)
-    return found
-
-
 def _each_group(*lists: Sequence[Sequence[Suspect]]) -> list[Sequence[Suspect]]:
     return list({group[0].effect: group for groups in lists for group in groups}.values())
-
-
-def mended(fit: JointFit, beside: JointFit | None = None) -> JointFit:
-    """A fit that explains most of its recordings, the others begun elsewhere: one release in a valley of its own spoils
-    the physics that all share.
-
-    Parameters
-    ----------
-    fit : JointFit
-    beside : JointFit, optional
-        Recordings of which it leaves as much are no reason: what it does without has to do with them.
-    """
-    left = fit.parts / [t.size for t in fit.trials]
-    middle = float(np.median(left))
-    if not middle < LOUD:
-        return fit
-    stuck = left > LOUD * max(middle, 1.0)
-    if beside is not None:
-        stuck &= np.abs(np.log(fit.parts / beside.parts)) > AS_MUCH
-    if not stuck.any():
-        return fit
-    return descend(by_other_roads(fit, only=np.flatnonzero(stuck).tolist(), known=True), LAST)
-
-
-def _finalists(ranked: Sequence[JointFit], starts: int) -> list[JointFit]:
-    """The first few effects, and of the very first also what is tried and not fitted of it.
-
-    ``starts`` is how many fits of the very first go on: where contacts let go, how far one comes in a few steps says
-    little of where it ends.
-    """
-    if not ranked:
-        return []
-    effects = list(dict.fromkeys(fit.model.ids for fit in ranked))[:REFITTED]
-    best: dict[tuple[object, ...], list[JointFit]] = {}
-    for fit in ranked:
-        if fit.model.ids in effects:
-            first = fit.model.ids == effects[0]
-            own = fit.model.held[fit.model.ids[-1]] if first else {}
-            same = best.setdefault((fit.model.ids, *own.values()), [])
-            if len(same) < (starts if first else 1):
-                same.append(fit)
-    return [fit for same in best.values() for fit in same]
-
-
-def _each_once(fits: Sequence[JointFit]) -> list[JointFit]:
-    """Of every effect the fit that leaves least."""
-    best: dict[tuple[str, ...], JointFit] = {}
-    for fit in ranked(fits):
-        best.setdefault(fit.model.ids, fit)
-    return list(best.values())
-
-
-def _all_nuisances(base: JointFit, fit: JointFit, lengths: Sequence[float]) -> list[np.ndarray]:
-    """Nuisances for all trials: those of the fit, and for trials that it left out those that fit it best."""
-    known = {trial.name: own for trial, own in zip(fit.trials, fit.nuisances, strict=True)}
-    left = [trial for trial in base.trials if trial.name not in known]
-    if left:
-        second = lengths[min(1, len(lengths) - 1)]
-        short = follow([trial.until(second) for trial in left], fit.model, fit.point, kin=fit)
-        known |= {trial.name: own for trial, own in zip(left, short.nuisances, strict=True)}
-    return [known[trial.name] for trial in base.trials]

@@ -8,9 +8,8 @@ from functools import partial
 
 import numpy as np
 
-from ssmr_ident.compare.recorded import follow
 from ssmr_ident.diagnose.baseline import LAST, unsteady
-from ssmr_ident.diagnose.explore import mended
+from ssmr_ident.diagnose.finals import anew, mended
 from ssmr_ident.diagnose.formulas import other_formulas
 from ssmr_ident.diagnose.gathered import gathered
 from ssmr_ident.diagnose.race import far_off, ranked
@@ -68,14 +67,6 @@ def polish(fit: JointFit, lengths: tuple[float, ...], refitted: bool = False) ->
 def _doubtful(fit: JointFit, lengths: tuple[float, ...]) -> bool:
     """Whether a fit that can be led over horizons is far from what is known, or leaves more than noise."""
     return len(lengths) > 1 and (loud(fit) or bool(far_off(fit).any()))
-
-
-def anew(fit: JointFit, lengths: tuple[float, ...]) -> JointFit:
-    """The effects as they are, everything else begun from what is known of it."""
-    point = fit.model.as_known(fit.point)
-    short = [t.until(lengths[0]) for t in fit.trials]
-    begun = follow(short, fit.model, point, kin=fit)
-    return mended(led(fit.trials, fit.model, point, lengths, LAST, begun.nuisances))
 
 
 def heard(fit: JointFit) -> JointFit:
