@@ -10,7 +10,6 @@ from ssmr_ident.compare.recorded import follow
 from ssmr_ident.compare.roads import by_other_roads
 from ssmr_ident.diagnose.baseline import LAST
 from ssmr_ident.diagnose.race import Progress, ranked, within_reach
-from ssmr_ident.diagnose.weigh import NEAR
 from ssmr_ident.identify.descent import LOUD, chatters, descend, slides
 from ssmr_ident.identify.horizons import led
 from ssmr_ident.identify.joint import JointFit
@@ -67,12 +66,11 @@ def led_on(
 
 
 def _may_lead(fit: JointFit, best: Sequence[JointFit]) -> bool:
-    """Whether a fit would come near the best, fell its cost by twice what its loud recordings leave beyond the median
-    one: of 14 fits of decays whose recordings were begun elsewhere none fell by more than a hundredth of that."""
+    """Whether it would leave as little as the best, were its loud recordings left with no more than its median one."""
     counted = best[0].counted
     left = fit.parts / [t.size for t in fit.trials]
     beyond = float(counted @ np.maximum(np.log(left / max(float(np.median(left)), 1.0)), 0.0))
-    return fit.cost(counted) - 2.0 * beyond < best[0].cost(counted) + 2.0 * NEAR
+    return fit.cost(counted) - beyond < best[0].cost(counted) + AS_MUCH * float(counted.sum())
 
 
 def _told(fits: Iterable[JointFit], done: int, count: int, progress: Progress | None) -> list[JointFit]:

@@ -24,10 +24,6 @@ CERTAIN = math.log(1e3)
 """Log evidence that an effect needs over the baseline, beside Schwarz's penalty: with a dozen effects looked at, each
 with two or three parameters, noise alone gets there in fewer than 1 of 1000 sessions (docs/theory/diagnosis.md)."""
 
-NEAR = 20.0
-"""Log evidence by which an explanation may be behind and still be led to its best: of 25 that came to the end of a
-search (short decays, bank 5801 to 5815), being led on gained 22 and 119 for two, and 5 or less for the others."""
-
 
 @dataclass(frozen=True, eq=False)
 class Explanation:

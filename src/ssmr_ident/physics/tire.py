@@ -155,10 +155,10 @@ def sliding_force(deflection, velocity, slip, beside, stiffness, damping, mass, 
     speed = (math.sqrt(square) - limit) / max(drag_x, drag_y)  # never above the root, so Newton comes from one side
     coming = slides
     for _ in range(20):
-        one_x, one_y = 1.0 / (drag_x * speed + limit), 1.0 / (drag_y * speed + limit)
-        along_x, along_y = push_x * one_x, push_y * one_y
+        along_x, along_y = push_x / (drag_x * speed + limit), push_y / (drag_y * speed + limit)
         square = along_x * along_x + along_y * along_y
-        slope = drag_x * along_x * along_x * one_x + drag_y * along_y * along_y * one_y
+        slope = drag_x * along_x * along_x / (drag_x * speed + limit)
+        slope += drag_y * along_y * along_y / (drag_y * speed + limit)
         change = (math.sqrt(square) - 1.0) * square / slope
         speed = where(coming, speed + change, speed)
         coming = coming & (abs(change) > 1e-12 * speed)

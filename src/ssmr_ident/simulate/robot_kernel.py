@@ -131,7 +131,7 @@ def run(
     float
         The step at which a state was no longer finite, or -1.
     """
-    mass, per_mass, gravity = p[MASS], 1.0 / p[MASS], p[GRAVITY_G]
+    mass, gravity = p[MASS], p[GRAVITY_G]
     kx, ky, kz, dx, dy, dz = p[KX], p[KY], p[KZ], p[DX], p[DY], p[DZ]
     patch, radius, lambda_max, gain = p[PATCH_MASS], p[RADIUS], p[LAMBDA_MAX], p[MOTOR_GAIN]
     coupling, nominal_load = p[SLIP_COUPLING], 0.25 * p[MASS] * p[GRAVITY_G]
@@ -359,7 +359,7 @@ def run(
             bx, by, bz = solved[0, 3], solved[0, 4], solved[0, 5]
             sway[2, 0], sway[2, 1] = solved[0, 6], solved[0, 7]
         else:
-            au, av, aw = per_mass * fx, per_mass * fy, per_mass * fz - gravity
+            au, av, aw = fx / mass, fy / mass, fz / mass - gravity
             bx = p[inv + 0] * body_x + p[inv + 1] * body_y + p[inv + 2] * body_z
             by = p[inv + 3] * body_x + p[inv + 4] * body_y + p[inv + 5] * body_z
             bz = p[inv + 6] * body_x + p[inv + 7] * body_y + p[inv + 8] * body_z
