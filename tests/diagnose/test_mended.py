@@ -72,15 +72,3 @@ def test_recordings_are_taken_from_the_fit_that_leaves_least_of_them(released: J
     again = together([astray.only(k) for k in range(len(astray.trials))])
     assert np.array_equal(again.parts, astray.parts)
     assert again.penalty == pytest.approx(astray.penalty)
-
-
-def test_starts_are_looked_for_only_where_they_may_decide(released: JointFit, astray: JointFit) -> None:
-    assert finals._may_lead(released, [released])
-    assert finals._may_lead(astray, [released])
-    # far behind in every recording: none of them is what holds it back
-    point = released.point.copy()
-    point[0] += 30.0
-    behind = evaluate(released.trials, released.model, point, released.nuisances)
-    counted = released.counted
-    assert behind.cost(counted) > astray.cost(counted)
-    assert not finals._may_lead(behind, [released])

@@ -53,24 +53,11 @@ def led_on(
 
     def ended(fit: JointFit) -> JointFit:
         # what is as far behind as this halfway does not win, and where exactly it ends decides nothing
-        return descend(fit, LAST - LAST // 2) if within_reach(order, fit) else fit
-
-    def freed(k: int) -> JointFit:
-        return mended(ends[k], base) if within_reach(order, halves[k]) and _may_lead(ends[k], best) else ends[k]
+        return mended(descend(fit, LAST - LAST // 2), base) if within_reach(order, fit) else fit
 
     halves = _told(side_by_side(halfway, rough), 0, 2 * len(rough), progress)
     order = ranked(halves)
-    ends = _told(side_by_side(ended, halves), len(rough), 2 * len(rough), progress)
-    best = ranked(ends)[:1]
-    return list(side_by_side(freed, range(len(ends))))
-
-
-def _may_lead(fit: JointFit, best: Sequence[JointFit]) -> bool:
-    """Whether it would leave as little as the best, were its loud recordings left with no more than its median one."""
-    counted = best[0].counted
-    left = fit.parts / [t.size for t in fit.trials]
-    beyond = float(counted @ np.maximum(np.log(left / max(float(np.median(left)), 1.0)), 0.0))
-    return fit.cost(counted) - beyond < best[0].cost(counted) + AS_MUCH * float(counted.sum())
+    return _told(side_by_side(ended, halves), len(rough), 2 * len(rough), progress)
 
 
 def _told(fits: Iterable[JointFit], done: int, count: int, progress: Progress | None) -> list[JointFit]:
