@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from bank import draw
@@ -9,7 +11,7 @@ from bank import draw
 from ssmr_ident.compare.roads import by_other_roads
 from ssmr_ident.diagnose import finals
 from ssmr_ident.diagnose.baseline import best_baseline
-from ssmr_ident.diagnose.finals import mended
+from ssmr_ident.diagnose.finals import led_on, mended
 from ssmr_ident.diagnose.setup import set_up
 from ssmr_ident.identify.descent import LOUD
 from ssmr_ident.identify.joint import JointFit, each_best, evaluate, together
@@ -63,6 +65,32 @@ def test_what_is_left_as_well_without_the_effect_is_no_reason(
     all_round = evaluate(released.trials, released.model, released.point, [-n for n in released.nuisances])
     assert float(np.median(all_round.parts / [t.size for t in all_round.trials])) > LOUD
     assert mended(all_round) is all_round
+
+
+def test_what_cannot_come_first_is_neither_led_on_nor_begun_elsewhere(
+    released: JointFit, astray: JointFit, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # the one that is astray would not make up for all others
+    blunt = replace(astray, residuals=(astray.residuals[0], *(1.2 * r for r in astray.residuals[1:])))
+    hopeless = replace(released, residuals=tuple(10.0 * r for r in released.residuals))
+    further: list[JointFit] = []
+    elsewhere: list[JointFit] = []
+    monkeypatch.setattr(finals, "led", lambda trials, model, point, *_: handed.pop(0))
+    monkeypatch.setattr(finals, "descend", lambda fit, *_, **__: further.append(fit) or fit)
+    monkeypatch.setattr(finals, "by_other_roads", lambda fit, **_: elsewhere.append(fit) or fit)
+    monkeypatch.setattr(finals, "side_by_side", lambda work, items: [work(item) for item in items])
+    for other, led_further, begun_elsewhere in (
+        (astray, [released, astray], [astray]),
+        (blunt, [released, blunt], []),
+        (hopeless, [released], []),
+    ):
+        handed = [released, other]
+        further.clear()
+        elsewhere.clear()
+        base = replace(released, residuals=tuple(100.0 * r for r in released.residuals))
+        assert led_on(base, [released, other], [np.inf], [np.inf], None) == [released, other]
+        assert further == led_further
+        assert elsewhere == begun_elsewhere
 
 
 def test_recordings_are_taken_from_the_fit_that_leaves_least_of_them(released: JointFit, astray: JointFit) -> None:

@@ -22,7 +22,16 @@ from ssmr_ident.diagnose.surface import surfaces
 from ssmr_ident.diagnose.weigh import Explanation, shares
 from ssmr_ident.diagnose.within import REACH, measure_of
 from ssmr_ident.diagnose.words import law, missing, nothing, readable, told, undetermined
-from ssmr_ident.diagnose.worth import BY_CHANCE, grows_with_motion, overlays, predictions, reddest, without_jolts, worth
+from ssmr_ident.diagnose.worth import (
+    BY_CHANCE,
+    errors,
+    grows_with_motion,
+    overlays,
+    predictions,
+    reddest,
+    without_jolts,
+    worth,
+)
 from ssmr_ident.identify.joint import JointFit, differentiate
 from ssmr_ident.identify.parallel import side_by_side
 
@@ -187,7 +196,7 @@ def _named(outcome: Outcome, fitted: Mapping[str, Mapping[str, Estimate]]) -> tu
 
 def _tried(outcome: Outcome) -> tuple[Tried, ...]:
     def row(e: Explanation) -> Tried:
-        return Tried(e.id, worth(p := predictions(e.kept), p, ()).before, float(outcome.found[e.id]))
+        return Tried(e.id, float(errors(predictions(e.kept)).mean()), float(outcome.found[e.id]))
 
     return tuple(sorted(side_by_side(row, outcome.tried), key=lambda t: -t.log_evidence))
 
@@ -196,7 +205,7 @@ def _elsewhere(free: Explanation, within: Explanation, conflicts: tuple[Conflict
     """What a baseline leaves that is not held within its priors, where the one that is shown is."""
     if free is within:
         return ()
-    left = worth(p := predictions(free.kept), p, ()).before
+    left = float(errors(predictions(free.kept)).mean())
     off = f" ({conflicts[0].parameter} {conflicts[0].sigmas:+.1f} standard deviations off)" if conflicts else ""
     return (
         f"the baseline shown is the best within {REACH:.0f} standard deviations of all that is known; as another "

@@ -9,7 +9,7 @@ import numpy as np
 from ssmr_ident.compare.recorded import follow
 from ssmr_ident.compare.roads import by_other_roads
 from ssmr_ident.diagnose.baseline import LAST
-from ssmr_ident.diagnose.race import Progress, ranked, within_reach
+from ssmr_ident.diagnose.race import CLOSE, Progress, ranked, within_reach
 from ssmr_ident.identify.descent import LOUD, chatters, descend, slides
 from ssmr_ident.identify.horizons import led
 from ssmr_ident.identify.joint import JointFit
@@ -25,7 +25,7 @@ three times as loud or as quiet as the other; none of the rest fell by more than
 
 
 HALFWAY = 0.5
-"""Difference in the logarithm of the unexplained variance up to which a fit of all recordings may still overtake another
+"""Difference in the logarithm of the unexplained variance up to which a fit of all recordings may overtake another
 when half its steps are done. Of 104 that were then more than 0.02 behind (24 sessions of decays) none came first, and
 none made up for more than 0.17; pulls, whose wheels let go at other times, are given more."""
 
@@ -59,25 +59,26 @@ def led_on(
 
     def ended(fit: JointFit) -> JointFit:
         # what is as far behind as this halfway does not win, and where exactly it ends decides nothing
-        return descend(fit, LAST - LAST // 2) if within_reach(order, fit, close) else fit
+        return descend(fit, LAST - LAST // 2) if any(_behind(fit, best, base) < close for best in first) else fit
 
     def begun_elsewhere(fit: JointFit) -> JointFit:
-        return mended(fit, base) if any(_may_lead(fit, best, base) for best in first) else fit
+        return mended(fit, base) if any(_behind(fit, best, base) < AS_MUCH for best in first) else fit
 
-    close = None if slides(base) else HALFWAY
+    close = CLOSE if slides(base) else HALFWAY
     count = 3 * len(rough)
     halves = _told(side_by_side(halfway, rough), 0, count, progress)
-    order = ranked(halves)
+    first = ranked(halves)[:1]
     ends = _told(side_by_side(ended, halves), len(rough), count, progress)
     first = ranked(ends)[:1]
     return _told(side_by_side(begun_elsewhere, ends), 2 * len(rough), count, progress)
 
 
-def _may_lead(fit: JointFit, first: JointFit, base: JointFit) -> bool:
-    """Whether a fit would come first were the recordings in which it is stuck explained to the noise."""
+def _behind(fit: JointFit, first: JointFit, base: JointFit) -> float:
+    """How far behind the first a fit would be, per independent sample, were the recordings in which it is stuck left
+    with noise alone, or with as little as the first leaves of them."""
     stuck, sizes = _stuck(fit, base), np.array([t.size for t in fit.trials])
-    won = first.counted[stuck] @ np.log(fit.parts[stuck] / sizes[stuck])
-    return fit.cost(first.counted) - float(won) <= first.cost(first.counted)
+    won = float(first.counted[stuck] @ np.log(fit.parts[stuck] / np.minimum(sizes, first.parts)[stuck]))
+    return (fit.cost(first.counted) - won - first.cost(first.counted)) / first.independent
 
 
 def _told(fits: Iterable[JointFit], done: int, count: int, progress: Progress | None) -> list[JointFit]:

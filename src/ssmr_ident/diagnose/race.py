@@ -254,12 +254,12 @@ def ranked(fits: Sequence[JointFit]) -> list[JointFit]:
     return sorted(finite, key=lambda f: f.cost(counted) + len(f.model.free) * float(np.log(counted.sum())) + f.states)
 
 
-def within_reach(ranked: Sequence[JointFit], fit: JointFit, close: float | None = None) -> bool:
+def within_reach(ranked: Sequence[JointFit], fit: JointFit) -> bool:
     """Whether a refit to the end may still bring one before the first."""
     if not ranked:
         return False
     counted = ranked[0].counted
-    return fit.cost(counted) < ranked[0].cost(counted) + (CLOSE if close is None else close) * float(counted.sum())
+    return fit.cost(counted) < ranked[0].cost(counted) + CLOSE * float(counted.sum())
 
 
 def _loudest(base: JointFit) -> list[int]:

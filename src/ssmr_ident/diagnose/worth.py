@@ -157,10 +157,15 @@ def grows_with_motion(found: Sequence[Prediction]) -> float:
     return float(spearmanr(motion, left, alternative="greater").pvalue)
 
 
+def errors(found: Sequence[Prediction]) -> Array:
+    """The contract's metric of each recording, (r,) float."""
+    return np.array([measure(prediction)[0] for prediction in found])
+
+
 def worth(before: Sequence[Prediction], after: Sequence[Prediction], names: Sequence[str]) -> Worth:
     """Means over recordings, and the 95 % interval of the improvement by bootstrap over recordings."""
-    first = np.array([measure(p)[0] for p in before])
-    second = np.array([measure(p)[0] for p in after])
+    first = errors(before)
+    second = first if after is before else errors(after)
     floor = np.array([noise_floor(p) for p in after])
     gain = first - second
     interval = None
@@ -175,12 +180,16 @@ def overlays(
     names: Sequence[str], before: Sequence[Prediction], after: Sequence[Prediction], heldout: bool
 ) -> tuple[Overlay, ...]:
     """The channel that moves most, of the recordings that gained most."""
-    gains = [measure(b)[0] - measure(a)[0] for b, a in zip(before, after, strict=True)]
-    chosen = sorted(range(len(gains)), key=lambda k: -gains[k])[:DRAWN]
-    return tuple(_overlay(names[k], before[k], after[k], heldout) for k in chosen)
+    first, second = errors(before), errors(after)
+    chosen = np.argsort(second - first, kind="stable")[:DRAWN]
+    return tuple(
+        _overlay(names[k], before[k], after[k], heldout, (float(first[k]), float(second[k]))) for k in chosen.tolist()
+    )
 
 
-def _overlay(name: str, before: Prediction, after: Prediction, heldout: bool) -> Overlay:
+def _overlay(
+    name: str, before: Prediction, after: Prediction, heldout: bool, measured_by: tuple[float, float]
+) -> Overlay:
     rate = before.sample_rate
     smooth = before.low_pass_hz is not None and before.low_pass_hz < 0.45 * rate
     courses = [before.measured, before.simulated, after.simulated]
@@ -189,7 +198,6 @@ def _overlay(name: str, before: Prediction, after: Prediction, heldout: bool) ->
     channel = int(np.argmax(courses[0].std(axis=0)))
     every = max(1, len(before.time) // LONGEST)
     measured, first, second = (course[::every, channel] for course in courses)
-    metric = (measure(before)[0], measure(after)[0], noise_floor(after))
     return Overlay(
         name,
         before.names[channel],
@@ -199,5 +207,5 @@ def _overlay(name: str, before: Prediction, after: Prediction, heldout: bool) ->
         measured,
         first,
         second,
-        metric,
+        (*measured_by, noise_floor(after)),
     )
