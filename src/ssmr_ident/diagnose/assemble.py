@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -32,7 +34,8 @@ from ssmr_ident.diagnose.worth import (
     without_jolts,
     worth,
 )
-from ssmr_ident.identify.joint import JointFit, differentiate
+from ssmr_ident.identify.descent import descend
+from ssmr_ident.identify.joint import JointFit, differentiate, evaluate
 from ssmr_ident.identify.parallel import side_by_side
 
 METRIC = "nrmse_percent"
@@ -54,7 +57,7 @@ COLOURED = (
 UNDER_JOLTS = "{}: the jolt of the tightening cable hides it; without that the error falls from {:.3g} to {:.3g} %"
 
 
-def assembled(outcome: Outcome, parameters: ParameterSet, everything: JointFit | None, seed: int) -> Diagnosis:
+def assembled(outcome: Outcome, parameters: ParameterSet, seed: int) -> Diagnosis:
     """The diagnosis.
 
     Parameters
@@ -62,8 +65,6 @@ def assembled(outcome: Outcome, parameters: ParameterSet, everything: JointFit |
     outcome : Outcome
     parameters : ParameterSet
         What was known beforehand.
-    everything : JointFit or None
-        The chosen model fitted to all recordings but the session's own held-out ones, where the tool kept some back.
     seed : int
     """
     free, best = outcome.baseline, outcome.chosen
@@ -103,27 +104,35 @@ def assembled(outcome: Outcome, parameters: ParameterSet, everything: JointFit |
     else:
         names = [e.id for e in (best, *outcome.rivals)] if named else [t.id for t in tried if t.id != "baseline"]
         summary = undetermined(heldout, METRIC, names)
-    places = located(base.fit, parameters, seed=seed) if verdict != NOTHING else ()
-    advice = next_experiment(outcome.setup, *_apart(outcome)) if verdict != NOTHING else ""
-    evidence = Evidence(
-        overlays=overlays(heldout.recordings, before_kept, after_kept, heldout=True),
-        maps=residual_maps(base.fit, best.fit if named else None),
-        surfaces=surfaces(base.fit, best.fit if named else None, parameters) if verdict != NOTHING else (),
-        drifts=drifts(base.fit, seed=seed) if verdict != NOTHING else (),
-    )
+    after = best.fit if named else None
+    parts: dict[str, Callable[[], Any]] = {
+        "overlays": partial(overlays, heldout.recordings, before_kept, after_kept, heldout=True),
+        "maps": partial(residual_maps, base.fit, after),
+    }
+    if verdict != NOTHING:
+        parts |= {
+            "places": partial(located, base.fit, parameters, seed=seed),
+            "advice": lambda: next_experiment(outcome.setup, *_apart(outcome)),
+            "surfaces": partial(surfaces, base.fit, after, parameters),
+            "drifts": partial(drifts, base.fit, seed=seed),
+        }
+    if named and outcome.setup.kept_by_us and outcome.setup.kept[0].part is None:
+        parts["after"] = lambda: exported(refitted_on_all(outcome), parameters)
+    made = dict(zip(parts, side_by_side(lambda part: part(), list(parts.values())), strict=True))
+    evidence = Evidence(**{name: made.get(name, ()) for name in ("overlays", "maps", "surfaces", "drifts")})
     return Diagnosis(
         session=outcome.setup.campaign.session.name,
         verdict=verdict,
-        located=places,
+        located=made.get("places", ()),
         conflicts=conflicts,
         effects=effects if verdict != NOTHING else (),
         tried=tried,
         metric=METRIC,
         training=training,
         heldout=heldout,
-        next_experiment=advice,
+        next_experiment=made.get("advice", ""),
         before=before_file,
-        after=exported(everything, parameters) if named and everything else best_file,
+        after=made.get("after", best_file),
         summary=summary,
         notes=(
             *outcome.setup.notes,
@@ -250,15 +259,10 @@ def _notes(best: Explanation, free: Explanation, heldout: Worth) -> tuple[str, .
     return tuple(notes)
 
 
-def refitted_on_all(outcome: Outcome) -> JointFit | None:
-    """The chosen model on fitted and kept recordings alike, where it was the tool that kept some back."""
+def refitted_on_all(outcome: Outcome) -> JointFit:
+    """The chosen model on what was fitted and what the tool kept back; the session's own held-out ones stay unseen."""
     best = outcome.chosen
-    if not outcome.setup.kept_by_us or outcome.setup.kept[0].part is not None:
-        return None
-    from ssmr_ident.identify.descent import descend
-    from ssmr_ident.identify.joint import evaluate
-
     trials = (*best.fit.trials, *best.kept.trials)
     nuisances = (*best.fit.nuisances, *best.kept.nuisances)
     whole = descend(evaluate(trials, best.fit.model, best.fit.point, nuisances), 3)
-    return differentiate(whole) if np.isfinite(whole.rss) else None
+    return differentiate(whole) if np.isfinite(whole.rss) else best.fit

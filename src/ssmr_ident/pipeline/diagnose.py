@@ -57,13 +57,12 @@ def _diagnosed(campaign: Campaign, known: ParameterSet, seed: int, progress: Pro
 
         return diagnose_turning(campaign, known, seed, progress)
     from ssmr_ident.diagnose.arranged import arranged
-    from ssmr_ident.diagnose.assemble import assembled, refitted_on_all
+    from ssmr_ident.diagnose.assemble import assembled
     from ssmr_ident.diagnose.engine import examine
     from ssmr_ident.diagnose.sliding import with_law_of_sliding
 
     setup, known = with_law_of_sliding(arranged(campaign), known, progress)
-    outcome = examine(setup, known, progress)
-    return assembled(outcome, known, refitted_on_all(outcome), seed)
+    return assembled(examine(setup, known, progress), known, seed)
 
 
 def diagnose_session(
