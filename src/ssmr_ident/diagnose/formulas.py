@@ -1,4 +1,4 @@
-"""One effect in its other formulas: dry friction with elastic travel or without."""
+"""One effect in its other formulas: dry friction with elastic travel or without, a spring that is bent twice."""
 
 from __future__ import annotations
 
@@ -30,11 +30,11 @@ def other_formulas(fit: JointFit, effect_id: str) -> Iterator[tuple[Model, np.nd
         begun = {name: begin.value(sizes) for name, begin in form.items() if isinstance(begin, Sized)}
         held = {name: begin for name, begin in form.items() if not isinstance(begin, Sized)}
         now = fit.model.held[effect_id]
-        if set(own) - switches == set(begun) and all(now[name] == value for name, value in held.items()):
-            continue
         at = {
             name: own.get(name, value) for name, value in {**own, **begun}.items() if name in switches or name in begun
         }
+        if set(own) == set(at) and all(now[name] == value for name, value in held.items()):
+            continue
         bare, keep = fit.model.without_effect(effect_id)
         model, point = bare.with_effect(effect_id, at, {name: abs(value) for name, value in at.items()})
         every = {**model.held, effect_id: {**model.held[effect_id], **held}}

@@ -36,7 +36,8 @@ def turned(fit: JointFit, lengths: tuple[float, ...]) -> JointFit:
             model = replace(fit.model, held={**fit.model.held, effect_id: {**own, **tried}})
             best = ranked((best, led(fit.trials, model, fit.point, rest, LAST, fit.nuisances)))[0]
     for name in fit.model.ids:
-        others = [led(fit.trials, *other, rest, LAST, fit.nuisances) for other in other_formulas(best, name)]
+        forms = list(other_formulas(best, name))
+        others = side_by_side(lambda form: led(fit.trials, *form, rest, LAST, fit.nuisances), forms)
         best = ranked((best, *others))[0]
     return best
 

@@ -33,11 +33,12 @@ LAWS = {
 """Laws in plain text, for reports that cannot set formulas."""
 
 FORMS = {
+    ("nonlinear_stiffness", "k3_N_m3", "knee_share"): "F = K s + k3 s^3 + knee_share K sign(s) max(|s| - knee, 0)",
     ("nonlinear_stiffness", "knee_share"): "F = K s + knee_share K sign(s) max(|s| - knee, 0)",
     ("dry_friction", "rounding_m_s"): "F = F_c tanh(v/rounding)",
     ("dry_friction", "slider"): "F = k z, z follows s and slides at |z| = F_c/k",
 }
-"""The same where a parameter that is not 0 chooses another formula."""
+"""The same where parameters that are not 0 choose another formula; the first that they choose."""
 
 
 def readable(effect_id: str) -> str:
@@ -49,8 +50,8 @@ def law(effect_id: str, parameters: Mapping[str, Estimate]) -> str:
     """The law as plain text."""
     if effect_id == "unlisted":
         return unlisted.law({name: float(e.value) for name, e in parameters.items()})
-    for (name, parameter), other in FORMS.items():
-        if name == effect_id and parameter in parameters and float(parameters[parameter].value) != 0.0:
+    for (name, *chosen), other in FORMS.items():
+        if name == effect_id and all(p in parameters and float(parameters[p].value) != 0.0 for p in chosen):
             return other
     return LAWS.get(effect_id) or CATALOGUE[effect_id].equation
 

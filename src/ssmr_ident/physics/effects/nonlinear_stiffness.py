@@ -41,4 +41,9 @@ EFFECT = Effect(
         {"knee_share": 0.2, "knee_m": Sized(0.4, "deflection")},
         {"knee_share": -0.2, "knee_m": Sized(0.4, "deflection")},
     ),
+    # a spring that softens as a tanh does, or hardens towards a stop, is neither a cubic nor two straight lines
+    forms=(
+        {"k3_N_m3": Sized(0.1, "slope/reach^2"), "knee_share": Sized(0.1, ""), "knee_m": Sized(0.4, "deflection")},
+        {"k3_N_m3": Sized(-0.1, "slope/reach^2"), "knee_share": Sized(-0.1, ""), "knee_m": Sized(0.4, "deflection")},
+    ),
 )
