@@ -13,7 +13,7 @@ from scipy.stats import chi2
 
 from ssmr_ident.compare.comparison import measure
 from ssmr_ident.compare.outcome import Prediction
-from ssmr_ident.diagnose import accept, assemble, followed, race, rivals, weigh, within, worth
+from ssmr_ident.diagnose import accept, assemble, finals, followed, race, rivals, weigh, within, worth
 from ssmr_ident.diagnose.worth import noise_floor, reddest
 from ssmr_ident.physics.effects import CATALOGUE
 from ssmr_ident.signals.metrics import LOW_PASS_HZ
@@ -24,7 +24,7 @@ PAGE = Path(__file__).resolve().parents[2] / "docs" / "theory" / "diagnosis.md"
 def test_thresholds_are_those_of_the_code() -> None:
     rows = dict(re.findall(r"^\| `([A-Z]+)` \| ([^|]+) \|", PAGE.read_text(encoding="utf-8"), re.MULTILINE))
     stated = {name: log(float(v.split()[1])) if v.startswith("ln") else float(v) for name, v in rows.items()}
-    modules = (accept, assemble, followed, race, rivals, weigh, within, worth)
+    modules = (accept, assemble, finals, followed, race, rivals, weigh, within, worth)
     code = {name: getattr(m, name) for m in modules for name in rows if hasattr(m, name)}
     assert {"CERTAIN", "UNEXPLAINED"} <= set(rows)
     assert stated == pytest.approx(code)
