@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from ssmr_ident.campaign import Measurement
-from ssmr_ident.core.errors import InputError
+from ssmr_ident.core.errors import Impossible, InputError
 from ssmr_ident.core.recording import Channel, Provenance, Recording
 from ssmr_ident.identify import parallel
 from ssmr_ident.identify.coordinates import Model
@@ -37,7 +37,7 @@ EFFECTS = (
     {"ground_roughness": {"height_m": 1e-4}},
     {"sensor_bandwidth": {"bandwidth_hz": 14.0}},
 )
-TOO_HEAVY = {"flexible_mast": {"f_mast_Hz": 9.0, "mass_kg": 1e4}}
+TOO_HEAVY = {"flexible_mast": {"f_mast_Hz": 9.0, "mass_kg": 15.0, "height_above_com_m": 1.5}}
 
 
 @pytest.fixture(scope="module")
@@ -73,11 +73,17 @@ def test_many_releases_are_each_release_alone(robot: Robot) -> None:
     for (release, scenario), result in zip(asked, found, strict=True):
         if release.effects is TOO_HEAVY:
             assert np.isnan(result).all()
-            with pytest.raises(InputError):
+            with pytest.raises(Impossible):
                 bodies.body_of(robot, TOO_HEAVY)
             continue
         alone = simulate(release.robot, scenario, 1000.0, step=5e-4, effects=release.effects)
         np.testing.assert_array_equal(result, alone.values[:, :3])
+
+
+def test_what_no_robot_has_is_refused(robot: Robot) -> None:
+    misspelt, _ = _release(robot, {"flexible_mast": {"mas_kg": 1.0}}, _starts(1)[0])
+    with pytest.raises(InputError, match="Did you mean 'mass_kg'"):
+        simulate_many([misspelt], SECONDS, 1000.0, 5e-4, NAMES)
 
 
 def test_one_axis_of_a_turned_sensor_reads_all_three(robot: Robot) -> None:

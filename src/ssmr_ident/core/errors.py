@@ -24,6 +24,10 @@ class InputError(Exception):
         super().__init__(f"{where}: {problem}" + (f". {mend}" if mend else ""))
 
 
+class Impossible(InputError):
+    """Numbers that no robot can have, an inertia of no body or a mast that is more than it: a search may try them."""
+
+
 class SimulationError(Exception):
     """A simulation left the finite numbers; names when, and with which parameters."""
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ssmr_ident.core.errors import InputError
+from ssmr_ident.core.errors import Impossible, InputError
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.physics.sensor import Accelerometer
 
@@ -89,7 +89,9 @@ def robot_from_parameters(parameters: ParameterSet) -> Robot:
     Raises
     ------
     InputError
-        A key is missing, or the inertia is not that of a body.
+        A key is missing.
+    Impossible
+        The inertia is not that of a body.
     """
 
     def need(path: str) -> float:
@@ -107,7 +109,7 @@ def robot_from_parameters(parameters: ParameterSet) -> Robot:
     inertia = np.array([[need(f"inertia_kg_m2.{''.join(sorted(i + j))}") for j in _AXES] for i in _AXES])
     eigenvalues = np.linalg.eigvalsh(inertia)
     if eigenvalues[0] <= 0:
-        raise InputError(
+        raise Impossible(
             f"{parameters.file or parameters.name}: inertia_kg_m2",
             f"has principal moments {np.round(eigenvalues, 4).tolist()}, expected all above 0",
             "Check signs and units of the tensor",

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ssmr_ident.core.errors import InputError
+from ssmr_ident.core.errors import Impossible
 from ssmr_ident.physics.robot import Robot
 from ssmr_ident.physics.slots import Effects
 from ssmr_ident.simulate import layout
@@ -59,7 +59,7 @@ def simulate_many(
     Returns
     -------
     (k, n, c) float
-        NaN all through where a state was no longer finite, or the robot cannot have its effects.
+        NaN all through where a state was no longer finite, or a mast is too heavy for its robot.
     """
     bodies = _bodies(releases)
     there = [(body, release) for body, release in zip(bodies, releases, strict=True) if body is not None]
@@ -97,7 +97,7 @@ def simulate_pulls(
     for robot, effects, scenario in pulls:
         try:
             runs.append(prepared(robot, scenario, effects))
-        except InputError:  # a mast heavier than the robot
+        except Impossible:
             runs.append(None)
     one = pulls[0][2]
     return _channels(runs, one.duration, sample_rate, step, names, one.head_step, one.wheel_rates, one.wheel_rate_step)
@@ -148,7 +148,7 @@ def _bodies(releases: Sequence[Release]) -> list[Body | None]:
             last = release
             try:
                 body: Body | None = body_of(release.robot, release.effects)
-            except InputError:  # a mast heavier than the robot
+            except Impossible:
                 body = None
         found.append(body)
     return found

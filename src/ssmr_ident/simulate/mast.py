@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from ssmr_ident.core.errors import InputError
+from ssmr_ident.core.errors import Impossible
 from ssmr_ident.core.kernel import kernel
 from ssmr_ident.physics.effects import flexible_mast
 from ssmr_ident.physics.robot import Robot
@@ -26,7 +26,7 @@ def inverse_mass_matrix(robot: Robot, active: Effects) -> np.ndarray:
 
     Raises
     ------
-    InputError
+    Impossible
         The mast is heavier or higher than the robot's mass and inertia hold.
     """
     values = active.get("flexible_mast")
@@ -42,7 +42,7 @@ def inverse_mass_matrix(robot: Robot, active: Effects) -> np.ndarray:
     coupling[4, 0], coupling[3, 1] = mass * height, -mass * height  # p × e_x and p × e_y with p = (0, 0, height)
     matrix[:6, 6:], matrix[6:, :6] = coupling, coupling.T
     if np.linalg.eigvalsh(matrix)[0] <= 0.0:
-        raise InputError(
+        raise Impossible(
             "effects: flexible_mast",
             f"{mass:g} kg at {height:g} m is more than the robot's mass and inertia hold",
             "Give a lighter or lower mast",

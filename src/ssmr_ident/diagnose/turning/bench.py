@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ssmr_ident.compare.turning import AXES, turning_robot, with_floor
-from ssmr_ident.core.errors import InputError, SimulationError
+from ssmr_ident.core.errors import Impossible, SimulationError
 from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.diagnose.turning.conditions import Condition
 from ssmr_ident.diagnose.turning.spectra import Look, average, levels_of, look
@@ -99,7 +99,7 @@ class Bench:
         self.count += 1
         try:
             return measure(simulated(self.parameters, condition, baseline, effects, seed, step), condition, seed)
-        except (InputError, SimulationError):  # a mast heavier than the robot; a robot that falls over
+        except (Impossible, SimulationError):  # a robot that falls over
             return None
 
 
