@@ -8,10 +8,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
-from small_rigs import NOISE, RIG, Run, campaign
+from small_rigs import NOISE, RIG, Run, campaign, fitted, prepared, quiet
 
 from ssmr_ident.campaign import Campaign
 from ssmr_ident.core.recording import Channel
+from ssmr_ident.diagnose.followed import explained, on_all
+from ssmr_ident.diagnose.weigh import CERTAIN, TIE, all_fitted, log_evidence
+from ssmr_ident.identify.joint import differentiate, evaluate
 from ssmr_ident.pipeline.diagnose import diagnose
 
 RELEASES = (4e-3, 3e-3, 2e-3, 1.5e-3)
@@ -52,3 +55,17 @@ def test_friction_in_another_formula_is_friction(power: float) -> None:
     assert effect.id == "dry_friction"
     assert "unlisted" not in effect.indistinguishable_from
     assert not any("none that is listed" in note for note in found.notes)
+
+
+def test_with_all_recordings_fitted_chance_in_the_parameters_tells_nothing() -> None:
+    truth = {"quadratic_damping": {"d2_N_s2_m2": 30.0}}
+    setup = prepared(campaign(truth, [Run(release=start) for start in RELEASES], seed=10))
+    with_it = fitted(setup, truth)
+    off = replace(with_it, point=with_it.point + np.array([0.01, 0.0]))
+    lucky, other, without = (
+        explained([quiet(trial, NOISE) for trial in setup.kept], differentiate(fit))
+        for fit in (with_it, evaluate(off.trials, off.model, off.point, off.nuisances), fitted(setup))
+    )
+    assert log_evidence(lucky, lucky) - log_evidence(other, lucky) > TIE
+    assert abs(all_fitted(on_all(lucky), on_all(other))) < 0.5
+    assert all_fitted(on_all(lucky), on_all(without)) > CERTAIN

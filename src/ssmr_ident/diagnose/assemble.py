@@ -17,6 +17,7 @@ from ssmr_ident.diagnose.drift import drifts
 from ssmr_ident.diagnose.engine import Outcome
 from ssmr_ident.diagnose.evidence import Evidence
 from ssmr_ident.diagnose.exported import exported
+from ssmr_ident.diagnose.followed import on_all
 from ssmr_ident.diagnose.locate import located
 from ssmr_ident.diagnose.residual_map import residual_maps
 from ssmr_ident.diagnose.rivals import MOST_RIVALS, in_part
@@ -34,8 +35,7 @@ from ssmr_ident.diagnose.worth import (
     without_jolts,
     worth,
 )
-from ssmr_ident.identify.descent import descend
-from ssmr_ident.identify.joint import JointFit, differentiate, evaluate
+from ssmr_ident.identify.joint import JointFit, differentiate
 from ssmr_ident.identify.parallel import side_by_side
 
 METRIC = "nrmse_percent"
@@ -261,8 +261,5 @@ def _notes(best: Explanation, free: Explanation, heldout: Worth) -> tuple[str, .
 
 def refitted_on_all(outcome: Outcome) -> JointFit:
     """The chosen model on what was fitted and what the tool kept back; the session's own held-out ones stay unseen."""
-    best = outcome.chosen
-    trials = (*best.fit.trials, *best.kept.trials)
-    nuisances = (*best.fit.nuisances, *best.kept.nuisances)
-    whole = descend(evaluate(trials, best.fit.model, best.fit.point, nuisances), 3)
-    return differentiate(whole) if np.isfinite(whole.rss) else best.fit
+    whole = on_all(outcome.chosen)
+    return differentiate(whole) if np.isfinite(whole.rss) else outcome.chosen.fit

@@ -10,9 +10,13 @@ import numpy as np
 from ssmr_ident.compare.recorded import follow
 from ssmr_ident.diagnose.polish import polish, turned
 from ssmr_ident.diagnose.weigh import Explanation, evidences, log_evidence
-from ssmr_ident.identify.joint import JointFit
+from ssmr_ident.identify.descent import descend
+from ssmr_ident.identify.joint import JointFit, evaluate
 from ssmr_ident.identify.parallel import side_by_side
 from ssmr_ident.identify.trials import Trial
+
+FURTHER = 3
+"""Gauss-Newton steps once recordings that were kept back are fitted as well."""
 
 NEAR = 20.0
 """Log evidence by which an explanation may be behind and still be led to its best: of 25 that came to the end of a
@@ -25,6 +29,13 @@ def explained(kept: Sequence[Trial], fit: JointFit, near: JointFit | None = None
     ``near`` is another model's prediction of them, whose nuisances are a start as well.
     """
     return Explanation(fit, follow(kept, fit.model, fit.point, None if near is None else near.nuisances, fit))
+
+
+def on_all(explanation: Explanation) -> JointFit:
+    """A model on what was fitted and on what was kept back, all of it fitted."""
+    fit, kept = explanation.fit, explanation.kept
+    whole = evaluate((*fit.trials, *kept.trials), fit.model, fit.point, (*fit.nuisances, *kept.nuisances))
+    return descend(whole, FURTHER)
 
 
 def all_explained(kept: Sequence[Trial], fits: Sequence[JointFit], near: JointFit) -> list[Explanation]:

@@ -8,12 +8,13 @@ import numpy as np
 
 from ssmr_ident.diagnose.accept import FORMULA, as_near, leaves_structure, left_over, significant
 from ssmr_ident.diagnose.explain import beside
-from ssmr_ident.diagnose.followed import explained, joined
+from ssmr_ident.diagnose.followed import NEAR, explained, joined, on_all
 from ssmr_ident.diagnose.scan import Suspect
 from ssmr_ident.diagnose.stripped import good_enough
-from ssmr_ident.diagnose.weigh import TIE, Explanation, evidences
+from ssmr_ident.diagnose.weigh import TIE, Explanation, all_fitted, evidences
 from ssmr_ident.diagnose.worth import BY_CHANCE, grows_with_motion, predictions
 from ssmr_ident.identify.descent import chatters, descend
+from ssmr_ident.identify.parallel import side_by_side
 from ssmr_ident.identify.trials import Trial
 
 NONE_OF_THEM = "unlisted"
@@ -45,7 +46,8 @@ def rivals_of(
     """Those with no more effects that fit as well as the chosen one, the likeliest first; and all that was tried.
 
     Where the chosen one leaves structure, also those that are as near to the world; where that is more than a formula
-    leaves, a law of no list as well, however it fits.
+    leaves, a law of no list as well, however it fits. What little is behind is held against the chosen one once more
+    with all recordings fitted: what parameters happen to be predicts those kept back better or worse.
 
     Parameters
     ----------
@@ -59,7 +61,17 @@ def rivals_of(
     found, wrong = evidences(tried), leaves_structure(chosen)
     alike = [e for e in tried if e not in (chosen, baseline) and len(e.fit.model.ids) <= len(chosen.fit.model.ids)]
     rivals = [e for e in alike if found[chosen.id] - found[e.id] < TIE or e in none or (wrong and as_near(e, chosen))]
+    close = [e for e in alike if e not in rivals and found[chosen.id] - found[e.id] < NEAR]
+    rivals += _tied_on_all(chosen, close) if close else []
     return sorted(rivals, key=lambda e: -found[e.id]), tried
+
+
+def _tied_on_all(chosen: Explanation, close: Sequence[Explanation]) -> list[Explanation]:
+    """Those that are no farther behind than a tie when all recordings are fitted."""
+    if any(trial.part is not None for trial in chosen.kept.trials):
+        return []
+    best, *others = side_by_side(on_all, [chosen, *close])
+    return [e for e, whole in zip(close, others, strict=True) if all_fitted(best, whole) < TIE]
 
 
 def shared_by_all(

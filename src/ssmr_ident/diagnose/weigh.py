@@ -73,14 +73,17 @@ def from_recordings(explanation: Explanation, best: Explanation) -> float:
 
 
 def _from_samples(explanation: Explanation, counted: np.ndarray, further: np.ndarray) -> float:
-    parameters = len(explanation.fit.model.free) + sum(
-        not any(c.effect == name for c in explanation.fit.model.free) for name in explanation.fit.model.held
-    )
     return -0.5 * (
         float(counted @ np.log(explanation.fit.parts))
         + float(further @ np.log(explanation.kept.parts))
-        + parameters * math.log(float(counted.sum() + further.sum()))
+        + _parameters(explanation.fit) * math.log(float(counted.sum() + further.sum()))
     )
+
+
+def _parameters(fit: JointFit) -> int:
+    """Those of its effects; one that has none to fit counts as one."""
+    own = {c.effect for c in fit.model.free}
+    return len(fit.model.free) + sum(name not in own for name in fit.model.held)
 
 
 def surplus(leader: Explanation, before: Explanation) -> float:
@@ -88,6 +91,14 @@ def surplus(leader: Explanation, before: Explanation) -> float:
     counted, further = told_by(leader.fit, before.fit), told_by(leader.kept, before.kept)
     told = _from_samples(leader, counted, further) - _from_samples(before, counted, further)
     return told - 0.5 * (asked(leader) - asked(before) + _states(leader) - _states(before))
+
+
+def all_fitted(one: JointFit, other: JointFit) -> float:
+    """Log evidence of one fit over another of the same recordings, none of them kept back."""
+    counted = one.counted
+    priors = [float(np.sum(fit.point[: len(fit.model.physics)] ** 2)) for fit in (one, other)]
+    told = float(counted @ np.log(other.parts / one.parts)) - (priors[0] - priors[1]) - (one.states - other.states)
+    return 0.5 * (told - (_parameters(one) - _parameters(other)) * math.log(float(counted.sum())))
 
 
 def _states(explanation: Explanation) -> int:
