@@ -15,6 +15,7 @@ from ssmr_ident.core.recording import Channel
 from ssmr_ident.diagnose.followed import explained, on_all
 from ssmr_ident.diagnose.weigh import CERTAIN, TIE, all_fitted, log_evidence
 from ssmr_ident.identify.joint import differentiate, evaluate
+from ssmr_ident.physics.effects import CATALOGUE
 from ssmr_ident.pipeline.diagnose import diagnose
 
 RELEASES = (4e-3, 3e-3, 2e-3, 1.5e-3)
@@ -69,3 +70,16 @@ def test_with_all_recordings_fitted_chance_in_the_parameters_tells_nothing() -> 
     assert log_evidence(lucky, lucky) - log_evidence(other, lucky) > TIE
     assert abs(all_fitted(on_all(lucky), on_all(other))) < 0.5
     assert all_fitted(on_all(lucky), on_all(without)) > CERTAIN
+
+
+def test_a_law_of_no_list_pays_for_those_that_it_was_chosen_from() -> None:
+    setup = prepared(campaign({}, [Run(release=start) for start in RELEASES], seed=10))
+    bare, off = (
+        explained([quiet(trial, NOISE) for trial in setup.kept], differentiate(fitted(setup, effects)))
+        for effects in ({}, {"unlisted": CATALOGUE["unlisted"].begun({})})
+    )
+    assert off.fit.parts == pytest.approx(bare.fit.parts)
+    samples = float(bare.fit.counted.sum() + bare.kept.counted.sum())
+    paid = log_evidence(bare, bare) - log_evidence(off, bare)
+    assert paid == pytest.approx(0.5 * np.log(samples) + np.log(74.0), abs=0.01)
+    assert all_fitted(bare.fit, off.fit) == pytest.approx(0.5 * np.log(bare.fit.counted.sum()) + np.log(74.0), abs=0.01)

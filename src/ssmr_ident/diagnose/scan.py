@@ -22,7 +22,6 @@ from ssmr_ident.identify.joint import JointFit, over
 from ssmr_ident.identify.parallel import side_by_side
 from ssmr_ident.physics.effect import Effect, Site, Sized
 from ssmr_ident.physics.effects import CATALOGUE
-from ssmr_ident.physics.rig import RIG_KEYS
 
 Array = np.ndarray
 
@@ -178,7 +177,7 @@ def probes(fit: JointFit, effects: Sequence[Effect]) -> list[tuple[Effect, dict[
     """Every probe of some effects in a session's own units, at each value of what is tried and not fitted."""
     sizes, found = sizes_of(fit), []
     for effect in effects:
-        probes = (*effect.probes, *(effect.rig_probes if on_rig(fit.model) else ()))
+        probes = (*effect.probes, *(effect.rig_probes if fit.model.on_rig else ()))
         for probe, held in itertools.product(probes, held_at(effect, fit.model)):
             at = {name: p.value(sizes) if isinstance(p, Sized) else float(p) for name, p in probe.items()}
             at = {p.name: float(np.clip(at[p.name], p.lower, p.upper)) for p in effect.parameters if p.name in at}
@@ -203,12 +202,8 @@ def _few_places(effect: Effect, suspects: Sequence[Suspect]) -> list[Suspect]:
 def held_at(effect: Effect, model: Model) -> list[dict[str, float]]:
     """All values of an effect that are tried and not fitted, together; they set a robot's axes apart, and a rig has
     one."""
-    holds = {} if on_rig(model) else effect.holds
+    holds = {} if model.on_rig else effect.holds
     return [dict(zip(holds, values, strict=True)) for values in itertools.product(*holds.values())]
-
-
-def on_rig(model: Model) -> bool:
-    return not {keys[-1] for keys in RIG_KEYS.values()}.isdisjoint(unknown.name for unknown in model.unknowns)
 
 
 def _suspect(

@@ -16,6 +16,9 @@ import numpy as np
 
 from ssmr_ident.diagnose.coloured import told_by
 from ssmr_ident.identify.joint import JointFit
+from ssmr_ident.physics.effects import CATALOGUE
+
+UNLISTED = CATALOGUE["unlisted"]
 
 TIE = math.log(20.0)
 """Difference in log evidence (odds of 20 to 1) up to which explanations count as alike."""
@@ -73,11 +76,9 @@ def from_recordings(explanation: Explanation, best: Explanation) -> float:
 
 
 def _from_samples(explanation: Explanation, counted: np.ndarray, further: np.ndarray) -> float:
-    return -0.5 * (
-        float(counted @ np.log(explanation.fit.parts))
-        + float(further @ np.log(explanation.kept.parts))
-        + _parameters(explanation.fit) * math.log(float(counted.sum() + further.sum()))
-    )
+    samples = float(counted.sum() + further.sum())
+    told = float(counted @ np.log(explanation.fit.parts)) + float(further @ np.log(explanation.kept.parts))
+    return -0.5 * (told + _parameters(explanation.fit) * math.log(samples)) - _choice(explanation.fit)
 
 
 def _parameters(fit: JointFit) -> int:
@@ -93,12 +94,19 @@ def surplus(leader: Explanation, before: Explanation) -> float:
     return told - 0.5 * (asked(leader) - asked(before) + _states(leader) - _states(before))
 
 
+def _choice(fit: JointFit) -> float:
+    """Log of the number of laws that one of no list was chosen from, each as likely before."""
+    asked = len(UNLISTED.probes) + (len(UNLISTED.rig_probes) if fit.model.on_rig else 0)
+    return math.log(asked) if UNLISTED.id in fit.model.ids else 0.0
+
+
 def all_fitted(one: JointFit, other: JointFit) -> float:
     """Log evidence of one fit over another of the same recordings, none of them kept back."""
     counted = one.counted
     priors = [float(np.sum(fit.point[: len(fit.model.physics)] ** 2)) for fit in (one, other)]
     told = float(counted @ np.log(other.parts / one.parts)) - (priors[0] - priors[1]) - (one.states - other.states)
-    return 0.5 * (told - (_parameters(one) - _parameters(other)) * math.log(float(counted.sum())))
+    told -= (_parameters(one) - _parameters(other)) * math.log(float(counted.sum()))
+    return 0.5 * told - (_choice(one) - _choice(other))
 
 
 def _states(explanation: Explanation) -> int:

@@ -11,6 +11,7 @@ import numpy as np
 from ssmr_ident.core.parameter import Parameter
 from ssmr_ident.identify.objective import Unknown
 from ssmr_ident.physics.effects import CATALOGUE
+from ssmr_ident.physics.rig import RIG_KEYS
 
 Array = np.ndarray
 Split = tuple[dict[str, float], dict[str, dict[str, float]]]
@@ -59,6 +60,11 @@ class Model:
     @property
     def unknowns(self) -> tuple[Unknown, ...]:
         return (*self.physics, *(coordinate.unknown for coordinate in self.free))
+
+    @property
+    def on_rig(self) -> bool:
+        """Whether it is one mass on a spring, and no robot."""
+        return not {keys[-1] for keys in RIG_KEYS.values()}.isdisjoint(unknown.name for unknown in self.unknowns)
 
     @property
     def ids(self) -> tuple[str, ...]:
