@@ -23,7 +23,6 @@ AS_MUCH = 0.2
 loudest recordings were begun elsewhere (14 sessions) six fell by 490 to 4,400 in cost, and had left those more than
 three times as loud or as quiet as the other; none of the rest fell by more than 29."""
 
-
 HALFWAY = 0.5
 """Difference in the logarithm of the unexplained variance up to which a fit of all recordings may overtake another
 when half its steps are done. Of 104 that were then more than 0.02 behind (24 sessions of decays) none came first, and
