@@ -96,8 +96,9 @@ def surplus(leader: Explanation, before: Explanation) -> float:
 
 def _choice(fit: JointFit) -> float:
     """Log of the number of laws that one of no list was chosen from, each as likely before."""
-    asked = len(UNLISTED.probes) + (len(UNLISTED.rig_probes) if fit.model.on_rig else 0)
-    return math.log(asked) if UNLISTED.id in fit.model.ids else 0.0
+    if UNLISTED.id not in fit.model.ids:
+        return 0.0
+    return math.log(len(UNLISTED.probes) + (len(UNLISTED.rig_probes) if fit.model.on_rig else 0))
 
 
 def all_fitted(one: JointFit, other: JointFit) -> float:
