@@ -8,8 +8,10 @@ import small_rigs
 from scipy.integrate import solve_ivp
 from small_rigs import RATE, RIG, Run, campaign, fitted, prepared
 
+from ssmr_ident.core.parameter import Estimate
 from ssmr_ident.diagnose.formulas import other_formulas
 from ssmr_ident.diagnose.polish import loud, turned
+from ssmr_ident.diagnose.words import law
 from ssmr_ident.identify.descent import descend
 from ssmr_ident.identify.joint import JointFit, evaluate
 
@@ -65,8 +67,7 @@ def test_a_spring_that_softens_as_a_tanh_is_bent_twice(monkeypatch: pytest.Monke
     found = turned(cubic, (np.inf,))
     assert found.model.ids == ("nonlinear_stiffness",)
     assert {c.parameter.name for c in found.model.free} == {"k3_N_m3", "knee_share", "knee_m"}
-    left = found.rss / cubic.rss
-    assert left < 0.2
+    assert found.rss / cubic.rss < 0.2
     values = found.model.split(found.point)[1]["nonlinear_stiffness"]
     at = np.linspace(0.0, 4e-3, 50)  # as far as all of them go
     stiffness = found.model.split(found.point)[0].get("stiffness_N_m", RIG.stiffness)
@@ -74,3 +75,15 @@ def test_a_spring_that_softens_as_a_tanh_is_bent_twice(monkeypatch: pytest.Monke
     assert stiffness * at + values["k3_N_m3"] * at**3 + knee == pytest.approx(
         RIG.stiffness * reach * np.tanh(at / reach), abs=0.02 * RIG.stiffness * reach
     )
+
+
+def test_the_law_that_is_told_has_the_terms_that_were_fitted() -> None:
+    def told(**values: float) -> str:
+        return law("nonlinear_stiffness", {name: Estimate(value) for name, value in values.items()})
+
+    both, knee = told(k3_N_m3=-1e8, knee_share=0.2, knee_m=1e-3), told(k3_N_m3=0.0, knee_share=0.2, knee_m=1e-3)
+    assert "k3 s^3" in both
+    assert "knee_share" in both
+    assert "k3" not in knee
+    assert "knee_share" in knee
+    assert "knee" not in told(k3_N_m3=-1e8, knee_share=0.0, knee_m=1e-3)

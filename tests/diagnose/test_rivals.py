@@ -12,6 +12,7 @@ from small_rigs import NOISE, RIG, Run, campaign, fitted, prepared, quiet
 
 from ssmr_ident.campaign import Campaign
 from ssmr_ident.core.recording import Channel
+from ssmr_ident.diagnose import rivals
 from ssmr_ident.diagnose.followed import explained, on_all
 from ssmr_ident.diagnose.weigh import CERTAIN, TIE, all_fitted, log_evidence
 from ssmr_ident.identify.joint import differentiate, evaluate
@@ -70,6 +71,7 @@ def test_with_all_recordings_fitted_chance_in_the_parameters_tells_nothing() -> 
     assert log_evidence(lucky, lucky) - log_evidence(other, lucky) > TIE
     assert abs(all_fitted(on_all(lucky), on_all(other))) < 0.5
     assert all_fitted(on_all(lucky), on_all(without)) > CERTAIN
+    assert rivals._tied_on_all(lucky, [without, other]) == [other]
 
 
 def test_a_law_of_no_list_pays_for_those_that_it_was_chosen_from() -> None:

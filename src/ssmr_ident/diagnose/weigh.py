@@ -67,7 +67,11 @@ def log_evidence(explanation: Explanation, best: Explanation) -> float:
 
 def asked(explanation: Explanation) -> float:
     """Of the priors: squared deviations of the baseline's parameters from what is known of them, summed."""
-    return float(np.sum(explanation.fit.point[: len(explanation.fit.model.physics)] ** 2))
+    return _asked(explanation.fit)
+
+
+def _asked(fit: JointFit) -> float:
+    return float(np.sum(fit.point[: len(fit.model.physics)] ** 2))
 
 
 def from_recordings(explanation: Explanation, best: Explanation) -> float:
@@ -104,8 +108,9 @@ def _choice(fit: JointFit) -> float:
 def all_fitted(one: JointFit, other: JointFit) -> float:
     """Log evidence of one fit over another of the same recordings, none of them kept back."""
     counted = one.counted
-    priors = [float(np.sum(fit.point[: len(fit.model.physics)] ** 2)) for fit in (one, other)]
-    told = float(counted @ np.log(other.parts / one.parts)) - (priors[0] - priors[1]) - (one.states - other.states)
+    told = (
+        float(counted @ np.log(other.parts / one.parts)) - (_asked(one) - _asked(other)) - (one.states - other.states)
+    )
     told -= (_parameters(one) - _parameters(other)) * math.log(float(counted.sum()))
     return 0.5 * told - (_choice(one) - _choice(other))
 
