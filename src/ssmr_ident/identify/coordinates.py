@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
 from ssmr_ident.core.parameter import Parameter
+from ssmr_ident.core.recent import Recent
 from ssmr_ident.identify.objective import Unknown
 from ssmr_ident.physics.effects import CATALOGUE
 from ssmr_ident.physics.rig import RIG_KEYS
@@ -71,7 +73,15 @@ class Model:
         return tuple(self.held)
 
     def split(self, point: Array) -> Split:
-        """Physical values and effects at a point of scaled coordinates."""
+        """Physical values and effects at a point of scaled coordinates, not to be changed: whoever asks again (two of
+        three times) has the same objects, and what has been worked out of them."""
+        return self._splits.of(point.tobytes(), lambda: self._split(point))
+
+    @cached_property
+    def _splits(self) -> Recent[Split]:
+        return Recent()
+
+    def _split(self, point: Array) -> Split:
         count = len(self.physics)
         scaled = point.tolist()  # Python's own floats, which are several times quicker one by one
         values = {u.name: u.value(s) for u, s in zip(self.physics, scaled[:count], strict=True)}

@@ -39,22 +39,24 @@ class Curvature:
     counts: Array
 
     @staticmethod
-    def of(fit: JointFit, weights: Array) -> Curvature:
-        """Of a fit with slopes, its recordings by their weights, (t,) float."""
+    def of(fit: JointFit, weights: Array, shared: bool = True) -> Curvature:
+        """Of a fit with slopes, its recordings by their weights, (t,) float; of nuisances alone where no step in the
+        shared coordinates will be asked for."""
         p, counts = len(fit.point), np.array([len(nuisance) for nuisance in fit.nuisances])
         most = int(counts.max(initial=0))
-        shared, right = np.eye(p), -fit.point
+        matrix, right = np.eye(p), -fit.point
         own, sides = np.zeros((len(counts), most, most)), np.zeros((len(counts), most, p + 1))
         for index, (weight, slopes, residual, nuisance) in enumerate(
             zip(weights, fit.slopes, fit.residuals, fit.nuisances, strict=True)
         ):
             a, b, k = slopes.shared, slopes.own, len(nuisance)
-            shared += weight * (a.T @ a)
-            right = right + weight * (residual @ a)
             own[index, :k, :k] = weight * (b.T @ b)
-            sides[index, :k, :p] = weight * (b.T @ a)
             sides[index, :k, p] = weight * (residual @ b) - nuisance
-        return Curvature(fit.point, shared, right, own, sides, counts)
+            if shared:
+                matrix += weight * (a.T @ a)
+                right = right + weight * (residual @ a)
+                sides[index, :k, :p] = weight * (b.T @ a)
+        return Curvature(fit.point, matrix, right, own, sides, counts)
 
     def normal_equations(self) -> tuple[Array, Array]:
         """Matrix and right side in the shared coordinates, nuisances eliminated (Schur complement)."""

@@ -60,16 +60,18 @@ def corrected(before: JointFit, after: JointFit) -> JointFit:
     most of the differences on the way to the optimum.
     """
     move = after.point - before.point
+    moved = bool(move.any())
     found = []
     rows = zip(before.slopes, before.nuisances, after.nuisances, before.residuals, after.residuals, strict=True)
     for slopes, own_before, own_after, residual, new in rows:
         own = own_after - own_before
-        missed = residual - new - slopes.shared @ move - slopes.own @ own
-        size = np.sum(slopes.shared**2, axis=0) * move, np.sum(slopes.own**2, axis=0) * own
+        missed = residual - new - (slopes.shared @ move if moved else 0.0) - slopes.own @ own
+        size = np.sum(slopes.shared**2, axis=0) * move if moved else move, np.sum(slopes.own**2, axis=0) * own
         length = float(size[0] @ move + size[1] @ own)
         if length > 0.0 and np.all(np.isfinite(missed)):
             slopes = Slopes(
-                slopes.shared + np.outer(missed, size[0] / length), slopes.own + np.outer(missed, size[1] / length)
+                slopes.shared + np.outer(missed, size[0] / length) if moved else slopes.shared,
+                slopes.own + np.outer(missed, size[1] / length),
             )
         found.append(slopes)
     return replace(after, slopes=tuple(found), exact=False)
@@ -139,7 +141,7 @@ def best_step(fit: JointFit, counted: Array, rung: int, shared: bool, plain: boo
     """
     best, lowest = fit, _cost(fit, counted, plain)
     first = chosen = max(rung - 1, 0)
-    curvature = Curvature.of(fit, np.ones(len(counted)) if plain else counted / fit.parts)
+    curvature = Curvature.of(fit, np.ones(len(counted)) if plain else counted / fit.parts, shared)
     ahead = AHEAD if all(trial.abreast for trial in fit.trials) else 1
 
     def tried(candidates: Sequence[int]) -> Iterator[tuple[int, JointFit]]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Protocol
 
 import numpy as np
@@ -43,11 +44,11 @@ class Unknown:
     positive: bool = True
     reach: float = math.inf
 
-    @property
+    @cached_property
     def logarithmic(self) -> bool:
         return self.positive and self.prior > 0
 
-    @property
+    @cached_property
     def spread(self) -> float:
         """Prior standard deviation of the fitted quantity."""
         if self.prior_std is None:
