@@ -33,8 +33,8 @@ IDS = (
     "sensor_bandwidth", "sensor_misalignment", "load_cell_drift", "unlisted",
 )  # fmt: skip
 UNITS = {
-    "1", "N", "N/m", "N/m^2", "N/m^3", "N s/m", "N s/m^2", "N s/m^3", "N s^2/m^2", "N s^3/m^3", "N/s", "1/s", "m",
-    "N s^0.5/m^0.5", "m/s", "m/s^2", "s", "kg", "Hz", "rad", "N/(m s)",
+    "1", "1/m^2", "N", "N/m", "N/m^2", "N/m^3", "N s/m", "N s/m^2", "N s/m^3", "N s^2/m^2", "N s^3/m^3", "N/s", "1/s",
+    "m", "N s^0.5/m^0.5", "m/s", "m/s^2", "s", "kg", "Hz", "rad", "N/(m s)",
 }  # fmt: skip
 EXPERIMENTS = {"free_response", "pull", "wheel_drag", "vertical_compression", "swivel", "straight", "forced"}
 NO_SLOT = {

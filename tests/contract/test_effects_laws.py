@@ -73,9 +73,9 @@ def test_duffing_period_is_the_elliptic_integral() -> None:
         a, b = STIFFNESS / MASS, k3 / MASS
         stiff = a + b * amplitude**2
         expected = 4.0 * ellipk(b * amplitude**2 / (2.0 * stiff)) / math.sqrt(stiff)
-        assert _period(_swing({"nonlinear_stiffness": {"k3_N_m3": k3}}, amplitude), 8000.0) == pytest.approx(
-            expected, rel=1e-5
-        )
+        for values in ({"k3_N_m3": k3}, {"k3_N_m3": 0.0, "k3_share_1_m2": k3 / STIFFNESS}):
+            course = _swing({"nonlinear_stiffness": values}, amplitude)
+            assert _period(course, 8000.0) == pytest.approx(expected, rel=1e-5)
         assert abs(expected * OMEGA / (2 * math.pi) - 1) > 0.05
 
 
@@ -92,6 +92,21 @@ def test_a_knee_gives_the_period_of_two_slopes(share: float) -> None:
     expected = 4.0 * (through + math.atan(knee * OMEGA / speed) / OMEGA)
     values = {"k3_N_m3": 0.0, "knee_share": share, "knee_m": knee}
     assert _period(_swing({"nonlinear_stiffness": values}, top), 8000.0) == pytest.approx(expected, rel=1e-5)
+
+
+@law("nonlinear_stiffness")
+def test_a_robot_stands_still_on_tires_that_harden_in_proportion() -> None:
+    """The weight is the sum of K_z d + b K_z d³; upright too, every tire pushes by its own stiffness."""
+    robot = robot_from_parameters(read_parameters("p3at-extended"))
+    share = 2e5
+    values = {"k3_N_m3": 0.0, "k3_share_1_m2": share}
+    still = simulate(robot, free_response("roll", 0.0, 0.2), effects={"nonlinear_stiffness": values})
+    assert np.ptp(still["z"]) < 1e-12
+    attitude = Rotation.from_euler("xyz", [still["roll"][0], still["pitch"][0], 0.0])
+    depth = -(still["z"][0] + attitude.apply(robot.contact_points)[:, 2])
+    carried = robot.stiffness[2] * np.sum(depth + share * depth**3)
+    assert carried == pytest.approx(robot.mass * GRAVITY, rel=1e-9)
+    assert carried / (robot.stiffness[2] * np.sum(depth)) > 1.05
 
 
 @law("dry_friction")

@@ -5,14 +5,19 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import small_rigs
+from bank import draw
 from scipy.integrate import solve_ivp
 from small_rigs import RATE, RIG, Run, campaign, fitted, prepared
 
 from ssmr_ident.core.parameter import Estimate
+from ssmr_ident.diagnose import polish
+from ssmr_ident.diagnose.baseline import best_baseline
 from ssmr_ident.diagnose.formulas import other_formulas
 from ssmr_ident.diagnose.polish import loud, turned
+from ssmr_ident.diagnose.setup import set_up
 from ssmr_ident.diagnose.words import law
 from ssmr_ident.identify.descent import descend
+from ssmr_ident.identify.horizons import led
 from ssmr_ident.identify.joint import JointFit, evaluate
 
 TRUE = {"F_c_N": 6.0, "rounding_m_s": 0.06}
@@ -77,6 +82,45 @@ def test_a_spring_that_softens_as_a_tanh_is_bent_twice(monkeypatch: pytest.Monke
     )
 
 
+@pytest.fixture(scope="module")
+def sinh() -> tuple[JointFit, tuple[float, ...]]:
+    """A cubic, alike on every axis, fitted where tires harden as a sinh: each axis in proportion to its stiffness."""
+    drawn = draw("decays", "other", 23, size=0.6, short=True)
+    assert drawn.truth.formula == "hardening as a sinh"
+    setup = set_up(drawn.campaign, drawn.campaign.parameters)
+    base, lengths = best_baseline(setup.fitted, setup, drawn.campaign.parameters)
+    model, begin = base.model.with_effect("nonlinear_stiffness", {"k3_N_m3": 1e8}, {"k3_N_m3": 1e8})
+    rest = lengths[1:] or lengths
+    return led(base.trials, model, np.concatenate([base.point, begin]), rest, 8, base.nuisances), lengths
+
+
+def test_tires_that_harden_in_proportion_to_their_stiffness(sinh: tuple[JointFit, tuple[float, ...]]) -> None:
+    cubic, lengths = sinh
+    assert loud(cubic)
+    found = turned(cubic, lengths)
+    assert found.model.ids == ("nonlinear_stiffness",)
+    assert "k3_share_1_m2" in {c.parameter.name for c in found.model.free}
+    assert found.cost(found.counted) < cubic.cost(found.counted) - 1000.0
+
+
+def test_a_formula_that_is_no_better_is_no_other(
+    sinh: tuple[JointFit, tuple[float, ...]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    cubic, lengths = sinh
+    monkeypatch.setattr(polish, "led", lambda trials, model, point, *_: cubic)
+    assert turned(cubic, lengths) is cubic
+
+
+def test_a_rig_has_one_axis_and_no_proportion() -> None:
+    runs = [Run(release=4e-3), Run(release=5e-3)]
+    base = fitted(prepared(campaign({"nonlinear_stiffness": {"k3_N_m3": 3e8}}, runs, seed=13)))
+    model, begin = base.model.with_effect("nonlinear_stiffness", {"k3_N_m3": 1e8}, {"k3_N_m3": 1e8})
+    fit = evaluate(base.trials, model, np.concatenate([base.point, begin]), base.nuisances)
+    forms = [{c.parameter.name for c in other.free} for other, _ in other_formulas(fit, "nonlinear_stiffness")]
+    assert forms
+    assert not any("k3_share_1_m2" in form for form in forms)
+
+
 def test_the_law_that_is_told_has_the_terms_that_were_fitted() -> None:
     def told(**values: float) -> str:
         return law("nonlinear_stiffness", {name: Estimate(value) for name, value in values.items()})
@@ -87,3 +131,7 @@ def test_the_law_that_is_told_has_the_terms_that_were_fitted() -> None:
     assert "k3" not in knee
     assert "knee_share" in knee
     assert "knee" not in told(k3_N_m3=-1e8, knee_share=0.0, knee_m=1e-3)
+    along, all_three = told(k3_N_m3=0.0, k3_share_1_m2=1e5), told(k3_N_m3=1e7, k3_share_1_m2=1e5, knee_share=0.2)
+    assert along == "F = K s + k3_share K s^3"
+    assert "(k3 + k3_share K) s^3" in all_three
+    assert "knee_share" in all_three

@@ -20,7 +20,7 @@ from ssmr_ident.simulate.simulation import simulate
 from ssmr_ident.simulate.together import FEWEST
 
 FORMS = {
-    "nonlinear_stiffness": ({"k3_N_m3": 1e8}, {"k3_N_m3": 0.0, "knee_share": 0.3, "knee_m": 3e-4}),
+    "nonlinear_stiffness": ({"k3_N_m3": 1e8}, {"k3_N_m3": 0.0, "knee_share": 0.3, "k3_share_1_m2": 3e4}),
     "dry_friction": ({}, {"slider": 1.0}, {"rounding_m_s": 0.01}),
     "hysteresis": ({}, {"exponent": 1.0, "shape": 0.0}),
     "free_play": ({}, {"share_x": 0.0}),

@@ -25,14 +25,14 @@ def other_formulas(fit: JointFit, effect_id: str) -> Iterator[tuple[Model, np.nd
     switches = {parameter.name for parameter in effect.amplitudes}
     values = fit.model.split(fit.point)[1][effect_id]
     own = {c.parameter.name: values[c.parameter.name] for c in fit.model.free if c.effect == effect_id}
-    sizes = sizes_of(fit) if effect.forms else {}
-    for form in effect.forms:
+    forms = effect.forms if fit.model.on_rig else (*effect.forms, *effect.robot_forms)
+    sizes = sizes_of(fit) if forms else {}
+    for form in forms:
         begun = {name: begin.value(sizes) for name, begin in form.items() if isinstance(begin, Sized)}
         held = {name: begin for name, begin in form.items() if not isinstance(begin, Sized)}
         now = fit.model.held[effect_id]
-        at = {
-            name: own.get(name, value) for name, value in {**own, **begun}.items() if name in switches or name in begun
-        }
+        stays = begun.keys() | (switches - held.keys())
+        at = {name: own.get(name, value) for name, value in {**own, **begun}.items() if name in stays}
         if set(own) == set(at) and all(now[name] == value for name, value in held.items()):
             continue
         bare, keep = fit.model.without_effect(effect_id)

@@ -8,12 +8,13 @@ from functools import partial
 
 import numpy as np
 
-from ssmr_ident.diagnose.baseline import LAST, unsteady
+from ssmr_ident.diagnose.baseline import LAST, leaves_much, unsteady
 from ssmr_ident.diagnose.finals import anew, mended
 from ssmr_ident.diagnose.formulas import other_formulas
 from ssmr_ident.diagnose.gathered import gathered
 from ssmr_ident.diagnose.race import far_off, ranked
 from ssmr_ident.diagnose.scan import held_at
+from ssmr_ident.diagnose.weigh import TIE
 from ssmr_ident.identify.clouds import settled
 from ssmr_ident.identify.descent import LOUD, chatters, descend
 from ssmr_ident.identify.horizons import led
@@ -21,6 +22,9 @@ from ssmr_ident.identify.joint import JointFit, evaluate
 from ssmr_ident.identify.parallel import side_by_side
 from ssmr_ident.identify.swings import led_through_slides
 from ssmr_ident.physics.effects import CATALOGUE
+
+MOST_TURNS = 2
+"""Formulas that are found one from the other: a spring's knee from a cubic in proportion to its stiffness."""
 
 
 def turned(fit: JointFit, lengths: tuple[float, ...]) -> JointFit:
@@ -36,10 +40,20 @@ def turned(fit: JointFit, lengths: tuple[float, ...]) -> JointFit:
             model = replace(fit.model, held={**fit.model.held, effect_id: {**own, **tried}})
             best = ranked((best, led(fit.trials, model, fit.point, rest, LAST, fit.nuisances)))[0]
     for name in fit.model.ids:
-        forms = list(other_formulas(best, name))
-        others = side_by_side(lambda form: led(fit.trials, *form, rest, LAST, fit.nuisances), forms)
-        best = ranked((best, *others))[0]
+        for _ in range(MOST_TURNS):
+            before, best = best, _otherwise(best, name, rest)
+            if best is before or not leaves_much(best):
+                break
     return best
+
+
+def _otherwise(fit: JointFit, name: str, lengths: tuple[float, ...]) -> JointFit:
+    """The best of a fit and those with one of its effects in another formula; along one axis a cubic spring and one in
+    proportion to its stiffness are the same law, and that it was begun with stays."""
+    forms = list(other_formulas(fit, name))
+    others = side_by_side(lambda form: led(fit.trials, *form, lengths, LAST, fit.nuisances), forms)
+    first = ranked((fit, *others))[0]
+    return first if fit.cost(first.counted) - first.cost(first.counted) > 2.0 * TIE else fit
 
 
 def loud(fit: JointFit) -> bool:

@@ -111,6 +111,8 @@ class Effect(Shown):
     forms : tuple of mapping of parameter to float or Sized
         Formulas, each by what is fitted in it beside the amplitudes (where that begins) and what is held (plain
         numbers): tried once the effect leads.
+    robot_forms : tuple of mapping of parameter to float or Sized
+        Further ones of a robot, whose axes are of different stiffness.
     grows : tuple of str
         Parameters that a small effect is proportional to, where these are not the ones that switch it off.
     sudden : bool
@@ -139,6 +141,7 @@ class Effect(Shown):
     sizes: Mapping[str, Sized] = field(default_factory=dict)
     holds: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
     forms: tuple[Mapping[str, float | Sized], ...] = ()
+    robot_forms: tuple[Mapping[str, float | Sized], ...] = ()
     grows: tuple[str, ...] = ()
     sudden: bool = False
     loosens: bool = False

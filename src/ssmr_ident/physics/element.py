@@ -19,6 +19,7 @@ from ssmr_ident.physics.effects import (
 from ssmr_ident.physics.slots import (
     ALPHA,
     CUBIC,
+    CUBIC_SHARE,
     FRICTION_FORCE,
     FRICTION_ROUNDING,
     FRICTION_STIFFNESS,
@@ -73,6 +74,8 @@ def element_force(s, v, z, stiffness, ratio, gap_share, tangential, e):
     f = 0.0
     if first(e[CUBIC]) != 0.0:
         f += _cubic(s, e[CUBIC])
+    if first(e[CUBIC_SHARE]) != 0.0:
+        f += _cubic(s, e[CUBIC_SHARE] * stiffness)
     if first(e[RELAXATION_STIFFNESS]) != 0.0:
         f += _relaxation(z[2], ratio * e[RELAXATION_STIFFNESS])
     if tangential:
@@ -129,7 +132,7 @@ def inner_slots(e):
     return (
         e[0], e[1], e[2], e[3], e[4], e[5], e[6], e[7], e[8], e[9],
         e[10], e[11], e[12], e[13], e[14], e[15], e[16], e[17], e[18], e[19], e[20], e[21], e[22], e[23], e[24],
-        e[25],
+        e[25], e[26],
     )  # fmt: skip
 
 

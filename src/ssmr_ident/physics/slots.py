@@ -14,6 +14,7 @@ SLOTS = (
     "nonlinear_stiffness.k3_N_m3",
     "nonlinear_stiffness.knee_share",
     "nonlinear_stiffness.knee_m",
+    "nonlinear_stiffness.k3_share_1_m2",
     "quadratic_damping.d2_N_s2_m2",
     "dry_friction.F_c_N",
     "dry_friction.element_stiffness_N_m",
@@ -49,13 +50,14 @@ SLOTS = (
     "motor_belt.rim_mass_kg",
     *(f"unlisted.{parameter.name}" for parameter in unlisted.EFFECT.parameters),
 )
-CUBIC, KNEE_SHARE, KNEE, QUADRATIC, FRICTION_FORCE, FRICTION_STIFFNESS, SLIDER, FRICTION_ROUNDING = range(8)
-ALPHA, YIELD, LOOP_EXPONENT, LOOP_SHAPE = range(8, 12)
-RELAXATION_STIFFNESS, RELAXATION_TIME, GAP, GAP_ROUNDING, GAP_SHARE_X = range(12, 17)
-KINETIC_SHARE, STRIBECK_SPEED, STRIBECK_EXPONENT, LOAD_EXPONENT, ROLLING = range(17, 22)
-JOINT_DEPTH, JOINT_PITCH, JOINT_WIDTH, ECCENTRICITY, ROUGHNESS = range(22, 27)
-LIFT, CORIOLIS, MAST_HZ, MAST_MASS, MAST_HEIGHT, MAST_DAMPING = range(27, 33)
-BELT_STIFFNESS, BELT_DAMPING, RIM_MASS, UNLISTED = range(33, 37)
+CUBIC, KNEE_SHARE, KNEE, CUBIC_SHARE, QUADRATIC = range(5)
+FRICTION_FORCE, FRICTION_STIFFNESS, SLIDER, FRICTION_ROUNDING = range(5, 9)
+ALPHA, YIELD, LOOP_EXPONENT, LOOP_SHAPE = range(9, 13)
+RELAXATION_STIFFNESS, RELAXATION_TIME, GAP, GAP_ROUNDING, GAP_SHARE_X = range(13, 18)
+KINETIC_SHARE, STRIBECK_SPEED, STRIBECK_EXPONENT, LOAD_EXPONENT, ROLLING = range(18, 23)
+JOINT_DEPTH, JOINT_PITCH, JOINT_WIDTH, ECCENTRICITY, ROUGHNESS = range(23, 28)
+LIFT, CORIOLIS, MAST_HZ, MAST_MASS, MAST_HEIGHT, MAST_DAMPING = range(28, 34)
+BELT_STIFFNESS, BELT_DAMPING, RIM_MASS, UNLISTED = range(34, 38)
 """First of what no list holds; these are the last slots."""
 
 Effects = Mapping[str, Mapping[str, float]]

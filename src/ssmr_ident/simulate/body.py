@@ -16,6 +16,7 @@ from ssmr_ident.physics.effects import CATALOGUE, ground_roughness, unlisted
 from ssmr_ident.physics.robot import GRAVITY, Robot
 from ssmr_ident.physics.slots import (
     CUBIC,
+    CUBIC_SHARE,
     ECCENTRICITY,
     JOINT_DEPTH,
     ROUGHNESS,
@@ -41,9 +42,10 @@ MOVING = (*_POSE, "sway_x", "sway_y")
 
 _SWITCHES = np.array(
     [
-        slots.CUBIC, slots.KNEE_SHARE, slots.QUADRATIC, slots.FRICTION_FORCE, slots.SLIDER, slots.FRICTION_ROUNDING,
-        slots.ALPHA, slots.RELAXATION_STIFFNESS, slots.GAP, slots.GAP_SHARE_X, slots.KINETIC_SHARE, slots.LOAD_EXPONENT,
-        slots.ROLLING, slots.LIFT, slots.CORIOLIS, slots.MAST_HZ, slots.BELT_STIFFNESS,
+        slots.CUBIC, slots.KNEE_SHARE, slots.CUBIC_SHARE, slots.QUADRATIC, slots.FRICTION_FORCE, slots.SLIDER,
+        slots.FRICTION_ROUNDING, slots.ALPHA, slots.RELAXATION_STIFFNESS, slots.GAP, slots.GAP_SHARE_X,
+        slots.KINETIC_SHARE, slots.LOAD_EXPONENT, slots.ROLLING, slots.LIFT, slots.CORIOLIS, slots.MAST_HZ,
+        slots.BELT_STIFFNESS,
         *range(slots.UNLISTED, slots.UNLISTED + len(unlisted.TERMS)),
     ]
 )  # fmt: skip
@@ -103,7 +105,7 @@ class Body:
     @cached_property
     def rest(self) -> np.ndarray:
         """Height, roll and pitch at rest, (3,) float."""
-        return rest_pose(self.robot, float(self.e[CUBIC]))
+        return rest_pose(self.robot, float(self.e[CUBIC] + self.e[CUBIC_SHARE] * self.robot.stiffness[2]))
 
     @cached_property
     def packed(self) -> np.ndarray:

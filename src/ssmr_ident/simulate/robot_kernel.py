@@ -84,6 +84,7 @@ from ssmr_ident.simulate.pulling import (
 
 _JOINT_DEPTH, _ECCENTRICITY, _ROUGHNESS = slots.JOINT_DEPTH, slots.ECCENTRICITY, slots.ROUGHNESS
 _CUBIC, _KNEE, _QUADRATIC = slots.CUBIC, slots.KNEE_SHARE, slots.QUADRATIC
+_CUBIC_SHARE = slots.CUBIC_SHARE
 _FRICTION, _ALPHA = slots.FRICTION_FORCE, slots.ALPHA
 _RELAXATION, _GAP, _LIFT, _CORIOLIS = slots.RELAXATION_STIFFNESS, slots.GAP, slots.LIFT, slots.CORIOLIS
 _FREE, _TERMS = slots.UNLISTED, len(unlisted.TERMS)
@@ -145,7 +146,11 @@ def run(
     if beyond is not None:
         remembers = first(e[_FRICTION]) != 0.0 or first(e[_ALPHA]) != 1.0 or first(e[_RELAXATION]) != 0.0
         beside = remembers or (
-            first(e[_CUBIC]) != 0.0 or first(e[_KNEE]) != 0.0 or first(e[_QUADRATIC]) != 0.0 or first(e[_GAP]) != 0.0
+            first(e[_CUBIC]) != 0.0
+            or first(e[_CUBIC_SHARE]) != 0.0
+            or first(e[_KNEE]) != 0.0
+            or first(e[_QUADRATIC]) != 0.0
+            or first(e[_GAP]) != 0.0
         )
         if floor is not None:
             patterned, rough = e[_JOINT_DEPTH] != 0.0 or e[_ECCENTRICITY] != 0.0, e[_ROUGHNESS] != 0.0

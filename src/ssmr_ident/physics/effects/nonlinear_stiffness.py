@@ -1,4 +1,8 @@
-"""Stiffness that changes with deflection: hardening or softening."""
+"""Stiffness that changes with deflection: hardening or softening.
+
+A robot's axes have springs of their own, and what a cubic is on one of them says nothing of the others: ``k3_N_m3`` is
+the same on all, ``k3_share_1_m2`` in proportion to K.
+"""
 
 from __future__ import annotations
 
@@ -24,13 +28,14 @@ def beyond(s, stiffness, share, knee):
 EFFECT = Effect(
     id="nonlinear_stiffness",
     sentence="The tires (or the rig's spring) stiffen or soften as they are pressed.",
-    equation=r"F = K s + k_3 s^3 + a K\,\mathrm{sign}(s)\,\max(|s| - s_k, 0)",
+    equation=r"F = K s + k_3 s^3 + a K\,\mathrm{sign}(s)\,\max(|s| - s_k, 0) + b K s^3",
     source="Thesis section 3.3; Kovacic and Brennan, The Duffing Equation, Wiley 2011",
     signature="natural frequency rises (hardening) or falls (softening) with amplitude; third harmonic",
     parameters=(
         Parameter("k3_N_m3", "N/m^3", 5e8, -1e10, 1e11, "cubic stiffness of one spring", off=0.0),
         Parameter("knee_share", "1", 0.0, -0.95, 20.0, "a: slope beyond the knee over K, less one", off=0.0),
         Parameter("knee_m", "m", 5e-4, 1e-7, 10.0, "deflection at which the slope changes"),
+        Parameter("k3_share_1_m2", "1/m^2", 0.0, -1e7, 1e8, "b: cubic stiffness over K, alike on every axis", off=0.0),
     ),
     experiments=("free_response", "pull", "wheel_drag", "vertical_compression", "forced"),
     acts={Site.ELEMENT: force},
@@ -45,5 +50,12 @@ EFFECT = Effect(
     forms=(
         {"k3_N_m3": Sized(0.1, "slope/reach^2"), "knee_share": Sized(0.1, ""), "knee_m": Sized(0.4, "deflection")},
         {"k3_N_m3": Sized(-0.1, "slope/reach^2"), "knee_share": Sized(-0.1, ""), "knee_m": Sized(0.4, "deflection")},
+    ),
+    # rubber that is strained alike hardens in proportion to what it was, along as across and upright; where that is
+    # more than a cubic's, a knee begun near the end of the travel finds it, and one in its middle does not
+    robot_forms=(
+        {"k3_share_1_m2": Sized(0.1, "/deflection^2"), "k3_N_m3": 0.0, "knee_share": 0.0},
+        {"k3_share_1_m2": Sized(-0.1, "/deflection^2"), "k3_N_m3": 0.0, "knee_share": 0.0},
+        {"k3_N_m3": Sized(0.1, "slope/reach^2"), "knee_share": Sized(0.1, ""), "knee_m": Sized(0.8, "deflection")},
     ),
 )
