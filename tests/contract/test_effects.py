@@ -292,3 +292,13 @@ def test_off_is_nothing_or_infinity_or_one() -> None:
     """As the catalogue's file has it: no effect hides in a finite default. 1 is a ratio that is off at unity."""
     assert {p.off for effect in CATALOGUE.values() for p in effect.amplitudes} == {0.0, 1.0, np.inf}
     assert {e.id for e in CATALOGUE.values() if 1.0 in {p.off for p in e.amplitudes}} == {"hysteresis", "stribeck"}
+
+
+def test_what_switches_an_effect_on_is_what_is_given() -> None:
+    """A knee alone is no cubic besides; an effect of which nothing is given is its nominal one."""
+    knee = slots.checked({"nonlinear_stiffness": {"knee_share": 0.3}})["nonlinear_stiffness"]
+    assert (knee["k3_N_m3"], knee["k3_share_1_m2"], knee["knee_share"]) == (0.0, 0.0, 0.3)
+    assert knee["knee_m"] > 0.0
+    assert slots.checked({"nonlinear_stiffness": {}})["nonlinear_stiffness"]["k3_N_m3"] > 0.0
+    placed = slots.checked({"nonlinear_stiffness": {"knee_m": 1e-3}})["nonlinear_stiffness"]
+    assert placed["k3_N_m3"] > 0.0

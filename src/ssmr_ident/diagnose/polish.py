@@ -49,7 +49,7 @@ def turned(fit: JointFit, lengths: tuple[float, ...]) -> JointFit:
 
 def _otherwise(fit: JointFit, name: str, lengths: tuple[float, ...]) -> JointFit:
     """The best of a fit and those with one of its effects in another formula; along one axis a cubic spring and one in
-    proportion to its stiffness are the same law, and that it was begun with stays."""
+    proportion to its stiffness are the same law, and the one that it was begun with stays."""
     forms = list(other_formulas(fit, name))
     others = side_by_side(lambda form: led(fit.trials, *form, lengths, LAST, fit.nuisances), forms)
     first = ranked((fit, *others))[0]

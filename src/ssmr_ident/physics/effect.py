@@ -163,8 +163,8 @@ class Effect(Shown):
         return {p.name: float((given or {}).get(p.name, p.nominal)) for p in self.parameters}
 
     def begun(self, at: Mapping[str, float]) -> dict[str, float]:
-        """All parameters where a search begins: the given ones, nominal for the rest, and off what switches it off
-        besides."""
+        """All parameters: the given ones, nominal for the rest; where one that switches it off is given, the others of
+        these are off."""
         off = {p.name: p.off for p in self.parameters if p.off is not None}
         return self.values({**({} if off.keys().isdisjoint(at) else off), **at})
 

@@ -64,7 +64,8 @@ Effects = Mapping[str, Mapping[str, float]]
 
 
 def checked(effects: Effects) -> dict[str, dict[str, float]]:
-    """All parameters of the given effects, nominal where none is given.
+    """All parameters of the given effects, nominal where none is given; of several that would switch an effect on, only
+    those that are given do.
 
     Raises
     ------
@@ -84,7 +85,7 @@ def checked(effects: Effects) -> dict[str, dict[str, float]]:
             if not bounds[name].lower <= value <= bounds[name].upper:
                 limits = f"{bounds[name].lower:g} … {bounds[name].upper:g} {bounds[name].unit}"
                 raise InputError(f"effects: {effect_id}.{name}", f"is {value:g}, expected {limits}")
-        result[effect_id] = effect.values(given)
+        result[effect_id] = effect.begun(given)
     return result
 
 
