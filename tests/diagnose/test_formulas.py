@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import small_rigs
@@ -15,6 +17,7 @@ from ssmr_ident.diagnose.baseline import best_baseline
 from ssmr_ident.diagnose.formulas import other_formulas
 from ssmr_ident.diagnose.polish import loud, turned
 from ssmr_ident.diagnose.setup import set_up
+from ssmr_ident.diagnose.weigh import TIE
 from ssmr_ident.diagnose.words import law
 from ssmr_ident.identify.descent import descend
 from ssmr_ident.identify.horizons import led
@@ -99,7 +102,8 @@ def test_tires_that_harden_in_proportion_to_their_stiffness(sinh: tuple[JointFit
     assert loud(cubic)
     found = turned(cubic, lengths)
     assert found.model.ids == ("nonlinear_stiffness",)
-    assert "k3_share_1_m2" in {c.parameter.name for c in found.model.free}
+    # the one from a cubic, the other from that one
+    assert {"k3_share_1_m2", "knee_share"} <= {c.parameter.name for c in found.model.free}
     assert found.cost(found.counted) < cubic.cost(found.counted) - 1000.0
 
 
@@ -107,8 +111,16 @@ def test_a_formula_that_is_no_better_is_no_other(
     sinh: tuple[JointFit, tuple[float, ...]], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     cubic, lengths = sinh
-    monkeypatch.setattr(polish, "led", lambda trials, model, point, *_: cubic)
-    assert turned(cubic, lengths) is cubic
+
+    def ahead(by: float) -> JointFit:
+        smaller = np.exp(-0.5 * by / cubic.independent)
+        return replace(cubic, residuals=tuple(smaller * r for r in cubic.residuals))
+
+    for by, better in ((1.9 * TIE, False), (2.1 * TIE, True)):
+        other = ahead(by)
+        assert cubic.cost(other.counted) - other.cost(other.counted) == pytest.approx(by)
+        monkeypatch.setattr(polish, "led", lambda *_, other=other: other)
+        assert turned(cubic, lengths) is (other if better else cubic)
 
 
 def test_a_rig_has_one_axis_and_no_proportion() -> None:

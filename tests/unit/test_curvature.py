@@ -51,11 +51,12 @@ def test_a_step_is_that_of_dense_least_squares(fit: SimpleNamespace) -> None:
 
 
 def test_nuisances_alone_leave_the_shared_coordinates(fit: SimpleNamespace) -> None:
-    move, own = Curvature.of(fit, WEIGHTS).step(0.0, shared=False)  # type: ignore[arg-type]
     rows, right = _dense(fit)
     expected = np.linalg.lstsq(rows[:, SHARED:], right, rcond=None)[0]
-    assert not move.any()
-    np.testing.assert_allclose(np.concatenate(own), expected, atol=1e-12)
+    for shared in (True, False):  # whether their products were asked for or not
+        move, own = Curvature.of(fit, WEIGHTS, shared).step(0.0, shared=False)  # type: ignore[arg-type]
+        assert not move.any()
+        np.testing.assert_allclose(np.concatenate(own), expected, atol=1e-12)
 
 
 def test_damping_shortens_a_step_and_keeps_it_downhill(fit: SimpleNamespace) -> None:

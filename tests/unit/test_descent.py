@@ -60,6 +60,24 @@ def test_corrected_slopes_say_what_the_step_did_and_nothing_new_across_it() -> N
     assert not found.exact
 
 
+def test_a_step_of_nuisances_alone_corrects_their_slopes_alone() -> None:
+    before = differentiate(_curved(np.zeros(2), 0.0))
+    after = _curved(np.zeros(2), 0.4)
+    (old,), (new,) = before.slopes, corrected(before, replace(after, slopes=before.slopes)).slopes
+    done = before.residuals[0] - after.residuals[0]
+    assert new.shared == pytest.approx(old.shared, abs=0.0)
+    assert new.own @ (after.nuisances[0] - before.nuisances[0]) == pytest.approx(done, abs=1e-9 * np.abs(done).max())
+
+
+def test_a_point_is_split_once_and_every_point_by_itself() -> None:
+    here = MODEL.split(np.array([0.3, -0.2]))
+    assert MODEL.split(np.array([0.3, -0.2])) is here
+    assert here == ({"a": 0.3, "b": -0.2}, {})
+    assert MODEL.split(np.array([0.3, -0.1])) == ({"a": 0.3, "b": -0.1}, {})
+    wider = replace(MODEL, physics=tuple(replace(u, prior_std=2.0) for u in MODEL.physics))
+    assert wider.split(np.array([0.3, -0.2])) == ({"a": 0.6, "b": -0.4}, {})
+
+
 @pytest.mark.parametrize("hertz", [2.0, 8.0])
 def test_a_radian_of_a_swing_is_found_under_hum_and_noise(hertz: float) -> None:
     """1/omega; noise and a mains line, whose slopes are steep, would have it several times shorter."""
