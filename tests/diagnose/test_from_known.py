@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from bank import draw
 
-from ssmr_ident.diagnose import explore, from_known
+from ssmr_ident.diagnose import engine, explore, from_known
 from ssmr_ident.diagnose.baseline import best_baseline
-from ssmr_ident.diagnose.explore import search
+from ssmr_ident.diagnose.explore import Search, leads_astray, search, searched_from_known
 from ssmr_ident.diagnose.from_known import SHARES, begun_from_known
-from ssmr_ident.diagnose.setup import set_up
+from ssmr_ident.diagnose.setup import Setup, set_up
 from ssmr_ident.identify.joint import JointFit, evaluate
 from ssmr_ident.physics.effects import CATALOGUE
 
@@ -29,7 +31,13 @@ def test_tires_that_harden_by_swings_are_found_from_what_is_known(monkeypatch: p
     some = tuple(CATALOGUE[name] for name in ("nonlinear_stiffness", "quadratic_damping"))
     monkeypatch.setattr(explore, "candidates", lambda *_: some[1:])
     monkeypatch.setattr(from_known, "candidates", lambda *_: some)
-    found = {fit.model.ids: fit for fit in search(base, "rigid6", lengths).tried}
+    before = search(base, "rigid6", lengths)
+    assert before.astray
+    assert leads_astray(before.tried)
+    after = searched_from_known(before, "rigid6")
+    assert after is not None
+    assert not after.astray
+    found = {fit.model.ids: fit for fit in after.tried}
     assert np.median(_left(found["quadratic_damping",])) > 4.0
     assert np.median(_left(found["nonlinear_stiffness",])) < 1.5
 
@@ -40,8 +48,9 @@ def test_where_an_effect_explains_the_recordings_nothing_is_begun_anew(monkeypat
     base, lengths = best_baseline(setup.fitted, setup, drawn.campaign.parameters)
     assert np.max(_left(base)) > 2.0
     monkeypatch.setattr(explore, "candidates", lambda *_: (CATALOGUE["nonlinear_stiffness"],))
-    monkeypatch.setattr(explore, "begun_from_known", lambda *_: pytest.fail("begun anew"))
-    assert np.median(_left(search(base, "rigid6", lengths).tried[0])) < 2.0
+    found = search(base, "rigid6", lengths)
+    assert not found.astray
+    assert np.median(_left(found.tried[0])) < 2.0
 
 
 def test_an_effect_that_has_lost_its_way_is_led_home_before_all_are_begun_anew(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -54,15 +63,48 @@ def test_an_effect_that_has_lost_its_way_is_led_home_before_all_are_begun_anew(m
     away = evaluate(found.trials, found.model, found.point, [-n for n in found.nuisances])
     assert np.median(_left(away)) > 10.0
     monkeypatch.setattr(explore, "to_the_end", lambda *_, **__: [away])
-    monkeypatch.setattr(explore, "begun_from_known", lambda *_: pytest.fail("begun anew"))
-    (home,) = search(base, "rigid6", lengths).tried
-    assert np.median(_left(home)) < 2.0
-    # where that does not help, all effects are begun in all sizes
-    begun: list[str] = []
+    led = search(base, "rigid6", lengths)
+    assert not led.astray
+    assert np.median(_left(led.tried[0])) < 2.0
+    # where that does not help, all effects may be begun in all sizes; of those only what is better than all counts
     monkeypatch.setattr(explore, "anew", lambda fit, _: fit)
-    monkeypatch.setattr(explore, "begun_from_known", lambda *_: begun.append("anew") or [])
-    assert search(base, "rigid6", lengths).tried == (away,)
-    assert begun == ["anew"]
+    lost = search(base, "rigid6", lengths)
+    assert lost.astray
+    assert lost.tried == (away,)
+    monkeypatch.setattr(explore, "begun_from_known", lambda *_: [])
+    monkeypatch.setattr(explore, "to_the_end", lambda *_, **__: [])
+    assert searched_from_known(lost, "rigid6") is None
+    monkeypatch.setattr(explore, "to_the_end", lambda *_, **__: [found])
+    again = searched_from_known(lost, "rigid6")
+    assert again is not None
+    assert again.tried == (found,)
+    _only_where_even_two_lead_astray(monkeypatch, setup, lost, again)
+
+
+def _only_where_even_two_lead_astray(
+    monkeypatch: pytest.MonkeyPatch, setup: Setup, lost: Search, again: Search
+) -> None:
+    """All sizes are tried where what was chosen, two effects perhaps, leaves much; and the better search is gone on
+    with."""
+    (away,), (found,) = lost.tried, again.tried
+    asked: list[Search | None] = []
+    chosen = [found]
+
+    def examined(_: object, __: object, ___: object, searched: Search | None = None) -> SimpleNamespace:
+        asked.append(searched)
+        return SimpleNamespace(searches=(lost,), chosen=SimpleNamespace(fit=chosen[0]))
+
+    monkeypatch.setattr(engine, "_examined", examined)
+    monkeypatch.setattr(engine, "searched_from_known", lambda *_: again)
+    for fit, passes in ((found, [None]), (away, [None, again])):
+        chosen[0] = fit
+        asked.clear()
+        engine.examine(setup, setup.campaign.parameters)
+        assert asked == passes
+    monkeypatch.setattr(engine, "searched_from_known", lambda *_: None)
+    asked.clear()
+    engine.examine(setup, setup.campaign.parameters)
+    assert asked == [None]
 
 
 def test_every_formula_is_begun_at_sizes_far_apart_on_the_first_horizon(monkeypatch: pytest.MonkeyPatch) -> None:

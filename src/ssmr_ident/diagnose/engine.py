@@ -23,7 +23,7 @@ from ssmr_ident.diagnose.accept import (
 )
 from ssmr_ident.diagnose.baseline import alike_in, begun_again, best_baseline, prepared, swings_alone, unsteady
 from ssmr_ident.diagnose.coupling import coupled
-from ssmr_ident.diagnose.explore import Search, search
+from ssmr_ident.diagnose.explore import Search, leads_astray, search, searched_from_known
 from ssmr_ident.diagnose.followed import all_explained, at_its_best, contested, each_set_once, explained, joined
 from ssmr_ident.diagnose.pairs import backward, exchange, instead, partners_of, with_a_second
 from ssmr_ident.diagnose.polish import calmed, loud
@@ -79,10 +79,20 @@ def examine(setup: Setup, parameters: ParameterSet, progress: Progress | None = 
     """Look for what a session's baseline leaves out."""
     if progress:
         progress("fitting the baseline", 0, 1)
-    return _examined(informed(setup, parameters), parameters, progress)
+    setup = informed(setup, parameters)
+    found = _examined(setup, parameters, progress)
+    if not (found.searches and found.searches[0].astray and leads_astray([found.chosen.fit])):
+        return found
+    more = searched_from_known(found.searches[0], setup.campaign.session.baseline, progress)
+    if more is None:
+        return found
+    return _examined(replace(setup, begun=(more.baseline, more.lengths)), parameters, progress, more)
 
 
-def _examined(setup: Setup, parameters: ParameterSet, progress: Progress | None) -> Outcome:
+def _examined(
+    setup: Setup, parameters: ParameterSet, progress: Progress | None, searched: Search | None = None
+) -> Outcome:
+    """``searched`` is a first search beside the setup's baseline that has been made."""
     fit, lengths = setup.begun or best_baseline(setup.fitted, setup, parameters)
     kept = tuple(prepared(follow(alike_in(setup.kept, fit.trials), fit.model, fit.point)))
     if progress:
@@ -103,7 +113,9 @@ def _examined(setup: Setup, parameters: ParameterSet, progress: Progress | None)
         else:
             further = chosen is not baseline
             elsewhere = not further and left_elsewhere(chosen)
-            result = search(chosen.fit, setup.campaign.session.baseline, lengths, further, progress, elsewhere)
+            known = searched if not further else None
+            kind = setup.campaign.session.baseline
+            result = known or search(chosen.fit, kind, lengths, further, progress, elsewhere)
             new = all_explained(kept, [calmed(f) if unsteady(f) else f for f in result.tried], chosen.kept)
         searches.append(result)
         if not new:

@@ -50,12 +50,17 @@ class Search:
         Per effect, most promising first.
     tried : tuple of JointFit
         Models with one effect more, refitted to the end.
+    lengths : tuple of float [s]
+        Horizons.
+    astray : bool
+        Of decays, none of them leads home.
     """
 
     baseline: JointFit
     suspects: tuple[tuple[Suspect, ...], ...]
     tried: tuple[JointFit, ...]
     lengths: tuple[float, ...]
+    astray: bool = False
 
 
 def search(
@@ -142,22 +147,42 @@ def search(
         # paths, unless nothing holds the mass
         others = without_laws(groups) if begun else groups
         tried += to_the_end(base, raced(base, others, progress), [np.inf], lengths, progress) if others else []
-    if loud and baseline != "sdof" and len(lengths) > 1 and not further and _astray(tried):
-        # the first may only have lost its way, and knows its size; all effects in all sizes take ten times as long
+    astray = loud and baseline != "sdof" and len(lengths) > 1 and not further and leads_astray(tried)
+    if astray:
+        # the first may only have lost its way, and knows its size
         home = [anew(fit, tuple(lengths)) for fit in ranked(tried)[:1]]
-        if home and float(np.median(home[0].parts / [t.size for t in base.trials])) < LOUD:
-            tried += home
-        else:
-            begun = begun_from_known(base, baseline, lengths[0], progress)
-            tried += to_the_end(base, begun, lengths[1:], lengths, progress, starts=2)
+        astray = not home or float(np.median(home[0].parts / [t.size for t in base.trials])) >= LOUD
+        tried += [] if astray else home
     if progress:
         progress("refitting explanations", 1, 1)
     # of two fits of pulls all recordings decide, those kept back as well
     ends = tried if slides(base) else each_once(tried)
-    return Search(base, tuple(tuple(g) for g in groups), tuple(ends), tuple(lengths))
+    return Search(base, tuple(tuple(g) for g in groups), tuple(ends), tuple(lengths), astray)
 
 
-def _astray(tried: Sequence[JointFit]) -> bool:
+def searched_from_known(before: Search, baseline: str, progress: Progress | None = None) -> Search | None:
+    """All effects in all sizes beside what is known, for decays in which nothing led home; none if none does better.
+
+    It takes three times as long as the search before. Where two effects are missing it adds nothing (practice 22), so
+    they are looked for first.
+
+    Parameters
+    ----------
+    before : Search
+        Of the first effect.
+    baseline : str
+        The session's.
+    progress : callable, optional
+    """
+    begun = begun_from_known(before.baseline, baseline, before.lengths[0], progress)
+    more = to_the_end(before.baseline, begun, before.lengths[1:], before.lengths, progress, starts=2)
+    best = ranked([*more, *before.tried])[:1]
+    if not any(fit is best[0] for fit in more):
+        return None
+    return replace(before, tried=tuple(each_once([*before.tried, *more])), astray=False)
+
+
+def leads_astray(tried: Sequence[JointFit]) -> bool:
     """Whether what explains most leaves far more than another formula would, in most recordings of decays; so does
     nothing at all."""
     best = ranked(tried)[:1]
