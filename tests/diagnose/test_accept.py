@@ -9,7 +9,7 @@ import pytest
 
 from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.diagnose import accept
-from ssmr_ident.diagnose.accept import as_near, mends, promises, relieves, touches, within_file
+from ssmr_ident.diagnose.accept import as_near, may_mend, mends, promises, relieves, touches, within_file
 from ssmr_ident.diagnose.weigh import Explanation
 from ssmr_ident.identify.coordinates import Model
 from ssmr_ident.identify.joint import JointFit
@@ -162,22 +162,45 @@ def named(name: str, explanation: Explanation) -> Explanation:
         (0.76, 1e-4, 0.5, True),  # hardening under a tilted sensor: 0.76, and what follows the motion is gone
         (0.76, 0.02, 0.5, False),  # what the first one leaves is as noise might leave it
         (0.81, 2e-28, 1e-14, False),  # relaxation beside a hardening that is a sinh takes a part of that
-        (0.92, 6e-4, 0.5, False),
+        (0.92, 6e-4, 0.5, True),  # play and relaxation in three times the noise that was told
+        (0.92, 6e-4, 4e-2, False),
+        (0.96, 6e-4, 0.5, False),  # all but nothing
         (0.65, 0.5, 0.5, True),
     ],
 )
 def test_a_second_effect_that_takes_less_has_to_leave_nothing_that_follows_the_motion(
     share: float, before: float, after: float, taken: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def explained(name: str, left: float, chance: float) -> Explanation:
-        trials = [SimpleNamespace(size=900, searched=False) for _ in range(6)]
-        fit = SimpleNamespace(parts=np.full(6, 900.0 * left), trials=trials, name=name, chance=chance)
-        return Explanation(fit, fit)  # type: ignore[arg-type]
-
     monkeypatch.setattr(accept, "certain", lambda pair, single: True)
+    _chance_is_told(monkeypatch)
+    assert mends(_by_chance(1.4 * share, after), _by_chance(1.4, before)) is taken
+
+
+def _by_chance(left: float, chance: float) -> Explanation:
+    trials = [SimpleNamespace(size=900, searched=False) for _ in range(6)]
+    fit = SimpleNamespace(parts=np.full(6, 900.0 * left), trials=trials, chance=chance)
+    return Explanation(fit, fit)  # type: ignore[arg-type]
+
+
+def _chance_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(accept, "predictions", lambda fit: [fit.chance])
     monkeypatch.setattr(accept, "grows_with_motion", lambda found: found[0])
-    assert mends(explained("pair", 1.4 * share, after), explained("single", 1.4, before)) is taken
+
+
+@pytest.mark.parametrize(
+    ("share", "before", "after", "may"),
+    [
+        (0.78, 0.5, 0.5, True),  # being led on may bring it below 0.7
+        (0.83, 1e-4, 5e-5, False),  # a centre of mass that is off beside wheels that lift (practice 05)
+        (0.83, 1e-4, 5e-3, True),
+        (0.83, 0.02, 0.5, False),
+    ],
+)
+def test_a_pair_is_led_on_that_may_mend_then(
+    share: float, before: float, after: float, may: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    _chance_is_told(monkeypatch)
+    assert may_mend(_by_chance(1.4 * share, after), _by_chance(1.4, before)) is may
 
 
 @pytest.mark.parametrize(("left", "promising"), [(0.98, False), (0.9, True)])

@@ -15,6 +15,7 @@ from ssmr_ident.diagnose.accept import (
     leading,
     leaves_structure,
     left_over,
+    may_mend,
     mends,
     promises,
     significant,
@@ -127,7 +128,8 @@ def _examined(
         if chosen is not baseline and not slides(chosen.fit) and not promises(leader, chosen):
             tried = joined(tried, new)
             break
-        leader = contested(leader, new, kept, lengths)
+        if chosen is baseline or setup.decoupled or slides(chosen.fit) or may_mend(leader, chosen):
+            leader = contested(leader, new, kept, lengths)
         if small and not halves(leader, chosen):
             break
         if chosen is not baseline and not setup.decoupled and mends(leader, chosen):
