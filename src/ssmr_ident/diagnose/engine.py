@@ -114,8 +114,8 @@ def _examined(
         else:
             further = chosen is not baseline
             elsewhere = not further and left_elsewhere(chosen)
-            known = searched if not further else None
             kind = setup.campaign.session.baseline
+            known, searched = searched, None  # beside a baseline that has moved all is looked for again
             result = known or search(chosen.fit, kind, lengths, further, progress, elsewhere)
             new = all_explained(kept, [calmed(f) if unsteady(f) else f for f in result.tried], chosen.kept)
         searches.append(result)

@@ -163,8 +163,8 @@ def search(
 def searched_from_known(before: Search, baseline: str, progress: Progress | None = None) -> Search | None:
     """All effects in all sizes beside what is known, for decays in which nothing led home; none if none does better.
 
-    It takes three times as long as the search before. Where two effects are missing it adds nothing (practice 22), so
-    they are looked for first.
+    It takes twice as long as the search before. Where two effects are missing it adds nothing (practice 22), so they
+    are looked for first.
 
     Parameters
     ----------
