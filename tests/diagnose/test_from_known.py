@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -79,6 +80,23 @@ def test_an_effect_that_has_lost_its_way_is_led_home_before_all_are_begun_anew(m
     assert again is not None
     assert again.tried == (found,)
     _only_where_even_two_lead_astray(monkeypatch, setup, lost, again)
+
+
+def test_a_search_that_has_been_made_serves_the_first_round_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn = draw("decays", "one", 3, "nonlinear_stiffness", 0.5, short=True)
+    parameters = drawn.campaign.parameters
+    setup = set_up(drawn.campaign, parameters)
+    base, lengths = best_baseline(setup.fitted, setup, parameters)
+    monkeypatch.setattr(explore, "candidates", lambda *_: (CATALOGUE["nonlinear_stiffness"],))
+    made = search(base, "rigid6", lengths)
+    further: list[bool] = []
+    monkeypatch.setattr(engine, "search", lambda *args: further.append(args[3]) or search(*args))
+    found = engine._examined(replace(setup, begun=(base, lengths)), parameters, None, made)
+    assert found.chosen.fit.model.ids == ("nonlinear_stiffness",)
+    assert found.searches[0] is made
+    assert all(further)
+    engine._examined(replace(setup, begun=(base, lengths)), parameters, None)
+    assert further.count(False) == 1
 
 
 def _only_where_even_two_lead_astray(

@@ -26,8 +26,8 @@ BESIDES = 0.95
 
 BY_NOISE = 0.05
 """Probability by chance above which a second effect leaves nothing that follows the motion. Where the first one leaves
-some (``BY_CHANCE``), that counts as well, whatever share it takes: what another formula takes of a wrong one is only a
-part of that. Calibrated, docs/theory/diagnosis.md."""
+some (``BY_CHANCE``), that counts as well, whatever share below ``BESIDES``: what another formula takes of a wrong one
+is only a part of that. Calibrated, docs/theory/diagnosis.md."""
 
 LED_ON = 0.1
 """By how much being led on may change the share that a pair leaves (15 pairs of 35 sessions of decays: 0.09 at the
