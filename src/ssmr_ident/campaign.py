@@ -15,6 +15,7 @@ from ssmr_ident.core.shown import Shown
 from ssmr_ident.physics.robot import accelerometer_from_parameters
 from ssmr_ident.physics.sensor import Accelerometer
 from ssmr_ident.readers import ReadOptions, read_one
+from ssmr_ident.readers.health import ends_of_supply
 from ssmr_ident.session import Entry, Session, read_parameters, read_session
 
 UNITS = {
@@ -198,11 +199,14 @@ def _from_volts(
         scale = f"{accelerometer.volts_zero:g} V + {accelerometer.volts_per_m_s2:.6g} V s^2/m · a"
         note = Note("info", f"{channel.label or channel.name}: volts to m/s^2 by {scale}")
         # counted here, where the volts are still at hand
-        clipped = np.abs(samples) >= accelerometer.range_m_s2 * (1.0 - 1e-3)
+        low, high = np.sort(accelerometer.to_acceleration(np.array(ends_of_supply(channel.samples)), axis))
+        found = replace(channel, samples=samples, unit="m/s^2", rails=(float(low), float(high)))
+        low, high = found.shows(accelerometer.range_m_s2)
+        clipped = (samples <= low) | (samples >= high)
         if clipped.any():
-            limit = f"±{accelerometer.range_m_s2:g} m/s^2"
-            note = Note("warning", f"{channel.name}: {int(clipped.sum())} samples at the sensor's range of {limit}")
-        return replace(channel, samples=samples, unit="m/s^2"), note
+            ends = f"{low:.4g} … {high:.4g} m/s^2"
+            note = Note("warning", f"{channel.name}: {int(clipped.sum())} samples at the ends of what it shows, {ends}")
+        return found, note
     if channel.name in entry.channels:
         raise InputError(
             f"{recording.provenance.file}: {channel.label}",

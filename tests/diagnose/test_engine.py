@@ -110,6 +110,20 @@ def test_what_may_be_noise_of_another_colour_is_said_beside_nothing():
     assert any("noise of another colour" in note for note in found.notes)
 
 
+def test_one_recording_that_nothing_explains_is_not_nothing():
+    """A knock in one of the recordings, far above its noise: the others are explained."""
+    session = rig(lambda x, v: 0.0 * x)
+    first, *others = session.measurements
+    force, position = first.recording.channels
+    time = np.arange(len(position.samples)) / RATE
+    knock = 400.0 * NOISE * np.exp(-0.5 * ((time - 0.6 * SECONDS) / 0.05) ** 2)
+    shaken = replace(first.recording, channels=(force, replace(position, samples=position.samples + knock)))
+    found = diagnose(replace(session, measurements=(replace(first, recording=shaken), *others)))
+    assert (found.verdict, found.effects) == ("undetermined", ())
+    assert first.name in found.summary
+    assert "colour reads in it" in found.summary
+
+
 def test_friction_of_another_formula_is_named_and_alone():
     found = diagnose(rig(lambda x, v: np.tanh(v / 1e-3)))
     assert [e.id for e in found.effects] == ["dry_friction"]

@@ -6,6 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 
 from ssmr_ident.campaign import Measurement
 from ssmr_ident.compare.comparison import measure
@@ -13,7 +14,7 @@ from ssmr_ident.compare.outcome import Prediction
 from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.core.recording import Channel, Provenance, Recording
 from ssmr_ident.diagnose.assemble import hidden_by_jolts
-from ssmr_ident.diagnose.worth import grows_with_motion, noise_floor, without_jolts, worth
+from ssmr_ident.diagnose.worth import grows_with_motion, noise_floor, over_any_noise, without_jolts, worth
 from ssmr_ident.identify.trials.pull import pull_trial
 from ssmr_ident.session import Entry
 
@@ -89,3 +90,22 @@ def test_a_line_that_rings_where_the_low_pass_sets_in_does_not_follow_the_motion
         logged = (1.0 + missed) * motion + hum + 0.005 * random.standard_normal(len(time))
         found.append(Prediction(time, ("ax",), ("m/s^2",), logged[:, None], motion[:, None], low_pass_hz=50.0))
     assert (grows_with_motion(found) < 1e-3) is told
+
+
+def test_one_recording_beyond_noise_of_any_colour_is_told_from_those_within_it() -> None:
+    """White noise, noise of which three quarters are slow, and a misfit that neither can be."""
+    random = np.random.default_rng(21)
+    time = np.arange(3000) / 1000.0
+    motion = np.exp(-time) * np.sin(2.0 * np.pi * 5.0 * time)
+    white = 0.01 * random.standard_normal((2, len(time)))
+    slow = lfilter([1.0], [1.0, -0.95], random.standard_normal(len(time)))
+    coloured = white[1] + np.sqrt(2.9) * 0.01 * slow / slow.std()
+    rests = (white[0], coloured, white[0] + 0.2 * motion)
+    found = [
+        Prediction(time, ("ax",), ("m/s^2",), (motion + rest)[:, None], motion[:, None], low_pass_hz=50.0)
+        for rest in rests
+    ]
+    over = over_any_noise(found)
+    assert over[0] < 0.4
+    assert 0.6 < over[1] < 1.0
+    assert over[2] > 3.0

@@ -9,6 +9,9 @@ import numpy as np
 
 from ssmr_ident.core.shown import Shown, html_table
 
+ENDS = 0.999
+"""Share of a sensor's range from which samples count as at its end."""
+
 
 @dataclass(frozen=True)
 class Note(Shown):
@@ -52,12 +55,20 @@ class Channel:
         SI (``N``, ``m``, ``m/s^2``, ``rad``, ``rad/s``), or ``V`` while a sensor's volts await its calibration.
     label : str
         The header as the file has it.
+    rails : (float, float)
+        Values, in ``unit``, at which whatever logged it came to its end: a sample at one of them says only that there
+        was as much or more.
     """
 
     name: str
     samples: np.ndarray
     unit: str
     label: str = ""
+    rails: tuple[float, float] = (-np.inf, np.inf)
+
+    def shows(self, limit: float) -> tuple[float, float]:
+        """Between which values samples say what there was, of a sensor that ends at ± ``limit``, in ``unit``."""
+        return max(self.rails[0], -ENDS * limit), min(self.rails[1], ENDS * limit)
 
 
 @dataclass(frozen=True)

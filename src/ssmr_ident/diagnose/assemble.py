@@ -29,12 +29,14 @@ from ssmr_ident.diagnose.worth import (
     BY_CHANCE,
     errors,
     grows_with_motion,
+    over_any_noise,
     overlays,
     predictions,
     reddest,
     without_jolts,
     worth,
 )
+from ssmr_ident.identify.descent import slides
 from ssmr_ident.identify.joint import JointFit, differentiate
 from ssmr_ident.identify.parallel import side_by_side
 
@@ -53,6 +55,12 @@ COLOURED = (
     "what is left is {:.1f} times a noise floor that takes noise for white; it is not larger where more moves, and "
     "noise of another colour reads up to {:.1f} times that floor"
 )
+
+BEYOND = 3.0
+"""Times the most that noise of any colour reads beyond which one recording alone shows that something is missing; as
+much as noise of which 3 % are white would read. Of 47 sessions without missing physics none came above 0.7."""
+
+ALONE = "{} is left with {:.1f} times the most that noise of any colour reads in it"
 
 UNDER_JOLTS = "{}: the jolt of the tightening cable hides it; without that the error falls from {:.3g} to {:.3g} %"
 
@@ -80,6 +88,7 @@ def assembled(outcome: Outcome, parameters: ParameterSet, seed: int) -> Diagnosi
     effects = _named(outcome, best_file.effects) if named else ()
     jolts: tuple[str, ...] = ()
     doubts: tuple[str, ...] = ()
+    alone = ""
     settled = without_jolts(base.fit, before_fit), without_jolts(base.kept, before_kept)
     if named:
         verdict = MISSING if len(outcome.rivals) <= MOST_RIVALS else UNDETERMINED
@@ -93,6 +102,11 @@ def assembled(outcome: Outcome, parameters: ParameterSet, seed: int) -> Diagnosi
         follows = grows_with_motion([*settled[0], *settled[1]]) < BY_CHANCE
         most = reddest([*settled[0], *settled[1]])
         verdict = UNDETERMINED if left > most or (left > UNEXPLAINED and follows) else NOTHING
+        over = over_any_noise([*settled[0], *settled[1]])
+        if not slides(base.fit) and float(over.max()) > BEYOND:
+            # one release in which wheels lift may be all that shows it; a pull may lie in a hollow of its own
+            verdict, loudest = UNDETERMINED, [*base.fit.trials, *base.kept.trials][int(over.argmax())]
+            alone = ALONE.format(loudest.name, float(over.max()))
         if verdict == NOTHING and left > UNEXPLAINED:
             doubts = (COLOURED.format(left, most),)
     tried = _tried(outcome)
@@ -103,7 +117,7 @@ def assembled(outcome: Outcome, parameters: ParameterSet, seed: int) -> Diagnosi
         summary = nothing(heldout, METRIC, scanned)
     else:
         names = [e.id for e in (best, *outcome.rivals)] if named else [t.id for t in tried if t.id != "baseline"]
-        summary = undetermined(heldout, METRIC, names)
+        summary = undetermined(heldout, METRIC, names, alone)
     after = best.fit if named else None
     parts: dict[str, Callable[[], Any]] = {
         "overlays": partial(overlays, heldout.recordings, before_kept, after_kept, heldout=True),

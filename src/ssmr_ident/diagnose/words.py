@@ -95,11 +95,13 @@ def nothing(heldout: Worth, metric: str, tried: int) -> str:
     )
 
 
-def undetermined(heldout: Worth, metric: str, tried: Sequence[str]) -> str:
+def undetermined(heldout: Worth, metric: str, tried: Sequence[str], shown: str = "") -> str:
+    """``shown`` says where something is missing that recordings never fitted do not show."""
     unit = UNIT[metric]
     names = ", ".join(map(readable, tried[:3]))
     closest = f"; the nearest that were tried are {names}" if names else ""
-    return (
-        f"Something is missing that these recordings cannot name: the baseline leaves {heldout.before:.3g} {unit} on "
-        f"recordings never fitted where noise alone leaves {heldout.noise_floor:.3g} {unit}{closest}."
+    shown = shown or (
+        f"the baseline leaves {heldout.before:.3g} {unit} on recordings never fitted where noise alone leaves "
+        f"{heldout.noise_floor:.3g} {unit}"
     )
+    return f"Something is missing that these recordings cannot name: {shown}{closest}."

@@ -127,6 +127,11 @@ def reddest(found: Sequence[Prediction]) -> float:
     return float(np.max(np.sqrt((1.0 - WHITE + WHITE * shares) / (WHITE * shares))))
 
 
+def over_any_noise(found: Sequence[Prediction]) -> Array:
+    """Each recording's error over the most that noise of any colour reads in it, (r,) float."""
+    return errors(found) / [noise_floor(prediction) * reddest([prediction]) for prediction in found]
+
+
 def grows_with_motion(found: Sequence[Prediction]) -> float:
     """Probability by chance that what is left is as much larger where the simulated motion is larger.
 

@@ -70,9 +70,10 @@ def _prepared(measurement: Measurement, builder: RobotBuilder, gathered: Gathere
         if name not in recording:
             continue
         samples = recording[name]
-        if np.count_nonzero(np.abs(samples) >= 0.999 * sensor.range_m_s2) >= CLIPPED:
+        low, high = recording.channel(name).shows(sensor.range_m_s2)
+        if np.count_nonzero((samples <= low) | (samples >= high)) >= CLIPPED:
             gathered.findings.append(
-                f"{measurement.name}: {name} reaches the sensor's range and is left out of the fit of samples"
+                f"{measurement.name}: {name} reaches the end of what it shows and is left out of the fit of samples"
             )
             continue
         if np.ptp(samples) > 0:

@@ -10,9 +10,10 @@ from ssmr_ident.core.recording import Channel, Note, Recording
 from ssmr_ident.core.shown import Shown
 
 # The thesis' accelerometer: 2.6 V at rest and 5/(3.4*9.8) V per m/s^2, so that +-1.7 g is 0.1 to 5.1 V; its supply
-# ends at 5 V. A session's robot.yaml may say otherwise; these rails only raise a warning.
+# ends at 5 V. A session's robot.yaml may say otherwise; these rails raise a warning, and the supply's end is one for
+# whatever reads its volts.
 VOLTS_LOW, VOLTS_HIGH = 0.1, 5.0
-_RAIL_TOLERANCE = 1e-3  # V, below the step of a 12-bit card over 5 V
+RAIL_TOLERANCE = 1.25e-3  # V: the last code of a 12-bit card over 5 V stands 1.22 mV below them
 _SATURATED = 50  # equal samples at the largest value, see ``saturated``
 _AMPLIFIED = ("N", "N m", "m/s^2", "Pa", "V")
 AXES = ("ax", "ay", "az")
@@ -122,9 +123,22 @@ def at_rails(channel: Channel) -> int:
     if channel.unit != "V" or channel.name not in AXES:
         return 0
     samples = channel.samples[np.isfinite(channel.samples)]
-    low = samples <= VOLTS_LOW + _RAIL_TOLERANCE
-    high = samples >= VOLTS_HIGH - _RAIL_TOLERANCE
+    low = samples <= VOLTS_LOW + RAIL_TOLERANCE
+    high = samples >= VOLTS_HIGH - RAIL_TOLERANCE
     return int(low.sum() + high.sum())
+
+
+def ends_of_supply(volts: np.ndarray) -> tuple[float, float]:
+    """Volts at which samples of an accelerometer are at the end of its supply; infinite for one that goes beyond it,
+    which has another supply.
+
+    Parameters
+    ----------
+    volts : (n,) float [V]
+    """
+    if np.nanmin(volts) < 0.0 or np.nanmax(volts) > VOLTS_HIGH:
+        return -np.inf, np.inf
+    return RAIL_TOLERANCE, VOLTS_HIGH - RAIL_TOLERANCE
 
 
 def saturated(samples: np.ndarray) -> int:

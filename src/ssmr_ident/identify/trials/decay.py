@@ -111,7 +111,8 @@ def decay_trial(measurement: Measurement, builder: RobotBuilder, decoupled: bool
     model = PureRotation(names[0]) if decoupled else None
     since = np.linspace(-1.0, 1.0, len(rest))
     drift = WANDER * np.column_stack([since, since**2])
-    facts = _Facts(measurement.name, measurement.entry.motion or "", names, STEP, builder, model, whole, drift)
+    shows = np.array([recording.channel(name).shows(sensor.range_m_s2) for name in names])
+    facts = _Facts(measurement.name, measurement.entry.motion or "", names, shows, STEP, builder, model, whole, drift)
     return _trial(replace(decay, noises=noises), kept, facts)
 
 
@@ -122,6 +123,7 @@ class _Facts:
     name: str
     kind: str
     channels: tuple[str, ...]
+    shows: Array
     step: float
     builder: RobotBuilder
     model: PureRotation | None
@@ -135,7 +137,7 @@ def _trial(whole: BodyDecay, kept: int, facts: _Facts) -> Trial:
     builder, model = facts.builder, facts.model
     skip, length = _window(decay)
     raw = decay.record.samples[skip:length].reshape(kept, decay.block, -1)
-    counts = np.all(np.abs(raw) < 0.999 * builder.nominal.accelerometer.range_m_s2, axis=1)
+    counts = np.all((raw > facts.shows[:, 0]) & (raw < facts.shows[:, 1]), axis=1)
 
     def simulated(asked: Sequence[Asked], samples: int, step: float) -> tuple[Array, Array, Array]:
         """Releases that differ, which of them each is asked for, and by what its axes' gains differ."""
