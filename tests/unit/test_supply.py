@@ -27,6 +27,13 @@ def test_a_log_that_goes_beyond_the_supply_has_another(highest: float, ends: boo
     assert at_rails(Channel("az", volts, "V")) == (highest > 4.9)
 
 
+def test_a_log_with_gaps_or_of_gaps_alone_has_the_sensors_supply() -> None:
+    for volts in (np.array([2.6, np.nan, 3.1]), np.full(3, np.nan)):
+        low, high = ends_of_supply(volts)
+        assert 0.0 < low < 0.01
+        assert 4.99 < high < 5.0 - STEP
+
+
 @pytest.mark.parametrize("polarity", [1.0, -1.0])
 def test_samples_at_the_end_of_the_supply_are_told_and_do_not_count(polarity: float) -> None:
     made = simulate(ROBOT, free_response("pitch", duration=2.0), 1000.0)

@@ -135,8 +135,9 @@ def ends_of_supply(volts: np.ndarray) -> tuple[float, float]:
     Parameters
     ----------
     volts : (n,) float [V]
+        Gaps are NaN.
     """
-    if np.nanmin(volts) < 0.0 or np.nanmax(volts) > VOLTS_HIGH:
+    if np.any(volts < 0.0) or np.any(volts > VOLTS_HIGH):
         return -np.inf, np.inf
     return RAIL_TOLERANCE, VOLTS_HIGH - RAIL_TOLERANCE
 
