@@ -129,7 +129,8 @@ def page(folder: Path) -> str:
         "and the held-out error of the refitted baseline over the noise floor there. A block that is dragged at one "
         "speed shows one constant force, whose level the cell's zero takes: of a clip, a cable that gives little or "
         "friction that falls only the jolt is left, which no two pulls have alike and which counts for nothing. The "
-        "same sessions are asked of every engine, in place of what the one before answered, and some have led to changes.\n",
+        "same sessions are asked of every engine, in place of what the one before answered, and some have led to "
+        "changes.\n",
         lambda rows: block(bench_power.report(rows)),
     )
     section(
