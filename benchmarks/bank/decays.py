@@ -12,6 +12,7 @@ from bank.laws import laws
 from bank.robot_physics import DECAYS, OTHER, PAIRS, UNLISTED, Left
 from bank.robot_plant import run_robot
 from bank.robots import draw_robot, true_values
+from bank.scaled import AS_IT_IS, Scale
 from bank.truth import BankSession, Made, Truth, recording
 from ssmr_ident.campaign import Campaign
 from ssmr_ident.core.errors import SimulationError
@@ -30,9 +31,12 @@ PEAK = {"roll": (1.5, 3.5), "pitch": (1.5, 3.0), "yaw": (1.5, 5.0)}
 AXES = ("ax", "ay", "az")
 
 
-def draw_decays(kind: str, seed: int, effect: str | None, size: float | None, short: bool) -> BankSession:
-    """Nine decays to fit and four held out; ``short`` ones are six of a second and a half."""
-    return _decays(kind, seed, effect, size, short, "rigid6")
+def draw_decays(
+    kind: str, seed: int, effect: str | None, size: float | None, short: bool, scale: Scale = AS_IT_IS
+) -> BankSession:
+    """Nine decays to fit and four held out; ``short`` ones are six of a second and a half. Of a robot of another scale
+    the truth's numbers are those of the robot that it was scaled from."""
+    return _decays(kind, seed, effect, size, short, "rigid6", scale)
 
 
 def draw_decoupled(kind: str, seed: int, effect: str | None, size: float | None, short: bool) -> BankSession:
@@ -40,7 +44,15 @@ def draw_decoupled(kind: str, seed: int, effect: str | None, size: float | None,
     return _decays("one", seed, "translation_coupling", size, short, "decoupled")
 
 
-def _decays(kind: str, seed: int, effect: str | None, size: float | None, short: bool, baseline: str) -> BankSession:
+def _decays(
+    kind: str,
+    seed: int,
+    effect: str | None,
+    size: float | None,
+    short: bool,
+    baseline: str,
+    scale: Scale = AS_IT_IS,
+) -> BankSession:
     random = np.random.default_rng([seed, 1])
     robot, file, gains = draw_robot(random)
     left, size = choose(kind, effect, size, robot, random)
@@ -59,18 +71,19 @@ def _decays(kind: str, seed: int, effect: str | None, size: float | None, short:
         left = replace(left, effects={"sensor_saturation": {"range_m_s2": limit}})
         runs = [np.clip(run, -limit, limit) for run in runs]
     sensor = random_accelerometer(random)
+    logged_at = rate / scale.time
     made = []
     for (motion, trial, role), run in zip(plan, runs, strict=True):
         name = f"{motion}-{trial}.csv"
         clean = {axis: run[:, index] * gains[index] for index, axis in enumerate(AXES)}
-        logged = {axis: (sensor.add(samples, rate, random), "m/s^2") for axis, samples in clean.items()}
+        logged = {axis: (sensor.add(samples, logged_at, random), "m/s^2") for axis, samples in clean.items()}
         entry = Entry(name, "free_response", role=role, trial=trial, motion=motion)
         if baseline == "decoupled":  # (5.3) is read from one channel
             main = {"roll": "ay", "pitch": "ax", "yaw": "ay"}[motion]
             clean = {main: clean[main]}
-        made.append(Made(entry, recording(name, rate, **logged), clean))
+        made.append(Made(entry, recording(name, logged_at, **logged), clean))
     session = Session(f"bank-{seed}", Path("bank"), "robot.yaml", baseline, tuple(one.entry for one in made))
-    campaign = Campaign(session, file, tuple(one.measurement for one in made))
+    campaign = Campaign(session, scale.known(file), tuple(one.measurement for one in made))
     effects = {"translation_coupling": {}} if baseline == "decoupled" else left.effects
     truth = Truth(
         "missing_physics" if effects else "nothing_missing",

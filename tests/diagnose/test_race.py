@@ -11,6 +11,7 @@ from ssmr_ident.diagnose.explain import as_large_as_it_takes, beside
 from ssmr_ident.diagnose.scan import Suspect, scan, variants
 from ssmr_ident.identify.descent import descend
 from ssmr_ident.identify.joint import JointFit, differentiate, evaluate
+from ssmr_ident.physics.effect import Sized
 from ssmr_ident.physics.effects import CATALOGUE
 
 PLAY = {"gap_m": 2e-3, "rounding": 0.2}
@@ -104,7 +105,11 @@ def test_what_grows_while_a_recording_lasts_is_asked_for_on_whole_recordings(mon
 
 def test_probes_that_lie_apart_all_go_on(first: JointFit, monkeypatch: pytest.MonkeyPatch) -> None:
     """Masts at five frequencies, each behind twenty stiffnesses after a third of a second."""
-    masts = [_suspect("flexible_mast", dict(probe)) for probe in CATALOGUE["flexible_mast"].probes]  # type: ignore[arg-type]
+    sizes = {"mass": 30.0, "height": 0.23, "swing": 0.02}
+    masts = [
+        _suspect("flexible_mast", {n: p.value(sizes) if isinstance(p, Sized) else p for n, p in probe.items()})
+        for probe in CATALOGUE["flexible_mast"].probes
+    ]
     stiff = [_suspect("nonlinear_stiffness", {"k3_N_m3": 1e9 * (k + 1)}) for k in range(20)]
     seconds: list[JointFit] = []
 

@@ -5,15 +5,18 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from bank import FAMILIES, mixed
+from bank.decays import draw_decays
+from bank.scaled import Scale
 
 from ssmr_ident.diagnose.baseline import fit_baseline
 from ssmr_ident.diagnose.scan import candidates, probes, scan
 from ssmr_ident.diagnose.setup import set_up
-from ssmr_ident.diagnose.sizes import sizes_of
-from ssmr_ident.identify.joint import JointFit, differentiate
+from ssmr_ident.diagnose.sizes import limits_of, sizes_of
+from ssmr_ident.identify.joint import JointFit, differentiate, evaluate
 from ssmr_ident.pipeline.diagnose import diagnose
 
 SEED, K3 = 6264, -4.222e7
+OF_ANY_SIZE = ("flexible_mast", "com_offset", "motor_belt", "sensor_bandwidth")
 
 
 @pytest.fixture(scope="module")
@@ -57,3 +60,27 @@ def test_tires_that_soften_are_named_under_noise() -> None:
     assert found.effects[0].parameters["k3_N_m3"].value == pytest.approx(K3, rel=0.1)
     assert found.heldout.after < 0.75 * found.heldout.before
     assert np.isfinite(found.heldout.after)
+
+
+@pytest.mark.parametrize("scale", [Scale(0.064, 0.4), Scale(15.6, 2.5)])
+def test_a_search_begins_alike_on_robots_of_all_sizes(scale: Scale) -> None:
+    """Units grow with the robot, and with them where effects are looked for and how far they may go."""
+    found = []
+    for own in (Scale(), scale):
+        campaign = draw_decays("none", 5, None, 0.0, True, own).campaign
+        setup = set_up(campaign, campaign.parameters)
+        model = setup.model
+        point = model.as_known(np.zeros(len(model.unknowns)))
+        values, effects = model.split(point)
+        fit = evaluate(setup.fitted, model, point, [t.begin(values, effects) for t in setup.fitted])
+        asked = [e for e in candidates(fit, "rigid6") if e.id in OF_ANY_SIZE]
+        assert {e.id for e in asked} == set(OF_ANY_SIZE)
+        found.append((probes(fit, asked), {e.id: limits_of(fit, e) for e in asked}))
+    (ours, limits), (theirs, their_limits) = found
+    for (effect, at, _), (_, grown, _) in zip(ours, theirs, strict=True):
+        units = {p.name: p.unit for p in effect.parameters}
+        assert grown == pytest.approx({n: scale.factor(units[n]) * value for n, value in at.items()}, rel=0.02)
+        for name, (low, high) in limits[effect.id].items():
+            assert low <= at[name] <= high
+            own = scale.factor(units[name])
+            assert their_limits[effect.id][name] == pytest.approx((own * low, own * high), rel=0.02)

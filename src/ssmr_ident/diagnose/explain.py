@@ -10,6 +10,7 @@ import numpy as np
 from ssmr_ident.compare.recorded import nearest
 from ssmr_ident.diagnose.gathered import OFFSET, gathered
 from ssmr_ident.diagnose.scan import Suspect, smaller
+from ssmr_ident.diagnose.sizes import limits_of
 from ssmr_ident.identify.coordinates import Model
 from ssmr_ident.identify.descent import descend
 from ssmr_ident.identify.horizons import led
@@ -34,7 +35,9 @@ SAME = 0.01
 def with_suspect(fit: JointFit, suspect: Suspect, share: float = 1.0) -> tuple[Model, Array]:
     """The model with a suspect's effect, and a point of it at a share of the suspect's amplitude."""
     at = {name: value * (share if name in suspect.grown else 1.0) for name, value in suspect.at.items()}
-    model, begin = fit.model.with_effect(suspect.effect, at, suspect.sizes)
+    limits = limits_of(fit, CATALOGUE[suspect.effect])
+    at |= {name: float(np.clip(at[name], *ends)) for name, ends in limits.items() if name in at}
+    model, begin = fit.model.with_effect(suspect.effect, at, suspect.sizes, limits)
     held = {**model.held, suspect.effect: {**model.held[suspect.effect], **suspect.held}}
     return replace(model, held=held), np.concatenate([fit.point, begin])
 

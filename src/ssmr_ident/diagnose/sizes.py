@@ -10,6 +10,7 @@ import numpy as np
 from ssmr_ident.identify.joint import JointFit
 from ssmr_ident.identify.trials import Trial
 from ssmr_ident.identify.trials.trial import Array
+from ssmr_ident.physics.effect import Effect
 from ssmr_ident.physics.effects.sensor_saturation import ACCELERATIONS
 
 _SHOWS = {"position": 0, "angle": 0, "velocity": 1, "angular_rate": 1}
@@ -24,6 +25,8 @@ def sizes_of(fit: JointFit) -> dict[str, float]:
     """
     values, _ = fit.model.split(fit.point)
     moving = any(trial.channels != ("force",) for trial in fit.trials)
+    known = {**fit.trials[0].facts, **values}
+    mass, height = _mass(known), known.get("height_m", math.nan)
     duration = max(float(trial.times[-1] - trial.times[0]) for trial in fit.trials)
     load = max((float(np.ptp(t.target)) for t in fit.trials if t.channels == ("force",)), default=math.nan)
     stiffness = _stiffness(values)
@@ -37,7 +40,7 @@ def sizes_of(fit: JointFit) -> dict[str, float]:
             if acceleration > largest:
                 largest, omega = acceleration, rate
         deflection = largest / omega**2
-        stiffness = stiffness or _mass(values) * omega**2
+        stiffness = stiffness or mass * omega**2
         speed, time = deflection * omega, 1.0 / omega
         # where a spring that changes with deflection has changed most
         reach, slope = min(((d, k or stiffness) for d, k in far), key=lambda one: one[1] / one[0] ** 2)
@@ -52,6 +55,9 @@ def sizes_of(fit: JointFit) -> dict[str, float]:
         reach, slope = max((float(np.ptp(t.target)) / (wheels * k), k) for t, k in zip(fit.trials, slopes, strict=True))
     weight, beyond = _gravity(fit)
     return {
+        "mass": mass,
+        "height": height,
+        "swing": math.sqrt(mass / ((1.0 if math.isnan(height) else 4.0) * stiffness)),
         "weight": weight,
         "beyond_weight": beyond,
         "reading": largest if math.isnan(weight) else math.nan,
@@ -66,6 +72,14 @@ def sizes_of(fit: JointFit) -> dict[str, float]:
         "reach": reach,
         "slope": slope,
     }
+
+
+def limits_of(fit: JointFit, effect: Effect) -> dict[str, tuple[float, float]]:
+    """Between which values a fit of an effect stays in this session, SI, by parameter; none where a size is
+    not known."""
+    sizes = sizes_of(fit) if effect.limits else {}
+    found = {name: (low.value(sizes), high.value(sizes)) for name, (low, high) in effect.limits.items()}
+    return {name: ends for name, ends in found.items() if not np.isnan(ends).any()}
 
 
 def _swing(trial: Trial, simulated: Array) -> tuple[float, float, str]:
@@ -107,4 +121,4 @@ def _stiffness(values: Mapping[str, float]) -> float:
 
 
 def _mass(values: Mapping[str, float]) -> float:
-    return values.get("mass_kg") or values.get("inertia_kg_m2") or 1.0
+    return values.get("mass_kg") or values.get("inertia_kg_m2") or math.nan

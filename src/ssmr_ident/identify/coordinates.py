@@ -107,7 +107,13 @@ class Model:
         """Steps of one-sided differences, in scaled coordinates."""
         return np.array([min(1e-2, 1e-3 / u.spread) if u.logarithmic else 1e-2 for u in self.unknowns])
 
-    def with_effect(self, effect_id: str, at: Mapping[str, float], scales: Mapping[str, float]) -> tuple[Model, Array]:
+    def with_effect(
+        self,
+        effect_id: str,
+        at: Mapping[str, float],
+        scales: Mapping[str, float],
+        limits: Mapping[str, tuple[float, float]] | None = None,
+    ) -> tuple[Model, Array]:
         """A model with one effect more, and where its new coordinates begin.
 
         Parameters
@@ -118,6 +124,8 @@ class Model:
             others switch the effect on.
         scales : mapping of parameter to float
             Natural sizes of the parameters that may change sign.
+        limits : mapping of parameter to (float, float), optional
+            Narrower bounds than the parameter's own.
         """
         effect = CATALOGUE[effect_id]
         free, begin = [], []
@@ -134,7 +142,9 @@ class Model:
                 if signed
                 else Unknown(name, parameter.unit, value, None)
             )
-            free.append(EffectCoordinate(effect_id, parameter, unknown))
+            low, high = (limits or {}).get(parameter.name, (parameter.lower, parameter.upper))
+            within = replace(parameter, lower=max(low, parameter.lower), upper=min(high, parameter.upper))
+            free.append(EffectCoordinate(effect_id, within, unknown))
             begin.append(unknown.scaled(value))
         model = replace(self, free=(*self.free, *free), held={**self.held, effect_id: held})
         return model, np.array(begin)

@@ -63,6 +63,11 @@ class RobotBuilder:
         """One for all that ask for an equal robot."""
         return _BUILDERS.of(_by_value(nominal), lambda: RobotBuilder(nominal))
 
+    @property
+    def facts(self) -> dict[str, float]:
+        """How heavy and how tall the file's robot is, where a fit moves neither."""
+        return {"mass_kg": self.nominal.mass, HEIGHT: self.nominal.height}
+
     def read(self, values: Mapping[str, float]) -> tuple[Robot, np.ndarray]:
         """A robot whose axes read what they nominally do, and by what they differ from that, (3,); worked out once for
         each mapping, which all recordings of a fit ask for."""

@@ -50,8 +50,9 @@ class Sized:
         [m/s], ``duration`` [s], ``acceleration`` [m/s^2], ``load`` [N] (largest reading of a load cell), ``reach`` [m]
         and ``slope`` [N/m] (deflection and stiffness in the direction that goes farthest), ``weight`` and
         ``beyond_weight`` [m/s^2] (what an accelerometer reads of gravity at rest, and how far the largest reading goes
-        beyond it), ``reading`` [m/s^2] (``acceleration`` where no axis reads gravity), or a combination as in
-        ``force/deflection^3``.
+        beyond it), ``reading`` [m/s^2] (``acceleration`` where no axis reads gravity), ``mass`` [kg], ``height`` [m]
+        (of a robot's centre of mass over the floor), ``swing`` [s] (one radian of the mass on its springs, across the
+        robot), or a combination as in ``force/deflection^3``.
     above : str
         A size on which it stands.
     """
@@ -108,6 +109,9 @@ class Effect(Shown):
         where it begins there.
     holds : mapping of parameter to tuple of float
         Parameters that are not fitted but tried at each of these values.
+    limits : mapping of parameter to pair of Sized
+        Between which a fit stays, of what would do the work of something else beyond: a mast of a few grams that is
+        damped by half. A parameter's own bounds are those of any robot or rig.
     forms : tuple of mapping of parameter to float or Sized
         Formulas, each by what is fitted in it beside the amplitudes (where that begins) and what is held (plain
         numbers): tried once the effect leads.
@@ -140,6 +144,7 @@ class Effect(Shown):
     rig_probes: tuple[Mapping[str, float | Sized], ...] = ()
     sizes: Mapping[str, Sized] = field(default_factory=dict)
     holds: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
+    limits: Mapping[str, tuple[Sized, Sized]] = field(default_factory=dict)
     forms: tuple[Mapping[str, float | Sized], ...] = ()
     robot_forms: tuple[Mapping[str, float | Sized], ...] = ()
     grows: tuple[str, ...] = ()

@@ -221,7 +221,7 @@ def _trial(whole: BodyDecay, kept: int, facts: _Facts) -> Trial:
             LOW_PASS_HZ,
         ),
         None if counts.all() else counts,
-        {"clipped": float((~counts).sum())},
+        {"clipped": float((~counts).sum()), **builder.facts},
         ("cable.",),
         quiet=True,
         many=many,

@@ -13,6 +13,7 @@ from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.identify.decay_record import spread
 from ssmr_ident.identify.noise import AutoregressiveNoise
+from ssmr_ident.identify.robot_builder import RobotBuilder
 from ssmr_ident.identify.trials.machine import QUICK, force_model
 from ssmr_ident.identify.trials.moments import lets_go, tightening
 from ssmr_ident.identify.trials.teeth import find_teeth
@@ -143,7 +144,8 @@ def _trial(measurement: Measurement, parameters: ParameterSet, unseen: tuple[str
         return slacks[int(np.argmin(np.where(np.isfinite(misfits), misfits, np.inf)))]
 
     # a block alone has nothing to swing on
-    swings = measurement.entry.experiment == "pull" and "tire.stiffness_y_N_m" in parameters
+    robot = RobotBuilder.of(parameters).facts if "tire.stiffness_y_N_m" in parameters else {}
+    swings = measurement.entry.experiment == "pull" and bool(robot)
     noise = spread(averaged(measured)[:, 0] / share[:, 0]) if teeth is None else teeth.noise
     target = averaged(measured)
     trial = Trial(
@@ -161,7 +163,7 @@ def _trial(measurement: Measurement, parameters: ParameterSet, unseen: tuple[str
         np.array([size]),
         Course(start + elapsed, measured[:, None], whole, ("N",), None),
         counts,
-        {"travel_m": size, "teeth": 0.0 if teeth is None else float(teeth.count)},
+        {"travel_m": size, "teeth": 0.0 if teeth is None else float(teeth.count), **robot},
         (*BLIND[_kind(measurement.entry.experiment, teeth is not None)], *unseen),
         SMOOTH if teeth is None and _steady(parameters) else COARSE,
         searched=True,

@@ -76,7 +76,7 @@ class Trial:
     counts : (n, c) bool
         False for samples that say nothing (a converter at its end).
     facts : mapping of str to float
-        Numbers about the recording, and of a rig what its file says of it, where that is not fitted.
+        Numbers about the recording, and of a rig or robot what its file says of it, where that is not fitted.
     blind : tuple of str
         How names of parameters begin that this recording does not depend on.
     coarse : float

@@ -21,7 +21,7 @@ EFFECT = Effect(
     equation=r"K = \frac{K_{cable} K_0}{K_{cable} + K_0}",
     source="Thesis eq (3.9)",
     signature="all ramps of the pulls are flatter by the same added compliance, whatever the wheels that grip",
-    parameters=(Parameter("K_cable_N_m", "N/m", 5e4, 100.0, math.inf, "in series with the cable", off=math.inf),),
+    parameters=(Parameter("K_cable_N_m", "N/m", 5e4, 1.0, math.inf, "in series with the cable", off=math.inf),),
     experiments=("pull", "wheel_drag"),
     acts={Site.PULL: change},
     probes=(

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ssmr_ident.core.parameter import Parameter
-from ssmr_ident.physics.effect import Effect, Site
+from ssmr_ident.physics.effect import Effect, Site, Sized
 
 if TYPE_CHECKING:
     from ssmr_ident.physics.robot import Robot
@@ -28,10 +28,11 @@ EFFECT = Effect(
     source="Own formula: shift of the body frame's origin",
     signature="motions mix: roll into pitch and yaw; wheels are unevenly loaded",
     parameters=(
-        Parameter("offset_x_m", "m", 0.02, -0.15, 0.15, "forward", off=0.0),
-        Parameter("offset_y_m", "m", 0.02, -0.15, 0.15, "to the left", off=0.0),
+        Parameter("offset_x_m", "m", 0.02, -2.0, 2.0, "forward", off=0.0),
+        Parameter("offset_y_m", "m", 0.02, -2.0, 2.0, "to the left", off=0.0),
     ),
     experiments=("free_response", "swivel", "pull"),
     acts={Site.ROBOT: change},
-    probes=({"offset_x_m": 0.01, "offset_y_m": 0.01},),
+    limits=dict.fromkeys(("offset_x_m", "offset_y_m"), (Sized(-0.65, "height"), Sized(0.65, "height"))),
+    probes=({"offset_x_m": Sized(0.043, "height"), "offset_y_m": Sized(0.043, "height")},),
 )

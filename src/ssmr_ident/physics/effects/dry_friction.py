@@ -43,8 +43,8 @@ EFFECT = Effect(
     "Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30(7), 1994",
     signature="a decay falls along a straight line and stops dead; damping ratio grows as the amplitude falls",
     parameters=(
-        Parameter("F_c_N", "N", 1.0, 0.0, 200.0, "friction of one tire and axis, or of the rig", off=0.0),
-        Parameter("element_stiffness_N_m", "N/m", 3e5, 1e2, 1e8, "elastic travel before it slides"),
+        Parameter("F_c_N", "N", 1.0, 0.0, 1e6, "friction of one tire and axis, or of the rig", off=0.0),
+        Parameter("element_stiffness_N_m", "N/m", 3e5, 1e-3, 1e13, "elastic travel before it slides"),
         Parameter("slider", "1", 0.0, 0.0, 1.0, "1: a spring in series with a slider, 0: Dahl's law"),
         Parameter("rounding_m_s", "m/s", 0.0, 0.0, 10.0, "v_r: not 0: no elastic travel, F = F_c tanh(v/v_r)"),
     ),

@@ -30,7 +30,7 @@ EFFECT = Effect(
     source="Nayfeh and Mook, Nonlinear Oscillations, Wiley 1979, section 2.1 (piecewise linear springs)",
     signature="natural frequency falls as the amplitude comes down to the gap; a flat middle in the restoring force",
     parameters=(
-        Parameter("gap_m", "m", 2e-4, 0.0, 0.02, "full width", off=0.0),
+        Parameter("gap_m", "m", 2e-4, 0.0, 1.0, "full width", off=0.0),
         Parameter("rounding", "1", 0.1, 1e-3, 0.5, "share of the gap over which its corners are rounded"),
         Parameter("share_x", "1", 1.0, 0.0, 1.0, "gap along x as a share of that along y (robot)"),
     ),

@@ -73,7 +73,7 @@ EFFECT = Effect(
     signature="force-deflection loops whose area does not depend on speed; softening and damping up with amplitude",
     parameters=(
         Parameter("alpha", "1", 0.85, 0.0, 1.0, "share of the stiffness that is elastic", off=1.0),
-        Parameter("yield_m", "m", 4e-4, 1e-7, 0.1, "deflection at which the loop saturates"),
+        Parameter("yield_m", "m", 4e-4, 1e-10, 10.0, "deflection at which the loop saturates"),
         Parameter("exponent", "1", 2.0, 1.0, 8.0, "n: how sharply the loop yields"),
         Parameter("shape", "1", 0.5, -1.0, 1.0, "gamma: 1/2 unloads elastically, less stiffer; below -1/2 hardens"),
     ),

@@ -25,7 +25,7 @@ EFFECT = Effect(
     source="Own formula: linear drift",
     signature="a slope over time that does not depend on speed or travel",
     parameters=(
-        Parameter("zero_drift_N_s", "N/s", 0.5, -50.0, 50.0, "of the zero", off=0.0),
+        Parameter("zero_drift_N_s", "N/s", 0.5, -1e4, 1e4, "of the zero", off=0.0),
         Parameter("gain_drift_1_s", "1/s", 0.0, -0.1, 0.1, "of the gain", off=0.0),
     ),
     experiments=("pull", "wheel_drag", "vertical_compression"),

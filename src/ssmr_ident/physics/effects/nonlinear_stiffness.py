@@ -32,10 +32,10 @@ EFFECT = Effect(
     source="Thesis section 3.3; Kovacic and Brennan, The Duffing Equation, Wiley 2011",
     signature="natural frequency rises (hardening) or falls (softening) with amplitude; third harmonic",
     parameters=(
-        Parameter("k3_N_m3", "N/m^3", 5e8, -1e10, 1e11, "cubic stiffness of one spring", off=0.0),
+        Parameter("k3_N_m3", "N/m^3", 5e8, -1e18, 1e18, "cubic stiffness of one spring", off=0.0),
         Parameter("knee_share", "1", 0.0, -0.95, 20.0, "a: slope beyond the knee over K, less one", off=0.0),
-        Parameter("knee_m", "m", 5e-4, 1e-7, 10.0, "deflection at which the slope changes"),
-        Parameter("k3_share_1_m2", "1/m^2", 0.0, -1e7, 1e8, "b: cubic stiffness over K, alike on every axis", off=0.0),
+        Parameter("knee_m", "m", 5e-4, 1e-10, 10.0, "deflection at which the slope changes"),
+        Parameter("k3_share_1_m2", "1/m^2", 0.0, -1e14, 1e14, "b: cubic stiffness over K, on every axis", off=0.0),
     ),
     experiments=("free_response", "pull", "wheel_drag", "vertical_compression", "forced"),
     acts={Site.ELEMENT: force},

@@ -19,7 +19,7 @@ EFFECT = Effect(
     equation=r"F = D v + d_2 v |v|",
     source="Nayfeh and Mook, Nonlinear Oscillations, Wiley 1979, section 3.3",
     signature="damping ratio falls in proportion to the amplitude as a decay dies down",
-    parameters=(Parameter("d2_N_s2_m2", "N s^2/m^2", 500.0, 0.0, 1e5, "of one tire or damper", off=0.0),),
+    parameters=(Parameter("d2_N_s2_m2", "N s^2/m^2", 500.0, 0.0, 1e12, "of one tire or damper", off=0.0),),
     experiments=("free_response", "forced"),
     acts={Site.ELEMENT: force},
     rig=True,

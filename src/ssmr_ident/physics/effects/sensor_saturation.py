@@ -33,8 +33,8 @@ EFFECT = Effect(
     source="Data sheet SCA620 (±1.7 g); thesis.md section 7.8",
     signature="flat tops at one and the same level",
     parameters=(
-        Parameter("range_m_s2", "m/s^2", 12.0, 0.1, math.inf, "of the accelerometers", off=math.inf),
-        Parameter("range_N", "N", 150.0, 0.1, math.inf, "of the load cell", off=math.inf),
+        Parameter("range_m_s2", "m/s^2", 12.0, 1e-4, math.inf, "of the accelerometers", off=math.inf),
+        Parameter("range_N", "N", 150.0, 1e-4, math.inf, "of the load cell", off=math.inf),
     ),
     experiments=("free_response", "pull", "wheel_drag", "vertical_compression", "swivel", "straight", "forced"),
     acts={Site.OUTPUT: change},

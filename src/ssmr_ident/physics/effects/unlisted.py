@@ -114,12 +114,12 @@ EFFECT = Effect(
     signature="the force left over is ordered by displacement and velocity, and no listed law follows it",
     parameters=(
         *(
-            Parameter(name, unit, 0.0, -1e12, 1e12, f"of {term}", off=0.0)
+            Parameter(name, unit, 0.0, -1e18, 1e18, f"of {term}", off=0.0)
             for (name, term), unit in zip(TERMS.items(), _UNITS, strict=True)
         ),
-        Parameter("pulse_Hz", "Hz", 1.0, 1e-3, 1e3, "of the stiffness that goes up and down"),
+        Parameter("pulse_Hz", "Hz", 1.0, 1e-4, 1e5, "of the stiffness that goes up and down"),
         Parameter("rider_share", "1", 0.0, 0.0, 0.9, "of a rig's mass, on a spring of its own", off=0.0),
-        Parameter("rider_Hz", "Hz", 10.0, 1e-2, 1e4, "its frequency where the rest is held"),
+        Parameter("rider_Hz", "Hz", 10.0, 1e-3, 1e5, "its frequency where the rest is held"),
         Parameter(
             "rider_ratio",
             "1",
@@ -128,7 +128,7 @@ EFFECT = Effect(
             0.1,
             "its damping ratio; with more it is as relaxation",
         ),
-        Parameter("place_m", "m", 0.0, -1.0, 1.0, "where |s - place| bends"),
+        Parameter("place_m", "m", 0.0, -100.0, 100.0, "where |s - place| bends"),
     ),
     experiments=("free_response", "forced"),
     acts={Site.ELEMENT: force},

@@ -28,8 +28,8 @@ EFFECT = Effect(
     source="J. C. Maxwell, Phil. Trans. R. Soc. 157, 1867; W. N. Findley, Creep and Relaxation, Dover 1989, chapter 5",
     signature="ramps steeper at higher speed; the force sags while the head stands still",
     parameters=(
-        Parameter("K_m_N_m", "N/m", 5e3, 0.0, 1e6, "of the branch, lateral; along x and z in the ratio of K", off=0.0),
-        Parameter("tau_s", "s", 0.5, 1e-4, 1e3, "time constant of the branch"),
+        Parameter("K_m_N_m", "N/m", 5e3, 0.0, 1e12, "of the branch, lateral; along x and z in the ratio of K", off=0.0),
+        Parameter("tau_s", "s", 0.5, 1e-6, 1e5, "time constant of the branch"),
     ),
     experiments=("free_response", "pull", "wheel_drag", "vertical_compression", "forced"),
     acts={Site.ELEMENT: force, Site.STATE: advance},
