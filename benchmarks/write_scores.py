@@ -22,6 +22,7 @@ from pathlib import Path
 import bench_nulls
 import bench_peers
 import bench_power
+import bench_scale
 from scoring import Row, read, summary, table
 
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "theory" / "diagnosis_scores.md"
@@ -115,6 +116,14 @@ def page(folder: Path) -> str:
         "other hundreds, as far as they were run, as the engine of their day answered.\n",
         _fresh,
         dated=False,
+    )
+    section(
+        "Robots of other sizes",
+        "scale.jsonl",
+        "`bench_scale.py`: the same sessions of decays asked of the robot as it is drawn, of one of 2 kg and 0.4 times "
+        "the length, and of one of 470 kg and 2.5 times the length, which read the same over the square root of that "
+        "time; noise and mains are the sensor's, so what is near the noise may differ.\n",
+        lambda rows: block(bench_scale.summary(rows)),
     )
     section(
         "False alarms",

@@ -27,6 +27,19 @@ def test_a_log_that_goes_beyond_the_supply_has_another(highest: float, ends: boo
     assert at_rails(Channel("az", volts, "V")) == (highest > 4.9)
 
 
+@pytest.mark.parametrize("bits", [8, 10, 12, 16])
+def test_the_last_code_of_any_converter_is_at_the_end(bits: int) -> None:
+    step = 5.0 / 2**bits
+    swing = 2.6 + 2.6 * np.sin(np.linspace(0.0, 6.0 * np.pi, 3000))
+    volts = np.clip(np.round(swing / step), 0, 2**bits - 1) * step
+    last, first = np.sum(volts == volts.max()), np.sum(volts == 0.0)
+    assert last > 100
+    low, high = ends_of_supply(volts)
+    assert np.sum(volts >= high) == last if bits <= 12 else np.sum(volts >= high) >= last
+    assert np.sum(volts <= low) >= first > 0
+    assert at_rails(Channel("az", volts, "V")) >= last
+
+
 def test_a_log_with_gaps_or_of_gaps_alone_has_the_sensors_supply() -> None:
     for volts in (np.array([2.6, np.nan, 3.1]), np.full(3, np.nan)):
         low, high = ends_of_supply(volts)

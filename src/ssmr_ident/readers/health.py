@@ -14,6 +14,7 @@ from ssmr_ident.core.shown import Shown
 # whatever reads its volts.
 VOLTS_LOW, VOLTS_HIGH = 0.1, 5.0
 RAIL_TOLERANCE = 1.25e-3  # V: the last code of a 12-bit card over 5 V stands 1.22 mV below them
+COARSEST = 0.02  # V, the step of an 8-bit card; values of a log that are farther apart tell no step
 _SATURATED = 50  # equal samples at the largest value, see ``saturated``
 _AMPLIFIED = ("N", "N m", "m/s^2", "Pa", "V")
 AXES = ("ax", "ay", "az")
@@ -123,8 +124,9 @@ def at_rails(channel: Channel) -> int:
     if channel.unit != "V" or channel.name not in AXES:
         return 0
     samples = channel.samples[np.isfinite(channel.samples)]
-    low = samples <= VOLTS_LOW + RAIL_TOLERANCE
-    high = samples >= VOLTS_HIGH - RAIL_TOLERANCE
+    within = _tolerance(samples)
+    low = samples <= VOLTS_LOW + within
+    high = samples >= VOLTS_HIGH - within
     return int(low.sum() + high.sum())
 
 
@@ -139,7 +141,15 @@ def ends_of_supply(volts: np.ndarray) -> tuple[float, float]:
     """
     if np.any(volts < 0.0) or np.any(volts > VOLTS_HIGH):
         return -np.inf, np.inf
-    return RAIL_TOLERANCE, VOLTS_HIGH - RAIL_TOLERANCE
+    within = _tolerance(volts)
+    return within, VOLTS_HIGH - within
+
+
+def _tolerance(volts: np.ndarray) -> float:
+    """How far from an end a converter's last code may stand: its step, as the log's own values tell it [V]."""
+    steps = np.diff(np.unique(volts[np.isfinite(volts)]))
+    step = float(steps.min(initial=np.inf))
+    return max(RAIL_TOLERANCE, 1.02 * step) if step <= COARSEST else RAIL_TOLERANCE
 
 
 def saturated(samples: np.ndarray) -> int:
