@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from bank import FAMILIES, mixed
+from bank import FAMILIES, draw, mixed
 from bank.decays import draw_decays
 from bank.scaled import Scale
 
@@ -13,6 +13,7 @@ from ssmr_ident.diagnose.scan import candidates, probes, scan
 from ssmr_ident.diagnose.setup import set_up
 from ssmr_ident.diagnose.sizes import limits_of, sizes_of
 from ssmr_ident.identify.joint import JointFit, differentiate, evaluate
+from ssmr_ident.physics.effects import CATALOGUE
 from ssmr_ident.pipeline.diagnose import diagnose
 
 SEED, K3 = 6264, -4.222e7
@@ -84,3 +85,17 @@ def test_a_search_begins_alike_on_robots_of_all_sizes(scale: Scale) -> None:
             assert low <= at[name] <= high
             own = scale.factor(units[name])
             assert their_limits[effect.id][name] == pytest.approx((own * low, own * high), rel=0.02)
+
+
+def test_a_cable_stretches_by_no_more_than_the_head_goes() -> None:
+    """On a bench a wheel is pressed as well, which rises far more steeply than any cable lets a drag rise."""
+    drawn = draw("bench", "one", 3, "cable_compliance", 1.0, short=True)
+    setup = set_up(drawn.campaign, drawn.campaign.parameters)
+    point = setup.model.as_known(np.zeros(len(setup.model.unknowns)))
+    values, effects = setup.model.split(point)
+    fit = evaluate(setup.fitted, setup.model, point, [t.begin(values, effects) for t in setup.fitted])
+    assert any(trial.experiment == "vertical_compression" for trial in fit.trials)
+    low, high = limits_of(fit, CATALOGUE["cable_compliance"])["K_cable_N_m"]
+    rises = [np.ptp(t.target) / t.facts["travel_m"] for t in fit.trials if t.experiment != "vertical_compression"]
+    assert low == pytest.approx(0.8 * max(rises))
+    assert low < drawn.truth.effects["cable_compliance"]["K_cable_N_m"] < high == np.inf

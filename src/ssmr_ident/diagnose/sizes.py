@@ -28,7 +28,9 @@ def sizes_of(fit: JointFit) -> dict[str, float]:
     known = {**fit.trials[0].facts, **values}
     mass, height = _mass(known), known.get("height_m", math.nan)
     duration = max(float(trial.times[-1] - trial.times[0]) for trial in fit.trials)
-    load = max((float(np.ptp(t.target)) for t in fit.trials if t.channels == ("force",)), default=math.nan)
+    loads = [(float(np.ptp(trial.target)), trial) for trial in fit.trials if trial.channels == ("force",)]
+    load = max((force for force, _ in loads), default=math.nan)
+    rises = [force / t.facts["travel_m"] for force, t in loads if t.experiment != "vertical_compression"]
     stiffness = _stiffness(values)
     if moving:
         largest, omega, far = 0.0, 0.0, []
@@ -69,6 +71,7 @@ def sizes_of(fit: JointFit) -> dict[str, float]:
         "duration": duration,
         "acceleration": largest,
         "load": load,
+        "rise": max(rises, default=math.nan),
         "reach": reach,
         "slope": slope,
     }

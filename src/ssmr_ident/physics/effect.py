@@ -47,7 +47,8 @@ class Sized:
     share : float
     of : str
         ``deflection`` [m], ``stiffness`` [N/m], ``force`` [N], ``time`` [s] (one radian of the motion), ``speed``
-        [m/s], ``duration`` [s], ``acceleration`` [m/s^2], ``load`` [N] (largest reading of a load cell), ``reach`` [m]
+        [m/s], ``duration`` [s], ``acceleration`` [m/s^2], ``load`` [N] (largest reading of a load cell), ``rise``
+        [N/m] (the most that a pull reads over how far it goes), ``reach`` [m]
         and ``slope`` [N/m] (deflection and stiffness in the direction that goes farthest), ``weight`` and
         ``beyond_weight`` [m/s^2] (what an accelerometer reads of gravity at rest, and how far the largest reading goes
         beyond it), ``reading`` [m/s^2] (``acceleration`` where no axis reads gravity), ``mass`` [kg], ``height`` [m]

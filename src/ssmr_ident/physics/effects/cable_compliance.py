@@ -24,6 +24,8 @@ EFFECT = Effect(
     parameters=(Parameter("K_cable_N_m", "N/m", 5e4, 1.0, math.inf, "in series with the cable", off=math.inf),),
     experiments=("pull", "wheel_drag"),
     acts={Site.PULL: change},
+    # it stretches by no more than the head goes
+    limits={"K_cable_N_m": (Sized(0.8, "rise"), Sized(math.inf, "stiffness"))},
     probes=(
         {"K_cable_N_m": Sized(2.0, "stiffness")},
         {"K_cable_N_m": Sized(10.0, "stiffness")},
