@@ -103,7 +103,8 @@ def page(folder: Path) -> str:
         "Practice sessions",
         "practice.jsonl",
         "Held-out errors are those of `compare` on the further recordings that each session has in a folder of its "
-        "own, which the diagnosis never sees (`score_practice.py`). That of 14, a pull with stick-slip, is worse after "
+        "own, which the diagnosis never sees (`score_practice.py`). Seconds were measured while other runs shared the "
+        "processors; times that are promised stand under Cost. The error of 14, a pull with stick-slip, is worse after "
         "than before: with the true robot and the true law 18.1 % are left there, against 17.8 of a refitted "
         "baseline that stays between the teeth, which come at other times in every run.\n",
         lambda rows: table(rows) + "\n\n" + block(summary(rows)),
