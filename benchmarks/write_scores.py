@@ -191,7 +191,8 @@ residual (whiteness, independence of the input, 1 %). *PySINDy* regresses what m
 force on a library of fourteen terms with its default optimiser (STLSQ, threshold 0.1 of the residual's spread);
 motions that were not measured are integrated or differentiated within 4 to 35 Hz. *mujoco.sysid* fits the same rig as
 a sliding joint and its claims are the warnings of its own report. The first cannot name anything, and coloured noise
-or mains make its residual coloured as well; the last warns only of parameters at their bounds.
+or mains make its residual coloured as well; the last warns only of parameters at their bounds. *diagnosis* is
+`ident diagnose` on the same sessions.
 """
 
 
