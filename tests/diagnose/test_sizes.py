@@ -99,3 +99,16 @@ def test_a_cable_stretches_by_no_more_than_the_head_goes() -> None:
     rises = [np.ptp(t.target) / t.facts["travel_m"] for t in fit.trials if t.experiment != "vertical_compression"]
     assert low == pytest.approx(0.8 * max(rises))
     assert low < drawn.truth.effects["cable_compliance"]["K_cable_N_m"] < high == np.inf
+
+
+def test_a_mast_on_a_robot_of_two_kilograms_is_named() -> None:
+    """Its numbers are those of the mast on the robot of thirty, by similarity."""
+    small = Scale(0.064, 0.4)
+    drawn = draw_decays("one", 502, "flexible_mast", 0.6, True, small)
+    found = diagnose(drawn.campaign)
+    assert [effect.id for effect in found.effects] == ["flexible_mast"]
+    assert found.heldout.after < 0.3 * found.heldout.before
+    values, truth = found.effects[0].parameters, drawn.truth.effects["flexible_mast"]
+    assert values["f_mast_Hz"].value == pytest.approx(truth["f_mast_Hz"] * small.factor("Hz"), rel=0.03)
+    assert values["mass_kg"].value == pytest.approx(truth["mass_kg"] * small.factor("kg"), rel=0.15)
+    assert values["height_above_com_m"].value == pytest.approx(truth["height_above_com_m"] * small.length, rel=0.15)
