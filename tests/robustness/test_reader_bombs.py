@@ -12,9 +12,10 @@ import pytest
 
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.recording import Channel, Provenance, Recording
-from ssmr_ident.readers import read, zip_safety
-from ssmr_ident.readers.sheet_corner import LONG, corner_of
+from ssmr_ident.readers import read
 from ssmr_ident.readers.writers import write_labview_xlsx
+from ssmr_ident.readers.xlsx import zip_safety
+from ssmr_ident.readers.xlsx.sheet_corner import LONG, corner_of
 
 
 @pytest.fixture

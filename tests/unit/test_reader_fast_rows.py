@@ -9,10 +9,10 @@ import pandas as pd
 import pytest
 
 from ssmr_ident.readers import read_one
-from ssmr_ident.readers.fast_rows import count_lines, parse_rows
-from ssmr_ident.readers.numbers import Dialect
-from ssmr_ident.readers.numeric_run import NumberRun, TextRow, compiled_rows, walk
-from ssmr_ident.readers.text import Text
+from ssmr_ident.readers.text.encoding import Text
+from ssmr_ident.readers.text.fast_rows import count_lines, parse_rows
+from ssmr_ident.readers.text.numbers import Dialect
+from ssmr_ident.readers.text.numeric_run import NumberRun, TextRow, compiled_rows, walk
 
 
 def rows_of(text: str, width: int, delimiter: str = ",", decimal: str = ".") -> tuple[np.ndarray, str]:

@@ -9,7 +9,7 @@ import pytest
 from scipy.stats import chi2
 
 from ssmr_ident.readers import ReadOptions, read
-from ssmr_ident.readers.lvm_packets import _fisher, rounded_step
+from ssmr_ident.readers.lvm.packets import _fisher, rounded_step
 
 HEADER = (
     "LabVIEW Measurement\t\nWriter_Version\t2\nSeparator\tTab\nDecimal_Separator\t.\nMulti_Headings\tNo\n"

@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.units import QUANTITY_OF_UNIT, find_unit, to_si
 from ssmr_ident.readers import ReadOptions, read_one
-from ssmr_ident.readers.headings import is_units_row, quantity_of, split_header
-from ssmr_ident.readers.numbers import clock, dated, evidence_for_decimal, number
+from ssmr_ident.readers.table.headings import is_units_row, quantity_of, split_header
+from ssmr_ident.readers.text.numbers import clock, dated, evidence_for_decimal, number
 
 
 @pytest.mark.parametrize(

@@ -7,9 +7,13 @@ from types import ModuleType
 
 from ssmr_ident.core.errors import InputError, did_you_mean
 from ssmr_ident.core.recording import Recording
-from ssmr_ident.readers import delimited, labview_xlsx, lvm, mtwdata, tdms
+from ssmr_ident.readers.admet import mtwdata
+from ssmr_ident.readers.lvm import reader as lvm
 from ssmr_ident.readers.options import ReadOptions
 from ssmr_ident.readers.source import Source, open_source
+from ssmr_ident.readers.tdms import reader as tdms
+from ssmr_ident.readers.text import delimited
+from ssmr_ident.readers.xlsx import labview_xlsx
 
 # Asked in this order; the last takes any text.
 FORMATS: tuple[ModuleType, ...] = (labview_xlsx, lvm, tdms, mtwdata, delimited)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from ssmr_ident.core.errors import did_you_mean
 from ssmr_ident.readers.options import ReadOptions
 from ssmr_ident.readers.source import Source
-from ssmr_ident.readers.workbook import Sheet
+from ssmr_ident.readers.xlsx.workbook import Sheet
 
 # xlsread(file, 4 - i): Excel puts a new sheet before the active one, so x, written first, ends up last
 BY_POSITION = ("z", "y", "x")

@@ -9,8 +9,8 @@ from typing import Any
 from python_calamine import CalamineError, CalamineWorkbook, SheetTypeEnum, SheetVisibleEnum
 
 from ssmr_ident.core.errors import InputError
-from ssmr_ident.readers import zip_safety
 from ssmr_ident.readers.source import Source
+from ssmr_ident.readers.xlsx import zip_safety
 
 
 @dataclass

@@ -10,17 +10,17 @@ from __future__ import annotations
 import numpy as np
 
 from ssmr_ident.core.recording import Note, Recording
-from ssmr_ident.readers import clocks
-from ssmr_ident.readers.assemble import recordings_of
-from ssmr_ident.readers.blocks import Block, blocks_of
-from ssmr_ident.readers.dialect import sniff
-from ssmr_ident.readers.headings import quantity_of, split_header
-from ssmr_ident.readers.last_line import without_cut_line
-from ssmr_ident.readers.numeric_run import TextRow, walk
 from ssmr_ident.readers.options import ReadOptions
 from ssmr_ident.readers.source import Source
-from ssmr_ident.readers.table import Column, Table, facts
-from ssmr_ident.readers.text import text_of
+from ssmr_ident.readers.table import clocks
+from ssmr_ident.readers.table.assemble import recordings_of
+from ssmr_ident.readers.table.columns import Column, Table, facts
+from ssmr_ident.readers.table.headings import quantity_of, split_header
+from ssmr_ident.readers.text.blocks import Block, blocks_of
+from ssmr_ident.readers.text.dialect import sniff
+from ssmr_ident.readers.text.encoding import text_of
+from ssmr_ident.readers.text.last_line import without_cut_line
+from ssmr_ident.readers.text.numeric_run import TextRow, walk
 
 NAMES = ("csv", "mtestquattro")
 _DAQ_RANGE = 10.0  # V, the widest input range of NI's data-acquisition cards

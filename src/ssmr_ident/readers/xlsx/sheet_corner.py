@@ -26,7 +26,7 @@ def corner_of(data: bytes) -> tuple[int, int]:
         For an encoding that is not known.
     """
     if len(data) > LONG:
-        from ssmr_ident.readers.sheet_scan import scan  # only long sheets are worth waiting for the compiler
+        from ssmr_ident.readers.xlsx.sheet_scan import scan  # only long sheets are worth waiting for the compiler
 
         plain, rows, columns = scan(np.frombuffer(data, dtype=np.uint8))
         if plain:

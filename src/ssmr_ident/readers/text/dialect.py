@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from ssmr_ident.readers.numbers import Dialect, clock, dated, evidence_for_decimal, number
 from ssmr_ident.readers.options import ReadOptions
 from ssmr_ident.readers.source import Source
-from ssmr_ident.readers.text import Text
+from ssmr_ident.readers.text.encoding import Text
+from ssmr_ident.readers.text.numbers import Dialect, clock, dated, evidence_for_decimal, number
 
 # In the order of preference among equals: a tab or a semicolon is never part of a number
 _CANDIDATES = [

@@ -10,13 +10,13 @@ import numpy as np
 from ssmr_ident.core.errors import did_you_mean
 from ssmr_ident.core.recording import Channel, Note, Recording
 from ssmr_ident.core.units import find_unit
-from ssmr_ident.readers import time_axis
-from ssmr_ident.readers.channels import apply_units, channels_of
-from ssmr_ident.readers.headings import quantity_of
 from ssmr_ident.readers.health import warnings_of
 from ssmr_ident.readers.options import ReadOptions
 from ssmr_ident.readers.source import Source
-from ssmr_ident.readers.table import Column, Table, all_finite
+from ssmr_ident.readers.table import time_axis
+from ssmr_ident.readers.table.channels import apply_units, channels_of
+from ssmr_ident.readers.table.columns import Column, Table, all_finite
+from ssmr_ident.readers.table.headings import quantity_of
 
 
 def recordings_of(source: Source, reader: str, table: Table, options: ReadOptions) -> list[Recording]:

@@ -15,7 +15,7 @@ import math
 import numpy as np
 
 from ssmr_ident.core.recording import Note
-from ssmr_ident.readers.table import Column
+from ssmr_ident.readers.table.columns import Column
 
 _NEIGHBOURS = 500  # steps on each side; p of the largest is 1/1001 then
 _LEVEL = 0.01

@@ -7,10 +7,10 @@ import numpy as np
 from ssmr_ident.core.errors import did_you_mean
 from ssmr_ident.core.recording import Channel, Note
 from ssmr_ident.core.units import QUANTITY_OF_UNIT, find_unit
-from ssmr_ident.readers.headings import quantity_of
 from ssmr_ident.readers.options import ReadOptions
 from ssmr_ident.readers.source import Source
-from ssmr_ident.readers.table import Column, Table
+from ssmr_ident.readers.table.columns import Column, Table
+from ssmr_ident.readers.table.headings import quantity_of
 
 SI_UNIT = {quantity: unit for unit, quantity in QUANTITY_OF_UNIT.items()}
 SI_UNIT |= {"ax": "m/s^2", "ay": "m/s^2", "az": "m/s^2", "wx": "rad/s", "wy": "rad/s", "wz": "rad/s"}

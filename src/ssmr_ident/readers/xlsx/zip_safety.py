@@ -10,8 +10,8 @@ import io
 import zipfile
 import zlib
 
-from ssmr_ident.readers.sheet_corner import corner_of
 from ssmr_ident.readers.source import Source
+from ssmr_ident.readers.xlsx.sheet_corner import corner_of
 
 MAX_UNPACKED = 150 * 2**20  # bytes of XML; three axes of 20 s at 1 kHz are 4 MB
 MAX_CELLS = 6_000_000  # cells of a sheet from A1 to its last corner; a parser holds about 50 bytes for each

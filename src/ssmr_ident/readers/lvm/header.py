@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, field
 
-from ssmr_ident.readers.numbers import Dialect
 from ssmr_ident.readers.source import Source
-from ssmr_ident.readers.text import Text
+from ssmr_ident.readers.text.encoding import Text
+from ssmr_ident.readers.text.numbers import Dialect
 
 MAGIC = "LabVIEW Measurement"
 END = "***End_of_Header***"

@@ -11,11 +11,11 @@ from xml.parsers import expat
 import numpy as np
 
 from ssmr_ident.core.recording import Note, Recording
-from ssmr_ident.readers.assemble import recordings_of
-from ssmr_ident.readers.numbers import number
 from ssmr_ident.readers.options import ReadOptions
 from ssmr_ident.readers.source import Source
-from ssmr_ident.readers.table import Column, Table
+from ssmr_ident.readers.table.assemble import recordings_of
+from ssmr_ident.readers.table.columns import Column, Table
+from ssmr_ident.readers.text.numbers import number
 
 NAMES = ("mtestquattro",)
 MAX_XML = 100 * 2**20  # bytes

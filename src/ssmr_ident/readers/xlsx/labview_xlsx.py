@@ -8,16 +8,16 @@ import numpy as np
 
 from ssmr_ident.core.recording import Channel, Note, Recording
 from ssmr_ident.core.units import find_unit
-from ssmr_ident.readers import time_axis
-from ssmr_ident.readers.assemble import recordings_of
-from ssmr_ident.readers.headings import split_header
 from ssmr_ident.readers.health import warnings_of
 from ssmr_ident.readers.options import ReadOptions
-from ssmr_ident.readers.sheet_axes import axes_of, is_filled
-from ssmr_ident.readers.sheet_numbers import SheetNumbers, numbers_of
 from ssmr_ident.readers.source import Source
-from ssmr_ident.readers.table import Column, Table
-from ssmr_ident.readers.workbook import Sheet, open_sheets, what_is_in
+from ssmr_ident.readers.table import time_axis
+from ssmr_ident.readers.table.assemble import recordings_of
+from ssmr_ident.readers.table.columns import Column, Table
+from ssmr_ident.readers.table.headings import split_header
+from ssmr_ident.readers.xlsx.sheet_axes import axes_of, is_filled
+from ssmr_ident.readers.xlsx.sheet_numbers import SheetNumbers, numbers_of
+from ssmr_ident.readers.xlsx.workbook import Sheet, open_sheets, what_is_in
 
 NAMES = ("labview-xlsx",)
 _SUPPLY = (0.0, 5.0)  # V, the sensor's supply; it cannot leave it

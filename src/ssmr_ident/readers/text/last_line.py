@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 
 from ssmr_ident.readers.source import Source
-from ssmr_ident.readers.text import Text
+from ssmr_ident.readers.text.encoding import Text
 
 _LINES_ABOVE = 20
 _SHAPE = re.compile(r'"?[+-]?\d*(?:[.,](\d*))?(?:[eEdD][+-]?(\d+))?"?\Z', re.ASCII)

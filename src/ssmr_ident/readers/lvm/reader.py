@@ -5,17 +5,18 @@ from __future__ import annotations
 import numpy as np
 
 from ssmr_ident.core.recording import Note, Recording
-from ssmr_ident.readers import clocks, lvm_packets
-from ssmr_ident.readers.assemble import recordings_of
-from ssmr_ident.readers.headings import split_header
-from ssmr_ident.readers.last_line import without_cut_line
-from ssmr_ident.readers.lvm_data import Rows, read_rows
-from ssmr_ident.readers.lvm_header import MAGIC, Header, Lines, is_segment_start, read_header, separator_of
-from ssmr_ident.readers.numbers import Dialect, evidence_for_decimal, number
+from ssmr_ident.readers.lvm import packets
+from ssmr_ident.readers.lvm.header import MAGIC, Header, Lines, is_segment_start, read_header, separator_of
+from ssmr_ident.readers.lvm.rows import Rows, read_rows
 from ssmr_ident.readers.options import ReadOptions
 from ssmr_ident.readers.source import Source
-from ssmr_ident.readers.table import Column, Table, at_lines, facts
-from ssmr_ident.readers.text import Text, text_of
+from ssmr_ident.readers.table import clocks
+from ssmr_ident.readers.table.assemble import recordings_of
+from ssmr_ident.readers.table.columns import Column, Table, at_lines, facts
+from ssmr_ident.readers.table.headings import split_header
+from ssmr_ident.readers.text.encoding import Text, text_of
+from ssmr_ident.readers.text.last_line import without_cut_line
+from ssmr_ident.readers.text.numbers import Dialect, evidence_for_decimal, number
 
 NAMES = ("lvm",)
 _SEPARATORS = {"tab": "\t", "comma": ",", "semicolon": ";"}
@@ -179,7 +180,7 @@ def _recordings_of_segment(
     samples = max(declared, default=0)
     pieces = [slice(0, len(rows.values))]
     if not times:
-        pieces, more = lvm_packets.split(columns, samples, options.fs or _rate(source, header, decimal))
+        pieces, more = packets.split(columns, samples, options.fs or _rate(source, header, decimal))
         notes += more
     if samples and samples != len(rows.values) and len(pieces) == 1:
         notes.append(
@@ -265,7 +266,7 @@ def _computed_time(
     if step <= 0:
         raise source.error("has no X column and no Delta_X above zero", "Give --fs.")
     notes.append(Note("info", f"time from X0 and Delta_X: {1 / step:.6g} Hz"))
-    note = lvm_packets.rounded_step(header.first("Delta_X"), step)
+    note = packets.rounded_step(header.first("Delta_X"), step)
     if note is not None:
         notes.append(note)
     return Column("X_Value", "s", begin + np.arange(count) * step, quantity="time")

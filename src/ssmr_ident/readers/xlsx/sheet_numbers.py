@@ -17,11 +17,11 @@ from typing import Any
 import numpy as np
 
 from ssmr_ident.core.recording import Note
-from ssmr_ident.readers.headings import quantity_of, split_header
-from ssmr_ident.readers.numbers import evidence_for_decimal, number
 from ssmr_ident.readers.options import ReadOptions
 from ssmr_ident.readers.source import Source
-from ssmr_ident.readers.workbook import Sheet, letter, what_is_in
+from ssmr_ident.readers.table.headings import quantity_of, split_header
+from ssmr_ident.readers.text.numbers import evidence_for_decimal, number
+from ssmr_ident.readers.xlsx.workbook import Sheet, letter, what_is_in
 
 _THESIS_SKIP = 10
 

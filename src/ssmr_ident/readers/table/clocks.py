@@ -6,11 +6,11 @@ import numpy as np
 
 from ssmr_ident.core.recording import Note
 from ssmr_ident.core.units import find_unit
-from ssmr_ident.readers.channels import apply_units
-from ssmr_ident.readers.headings import quantity_of
 from ssmr_ident.readers.options import ReadOptions
 from ssmr_ident.readers.source import Source
-from ssmr_ident.readers.table import Column, Table
+from ssmr_ident.readers.table.channels import apply_units
+from ssmr_ident.readers.table.columns import Column, Table
+from ssmr_ident.readers.table.headings import quantity_of
 
 
 def onto_one_clock(source: Source, table: Table, options: ReadOptions) -> None:

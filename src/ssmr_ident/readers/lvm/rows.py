@@ -7,12 +7,12 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ssmr_ident.core.recording import Note
-from ssmr_ident.readers.dialect import value_of
-from ssmr_ident.readers.lvm_header import MAGIC, Lines, is_segment_start
-from ssmr_ident.readers.numbers import Dialect
-from ssmr_ident.readers.numeric_run import LONG, compiled_rows
+from ssmr_ident.readers.lvm.header import MAGIC, Lines, is_segment_start
 from ssmr_ident.readers.options import ReadOptions
 from ssmr_ident.readers.source import Source
+from ssmr_ident.readers.text.dialect import value_of
+from ssmr_ident.readers.text.numbers import Dialect
+from ssmr_ident.readers.text.numeric_run import LONG, compiled_rows
 
 
 @dataclass

@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 
 from ssmr_ident.core.recording import Note, Recording
-from ssmr_ident.readers.assemble import recordings_of
-from ssmr_ident.readers.headings import quantity_of, split_header
 from ssmr_ident.readers.options import ReadOptions
 from ssmr_ident.readers.source import Source
-from ssmr_ident.readers.table import Column, Table, facts
+from ssmr_ident.readers.table.assemble import recordings_of
+from ssmr_ident.readers.table.columns import Column, Table, facts
+from ssmr_ident.readers.table.headings import quantity_of, split_header
 
 NAMES = ("tdms",)
 

@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ssmr_ident.readers.headings import bare_unit, is_units_row, quantity_of, split_header
-from ssmr_ident.readers.numeric_run import NumberRun, TextRow
 from ssmr_ident.readers.source import Source
+from ssmr_ident.readers.table.headings import bare_unit, is_units_row, quantity_of, split_header
+from ssmr_ident.readers.text.numeric_run import NumberRun, TextRow
 
 _RESULT_WORDS = (
     "mean",

@@ -13,9 +13,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ssmr_ident.readers.dialect import LONGEST_LINE, is_number_row, value_of
-from ssmr_ident.readers.numbers import Dialect
-from ssmr_ident.readers.text import Text
+from ssmr_ident.readers.text.dialect import LONGEST_LINE, is_number_row, value_of
+from ssmr_ident.readers.text.encoding import Text
+from ssmr_ident.readers.text.numbers import Dialect
 
 LONG = 200_000  # bytes from which on compiling pays
 VERY_LONG = 4_000_000  # bytes from which on a second thread pays
@@ -139,7 +139,7 @@ def _run(text: Text, dialect: Dialect, position: int, line_number: int, width: i
 
 def compiled_rows(data: bytes, position: int, dialect: Dialect, width: int) -> tuple[np.ndarray, int]:
     """Rows of plain numbers from a byte on, (n, width) with contiguous columns, and the byte where they end."""
-    from ssmr_ident.readers.fast_rows import parse_rows
+    from ssmr_ident.readers.text.fast_rows import parse_rows
 
     buffer = np.frombuffer(data, dtype=np.uint8)
     delimiter, decimal = ord(dialect.delimiter), ord(dialect.decimal)
@@ -165,7 +165,7 @@ def _in_halves(
     buffer: np.ndarray, data: bytes, position: int, delimiter: int, decimal: int, width: int
 ) -> tuple[np.ndarray, int]:
     """Both halves of a very long run at once; nothing when the first half is not plain rows throughout."""
-    from ssmr_ident.readers.fast_rows import count_lines, parse_rows
+    from ssmr_ident.readers.text.fast_rows import count_lines, parse_rows
 
     middle = data.find(b"\n", (position + len(data)) // 2) + 1
     if not middle:

@@ -1,0 +1,1 @@
+"""ADMET's XML of samples."""

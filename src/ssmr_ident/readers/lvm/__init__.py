@@ -1,0 +1,1 @@
+"""LabVIEW measurement files."""
