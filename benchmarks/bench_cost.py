@@ -19,8 +19,8 @@ from bank import draw
 from bank.truth import BankSession
 
 from ssmr_ident.campaign import Campaign
-from ssmr_ident.identify.parallel import processors
-from ssmr_ident.pipeline.diagnose import diagnose
+from ssmr_ident.identify.fitting.parallel import processors
+from ssmr_ident.workflows.diagnose import diagnose
 
 MULTIPLES = (1, 2, 4, 8)
 WHOLE = (

@@ -12,8 +12,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ssmr_ident.identify.classical import fft_grid, half_power, logarithmic_decrement, pencil
-from ssmr_ident.identify.decay import fit_decay
+from ssmr_ident.identify.decays.classical import fft_grid, half_power, logarithmic_decrement, pencil
+from ssmr_ident.identify.decays.fit import fit_decay
 
 CASES = {
     "10 Hz, xi 0.02": [(10.0, 0.02)],

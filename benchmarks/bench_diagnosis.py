@@ -16,7 +16,7 @@ from bank import FAMILIES, BankSession, draw, mixed
 from scoring import UNNAMED, Row, append, engine, read, row_of, summary, table, write
 from visible import true_evidence
 
-from ssmr_ident.pipeline.diagnose import diagnose
+from ssmr_ident.workflows.diagnose import diagnose
 
 
 def main() -> None:

@@ -17,7 +17,7 @@ import numpy as np
 from bank import KINDS, draw
 from scoring import Row, append, engine, read, row_of, share
 
-from ssmr_ident.pipeline.diagnose import diagnose
+from ssmr_ident.workflows.diagnose import diagnose
 
 FAMILIES = tuple(name for name, kinds in KINDS.items() if "none" in kinds)
 FULL = 0.25

@@ -22,8 +22,8 @@ from scoring import append, read, share
 
 from ssmr_ident.campaign import Campaign, load
 from ssmr_ident.diagnose.diagnosis import NOTHING
-from ssmr_ident.pipeline.diagnose import diagnose
-from ssmr_ident.proof.peers import PEERS
+from ssmr_ident.workflows.diagnose import diagnose
+from ssmr_proof.peers import PEERS
 
 RIGS = ("15", "16", "17", "18", "19", "23")
 TURN = ("none", "one", "none", "other", "none", "one", "none", "unlisted")

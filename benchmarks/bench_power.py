@@ -23,7 +23,7 @@ from scipy.optimize import brentq, minimize
 from scipy.special import expit
 from scoring import GOOD, Row, append, engine, read, row_of
 
-from ssmr_ident.pipeline.diagnose import diagnose
+from ssmr_ident.workflows.diagnose import diagnose
 
 EFFECTS = {
     "decays": tuple(DECAYS), "pulls": tuple(PULLS), "bench": BENCH, "block": tuple(BLOCKS), "forced": tuple(LISTED),

@@ -16,13 +16,13 @@ from pathlib import Path
 
 import numpy as np
 
-from ssmr_ident.identify.coupled import body_modes
-from ssmr_ident.identify.fit_body import BodyFit, fit_body
-from ssmr_ident.identify.free_decays import BodyDecay, body_decay
-from ssmr_ident.identify.posterior import Unknown
-from ssmr_ident.identify.robot_builder import RobotBuilder
-from ssmr_ident.identify.robot_map import robot_unknowns
-from ssmr_ident.identify.tire_parameters import MOTIONS
+from ssmr_ident.identify.body.builder import RobotBuilder
+from ssmr_ident.identify.body.coupled import body_modes
+from ssmr_ident.identify.body.fit import BodyFit, fit_body
+from ssmr_ident.identify.body.free_decays import BodyDecay, body_decay
+from ssmr_ident.identify.body.tire_parameters import MOTIONS
+from ssmr_ident.identify.body.unknowns import robot_unknowns
+from ssmr_ident.identify.posterior.most_probable import Unknown
 from ssmr_ident.physics.linear import COORDINATES, accelerometer_rows, linear_robot
 from ssmr_ident.physics.robot import GRAVITY, Robot
 from ssmr_ident.session import read_parameters

@@ -19,7 +19,7 @@ from bank.scaled import AS_IT_IS, Scale
 from scoring import Row, append, engine, read, row_of, share
 
 from ssmr_ident.diagnose.diagnosis import Diagnosis
-from ssmr_ident.pipeline.diagnose import diagnose
+from ssmr_ident.workflows.diagnose import diagnose
 
 SCALES = {"small": Scale(0.064, 0.4), "as it is": AS_IT_IS, "large": Scale(15.6, 2.5)}
 RIGHT = ("right", "tie", "clean")

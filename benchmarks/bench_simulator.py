@@ -23,7 +23,7 @@ from pathlib import Path
 import numpy as np
 
 from ssmr_ident.core.errors import InputError
-from ssmr_ident.core.lanes import WIDTH
+from ssmr_ident.core.simd import WIDTH
 from ssmr_ident.physics.motor import wheel_rates
 from ssmr_ident.physics.robot import Robot, robot_from_parameters
 from ssmr_ident.session import read_parameters
@@ -59,10 +59,10 @@ def ours(robot: Robot, effects: tuple[str, ...], seconds: float) -> Runner:
 
 def theirs(robot: Robot, tires: str, plain: bool, steps: int) -> Runner:
     """The same swivel in MuJoCo, all steps in one call into the engine, so that no time is Python's."""
-    from ssmr_ident.proof.mujoco_bodies import start
-    from ssmr_ident.proof.mujoco_build import WHEELS, Build
-    from ssmr_ident.proof.mujoco_robot import mjcf
-    from ssmr_ident.proof.mujoco_run import engine
+    from ssmr_proof.engine.bodies import start
+    from ssmr_proof.engine.build import WHEELS, Build
+    from ssmr_proof.engine.robot import mjcf
+    from ssmr_proof.engine.run import engine
 
     mujoco = engine()
     build = Build(tires=tires, driven=True, plain=plain, step=STEP)

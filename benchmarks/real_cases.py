@@ -13,8 +13,8 @@ from ssmr_ident.campaign import Campaign, load
 from ssmr_ident.compare import predict
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.diagnosis import Diagnosis
-from ssmr_ident.pipeline.diagnose import diagnose, write_diagnosis
 from ssmr_ident.signals.filters import low_pass
+from ssmr_ident.workflows.diagnose import diagnose, write_diagnosis
 
 Claims = list[tuple[str, bool]]
 

@@ -22,7 +22,7 @@ from scoring import append, engine, read, row_of, summary, table
 
 from ssmr_ident.campaign import load
 from ssmr_ident.compare import compare
-from ssmr_ident.pipeline.diagnose import diagnose, write_diagnosis
+from ssmr_ident.workflows.diagnose import diagnose, write_diagnosis
 
 SHARED = Path(__file__).resolve().parents[2] / "shared"
 SWIVELS = ("20", "21")

@@ -15,8 +15,8 @@ from ssmr_ident.diagnose.polish import polish
 from ssmr_ident.diagnose.scan import Suspect
 from ssmr_ident.diagnose.sliding import with_law_of_sliding
 from ssmr_ident.diagnose.weigh import Explanation, surplus
-from ssmr_ident.identify.descent import descend
-from ssmr_ident.identify.joint import JointFit, evaluate
+from ssmr_ident.identify.fitting.descent import descend
+from ssmr_ident.identify.fitting.joint import JointFit, evaluate
 from ssmr_ident.identify.trials import Trial
 
 

@@ -13,10 +13,10 @@ from pathlib import Path
 
 from generator.writing import write_checksums
 
-from ssmr_ident.proof.cases import draw_case
-from ssmr_ident.proof.recorded import SMALL
-from ssmr_ident.proof.run import seal_case
-from ssmr_ident.proof.unseal import keep
+from ssmr_proof.drawn.cases import draw_case
+from ssmr_proof.lab.case import SMALL
+from ssmr_proof.run import seal_case
+from ssmr_proof.unseal import keep
 
 RAW = Path(__file__).resolve().parent / "raw"
 WANTED = {"a": "decay", "b": "rig", "c": "pull"}

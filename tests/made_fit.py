@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from ssmr_ident.core.parameter import Estimate, ParameterSet
-from ssmr_ident.identify.lmfit_report import Variable
-from ssmr_ident.pipeline.fit import SessionFit
+from ssmr_ident.identify.posterior.lmfit_report import Variable
+from ssmr_ident.workflows.fit.run import SessionFit
 
 
 def made_fit() -> SessionFit:

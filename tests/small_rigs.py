@@ -11,12 +11,12 @@ from ssmr_ident.campaign import Campaign, Measurement
 from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.core.recording import Channel, Provenance, Recording
 from ssmr_ident.diagnose.setup import Setup, set_up
-from ssmr_ident.identify.descent import descend
-from ssmr_ident.identify.joint import JointFit, differentiate, evaluate
-from ssmr_ident.identify.noise import AutoregressiveNoise
+from ssmr_ident.identify.fitting.descent import descend
+from ssmr_ident.identify.fitting.joint import JointFit, differentiate, evaluate
 from ssmr_ident.identify.trials import Trial
 from ssmr_ident.physics.rig import Rig
 from ssmr_ident.session import Entry, Session
+from ssmr_ident.signals.noise import AutoregressiveNoise
 from ssmr_ident.simulate.rig import simulate_rig
 
 RIG = Rig(8.0, 50.0, 20000.0)

@@ -26,11 +26,11 @@ _DOOR = {
     "Scenario": ("simulate.scenarios", "Scenario"),
     "simulate_robot": ("simulate.simulation", "simulate"),
     "simulate_rig": ("simulate.rig", "simulate_rig"),
-    "fit_decay": ("identify.decay", "fit_decay"),
-    "fit_session": ("pipeline.fit", "fit_session"),
-    "compare_session": ("pipeline.compare", "compare_session"),
-    "diagnose_session": ("pipeline.diagnose", "diagnose_session"),
-    "plot": ("pipeline.plot", "plot"),
+    "fit_decay": ("identify.decays.fit", "fit_decay"),
+    "fit_session": ("workflows.fit.run", "fit_session"),
+    "compare_session": ("workflows.compare", "compare_session"),
+    "diagnose_session": ("workflows.diagnose", "diagnose_session"),
+    "plot": ("workflows.plot", "plot"),
 }
 
 __all__ = [*_DOOR, "__version__"]

@@ -14,12 +14,12 @@ from made_fit import made_fit
 
 from ssmr_ident.compare import Comparison, RecordingComparison
 from ssmr_ident.compare.outcome import Prediction
-from ssmr_ident.pipeline.fit_page import fit_page
-from ssmr_ident.pipeline.spectrum import spectrum
-from ssmr_ident.pipeline.spectrum_page import write_spectrum_page
 from ssmr_ident.report.comparison_page import comparison_page
 from ssmr_ident.report.diagnosis_page import write_report
 from ssmr_ident.report.html import write_page
+from ssmr_ident.workflows.fit.page import fit_page
+from ssmr_ident.workflows.spectrum.page import write_spectrum_page
+from ssmr_ident.workflows.spectrum.run import spectrum
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ssmr_ident.identify.robot_map import predicted_modes
+from ssmr_ident.identify.body.unknowns import predicted_modes
 from ssmr_ident.physics import slots
 from ssmr_ident.physics.effect import Effect, Site
 from ssmr_ident.physics.effects import CATALOGUE, unlisted

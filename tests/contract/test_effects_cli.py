@@ -13,7 +13,7 @@ from typer.testing import CliRunner
 from ssmr_ident import cli
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.physics.effects import CATALOGUE
-from ssmr_ident.pipeline.effect_panels import cycles, panels
+from ssmr_ident.workflows.effects.panels import cycles, panels
 
 RUN = CliRunner()
 

@@ -15,8 +15,8 @@ from typer.testing import CliRunner
 
 from ssmr_ident import cli
 from ssmr_ident.diagnose import Diagnosis
-from ssmr_ident.pipeline.demo_table import DemoRow, DemoTable
-from ssmr_ident.pipeline.scoreboard_rows import Row, Scoreboard
+from ssmr_ident.workflows.demo.table import DemoRow, DemoTable
+from thesis2012.rows import Row, Scoreboard
 
 RUN = CliRunner()
 RAW = Path(__file__).resolve().parents[2] / "data" / "raw"

@@ -11,9 +11,9 @@ from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.diagnose import accept
 from ssmr_ident.diagnose.accept import as_near, may_mend, mends, promises, relieves, touches, within_file
 from ssmr_ident.diagnose.weigh import Explanation
-from ssmr_ident.identify.coordinates import Model
-from ssmr_ident.identify.joint import JointFit
-from ssmr_ident.identify.objective import Unknown
+from ssmr_ident.identify.fitting.coordinates import Model
+from ssmr_ident.identify.fitting.joint import JointFit
+from ssmr_ident.identify.posterior.objective import Unknown
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ from ssmr_ident.diagnose.along import begun_along, is_law, without_laws
 from ssmr_ident.diagnose.path import LONGEST, Path, force_along, loudest, path_of
 from ssmr_ident.diagnose.residual_force import oscillator
 from ssmr_ident.diagnose.scan import Suspect, candidates, scan
-from ssmr_ident.identify.joint import JointFit
+from ssmr_ident.identify.fitting.joint import JointFit
 
 SHAKEN = [Run(force=30.0), Run(force=12.0), Run(force=60.0)]
 

@@ -13,7 +13,7 @@ from ssmr_ident.diagnose.baseline import begun_again, bent, best_baseline, leave
 from ssmr_ident.diagnose.engine import examine
 from ssmr_ident.diagnose.explore import Search
 from ssmr_ident.diagnose.setup import Setup, set_up
-from ssmr_ident.identify.joint import JointFit
+from ssmr_ident.identify.fitting.joint import JointFit
 
 
 def _drawn(seed: int) -> tuple[Setup, JointFit, tuple[float, ...]]:

@@ -11,7 +11,7 @@ from ssmr_ident.diagnose.baseline import fit_baseline
 from ssmr_ident.diagnose.setup import set_up
 from ssmr_ident.diagnose.sizes import sizes_of
 from ssmr_ident.physics.effects import CATALOGUE
-from ssmr_ident.pipeline.diagnose import diagnose
+from ssmr_ident.workflows.diagnose import diagnose
 
 SEED, LIMIT = 500006, 10.315
 

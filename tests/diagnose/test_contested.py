@@ -17,8 +17,8 @@ from ssmr_ident.diagnose.race import ranked
 from ssmr_ident.diagnose.scan import Suspect
 from ssmr_ident.diagnose.setup import set_up
 from ssmr_ident.diagnose.weigh import Explanation, evidences, log_evidence
-from ssmr_ident.identify.descent import descend
-from ssmr_ident.identify.joint import evaluate
+from ssmr_ident.identify.fitting.descent import descend
+from ssmr_ident.identify.fitting.joint import evaluate
 from ssmr_ident.physics.effects import CATALOGUE
 
 LENGTHS = (float("inf"),)

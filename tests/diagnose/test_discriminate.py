@@ -13,8 +13,8 @@ from ssmr_ident.diagnose import discriminate
 from ssmr_ident.diagnose.discriminate import _apart, next_experiment, repeats
 from ssmr_ident.diagnose.experiments import experiments
 from ssmr_ident.diagnose.setup import Setup
-from ssmr_ident.identify.descent import descend
-from ssmr_ident.identify.joint import JointFit, differentiate, evaluate
+from ssmr_ident.identify.fitting.descent import descend
+from ssmr_ident.identify.fitting.joint import JointFit, differentiate, evaluate
 from ssmr_ident.physics.slots import Effects
 
 HARDENING = {"nonlinear_stiffness": {"k3_N_m3": 6e7}}

@@ -13,11 +13,11 @@ from ssmr_ident.campaign import Campaign, Measurement
 from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.core.recording import Channel, Provenance, Recording
 from ssmr_ident.diagnose import stripped
-from ssmr_ident.identify.joint import JointFit
+from ssmr_ident.identify.fitting.joint import JointFit
 from ssmr_ident.physics.rig import Block
-from ssmr_ident.pipeline.diagnose import diagnose
 from ssmr_ident.session import Entry, Session
 from ssmr_ident.simulate.bench import pull_block
+from ssmr_ident.workflows.diagnose import diagnose
 
 RATE, MASS, MU = 100.0, 2.0, 0.4
 KNOWN = ParameterSet(

@@ -14,9 +14,9 @@ from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.core.recording import Channel, Provenance, Recording
 from ssmr_ident.diagnose import engine
 from ssmr_ident.diagnose.setup import set_up
-from ssmr_ident.identify.joint import differentiate, evaluate
-from ssmr_ident.pipeline.diagnose import diagnose
+from ssmr_ident.identify.fitting.joint import differentiate, evaluate
 from ssmr_ident.session import Entry, Session
+from ssmr_ident.workflows.diagnose import diagnose
 
 RATE, SECONDS, LEVELS = 500.0, 6.0, (1.0, 3.0, 6.0)
 MASS, DAMPING, STIFFNESS = 6.0, 40.0, 15000.0

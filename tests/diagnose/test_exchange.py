@@ -15,8 +15,8 @@ from ssmr_ident.diagnose.followed import explained
 from ssmr_ident.diagnose.pairs import exchange
 from ssmr_ident.diagnose.scan import Suspect
 from ssmr_ident.diagnose.weigh import Explanation
-from ssmr_ident.identify.descent import descend
-from ssmr_ident.identify.joint import JointFit, differentiate, evaluate
+from ssmr_ident.identify.fitting.descent import descend
+from ssmr_ident.identify.fitting.joint import JointFit, differentiate, evaluate
 from ssmr_ident.identify.trials import Trial
 
 RUNS = [Run(force=60.0), Run(force=30.0), Run(force=90.0)]

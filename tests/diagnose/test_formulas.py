@@ -19,9 +19,9 @@ from ssmr_ident.diagnose.polish import loud, turned
 from ssmr_ident.diagnose.setup import set_up
 from ssmr_ident.diagnose.weigh import TIE
 from ssmr_ident.diagnose.words import law
-from ssmr_ident.identify.descent import descend
-from ssmr_ident.identify.horizons import led
-from ssmr_ident.identify.joint import JointFit, evaluate
+from ssmr_ident.identify.fitting.descent import descend
+from ssmr_ident.identify.fitting.horizons import led
+from ssmr_ident.identify.fitting.joint import JointFit, evaluate
 
 TRUE = {"F_c_N": 6.0, "rounding_m_s": 0.06}
 

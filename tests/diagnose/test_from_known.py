@@ -14,7 +14,7 @@ from ssmr_ident.diagnose.baseline import best_baseline
 from ssmr_ident.diagnose.explore import Search, leads_astray, search, searched_from_known
 from ssmr_ident.diagnose.from_known import SHARES, begun_from_known
 from ssmr_ident.diagnose.setup import Setup, set_up
-from ssmr_ident.identify.joint import JointFit, evaluate
+from ssmr_ident.identify.fitting.joint import JointFit, evaluate
 from ssmr_ident.physics.effects import CATALOGUE
 
 

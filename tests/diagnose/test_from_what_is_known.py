@@ -15,8 +15,8 @@ from ssmr_ident.diagnose.race import FAR, started
 from ssmr_ident.diagnose.scan import PROMISING, out_of_reach, scan
 from ssmr_ident.diagnose.setup import set_up
 from ssmr_ident.diagnose.sliding import with_law_of_sliding
-from ssmr_ident.identify.descent import descend
-from ssmr_ident.identify.joint import JointFit
+from ssmr_ident.identify.fitting.descent import descend
+from ssmr_ident.identify.fitting.joint import JointFit
 from ssmr_ident.physics.effects import CATALOGUE
 
 

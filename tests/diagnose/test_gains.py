@@ -11,8 +11,8 @@ from ssmr_ident.campaign import Campaign
 from ssmr_ident.compare.recorded import follow
 from ssmr_ident.core.parameter import Estimate
 from ssmr_ident.diagnose.setup import set_up
-from ssmr_ident.identify.robot_builder import GAINS
-from ssmr_ident.pipeline.diagnose import diagnose
+from ssmr_ident.identify.body.builder import GAINS
+from ssmr_ident.workflows.diagnose import diagnose
 
 SEED = 187486
 """Gains of 1.026, 0.966 and 1.014. A first descent ends with the centre of mass seven deviations off."""

@@ -13,7 +13,7 @@ from ssmr_ident.diagnose.gathered import OFFSET, gathered
 from ssmr_ident.diagnose.race import far_off, started
 from ssmr_ident.diagnose.scan import Suspect
 from ssmr_ident.diagnose.setup import Setup
-from ssmr_ident.identify.joint import JointFit, differentiate, evaluate
+from ssmr_ident.identify.fitting.joint import JointFit, differentiate, evaluate
 
 PULLS = [("lateral", 2.0, 0.008), ("longitudinal", 2.0, 0.008)]
 SIZES = {"offset_x_m": 0.01, "offset_y_m": 0.01}

@@ -14,8 +14,8 @@ from ssmr_ident.diagnose.hollows import ENOUGH, SHAKES, challenged, from_afar
 from ssmr_ident.diagnose.setup import Setup
 from ssmr_ident.diagnose.start import begin
 from ssmr_ident.diagnose.weigh import Explanation
-from ssmr_ident.identify.descent import descend
-from ssmr_ident.identify.joint import JointFit, evaluate
+from ssmr_ident.identify.fitting.descent import descend
+from ssmr_ident.identify.fitting.joint import JointFit, evaluate
 
 PULLS = (("lateral", 1.0, 6e-3), ("lateral", 0.5, 6e-3))
 

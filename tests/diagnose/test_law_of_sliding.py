@@ -16,7 +16,7 @@ from ssmr_ident.diagnose import sliding
 from ssmr_ident.diagnose.baseline import best_baseline
 from ssmr_ident.diagnose.setup import Setup, set_up
 from ssmr_ident.diagnose.sliding import KEY, of_those_that_stand, unexplained, with_law_of_sliding
-from ssmr_ident.identify.joint import JointFit, differentiate, evaluate
+from ssmr_ident.identify.fitting.joint import JointFit, differentiate, evaluate
 from ssmr_ident.identify.trials import Trial
 from ssmr_ident.physics.robot import SLIDING_SPEED, robot_from_parameters
 from ssmr_ident.session import Entry, Session

@@ -14,7 +14,7 @@ from ssmr_ident.diagnose.ordering import ordering
 from ssmr_ident.diagnose.quantity import prefixed
 from ssmr_ident.diagnose.residual_force import highest, unexplained_force
 from ssmr_ident.diagnose.surface import surfaces
-from ssmr_ident.identify.joint import JointFit, evaluate
+from ssmr_ident.identify.fitting.joint import JointFit, evaluate
 
 RELEASED = [Run(0.004), Run(0.002)]
 SHAKEN = [Run(force=30.0), Run(force=15.0)]

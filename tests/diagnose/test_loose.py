@@ -11,7 +11,7 @@ from ssmr_ident.diagnose.baseline import best_baseline
 from ssmr_ident.diagnose.explore import search
 from ssmr_ident.diagnose.loose import SHARES, begun_loose
 from ssmr_ident.diagnose.setup import set_up
-from ssmr_ident.identify.joint import JointFit
+from ssmr_ident.identify.fitting.joint import JointFit
 from ssmr_ident.physics.effects import CATALOGUE
 
 SOME = tuple(CATALOGUE[name] for name in ("free_play", "nonlinear_stiffness"))

@@ -13,8 +13,8 @@ from ssmr_ident.diagnose import finals
 from ssmr_ident.diagnose.baseline import best_baseline
 from ssmr_ident.diagnose.finals import led_on, mended
 from ssmr_ident.diagnose.setup import set_up
-from ssmr_ident.identify.descent import LOUD
-from ssmr_ident.identify.joint import JointFit, each_best, evaluate, together
+from ssmr_ident.identify.fitting.descent import LOUD
+from ssmr_ident.identify.fitting.joint import JointFit, each_best, evaluate, together
 
 
 @pytest.fixture(scope="module")

@@ -15,8 +15,8 @@ from ssmr_ident.diagnose.followed import explained
 from ssmr_ident.diagnose.pairs import instead
 from ssmr_ident.diagnose.scan import Suspect
 from ssmr_ident.diagnose.weigh import Explanation
-from ssmr_ident.identify.descent import descend
-from ssmr_ident.identify.joint import differentiate, evaluate
+from ssmr_ident.identify.fitting.descent import descend
+from ssmr_ident.identify.fitting.joint import differentiate, evaluate
 from ssmr_ident.identify.trials import Trial
 
 BOTH = {"nonlinear_stiffness": {"k3_N_m3": 2e6}, "quadratic_damping": {"d2_N_s2_m2": 300.0}}

@@ -9,8 +9,8 @@ from small_rigs import Run, campaign, fitted, prepared
 from ssmr_ident.diagnose import explore, race
 from ssmr_ident.diagnose.explain import as_large_as_it_takes, beside
 from ssmr_ident.diagnose.scan import Suspect, scan, variants
-from ssmr_ident.identify.descent import descend
-from ssmr_ident.identify.joint import JointFit, differentiate, evaluate
+from ssmr_ident.identify.fitting.descent import descend
+from ssmr_ident.identify.fitting.joint import JointFit, differentiate, evaluate
 from ssmr_ident.physics.effect import Sized
 from ssmr_ident.physics.effects import CATALOGUE
 

@@ -15,9 +15,9 @@ from ssmr_ident.core.recording import Channel
 from ssmr_ident.diagnose import rivals
 from ssmr_ident.diagnose.followed import explained, on_all
 from ssmr_ident.diagnose.weigh import CERTAIN, TIE, all_fitted, log_evidence
-from ssmr_ident.identify.joint import differentiate, evaluate
+from ssmr_ident.identify.fitting.joint import differentiate, evaluate
 from ssmr_ident.physics.effects import CATALOGUE
-from ssmr_ident.pipeline.diagnose import diagnose
+from ssmr_ident.workflows.diagnose import diagnose
 
 RELEASES = (4e-3, 3e-3, 2e-3, 1.5e-3)
 FORCE, SLOW = 3.0, 2e-3

@@ -14,8 +14,8 @@ from ssmr_ident.diagnose.accept import better, certain
 from ssmr_ident.diagnose.followed import explained
 from ssmr_ident.diagnose.rotate import left_elsewhere, shown_by_all, shown_in_turn
 from ssmr_ident.diagnose.weigh import CERTAIN, Explanation
-from ssmr_ident.identify.joint import differentiate, evaluate
-from ssmr_ident.pipeline.diagnose import diagnose
+from ssmr_ident.identify.fitting.joint import differentiate, evaluate
+from ssmr_ident.workflows.diagnose import diagnose
 
 LOUD_ONCE = [Run(force=30.0), Run(force=34.0), Run(force=26.0), Run(force=3.0)]
 """The last one is kept back as well."""

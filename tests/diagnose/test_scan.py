@@ -7,8 +7,8 @@ import pytest
 from small_rigs import Run, campaign, fitted, prepared
 
 from ssmr_ident.diagnose.scan import scan
-from ssmr_ident.identify.descent import descend
-from ssmr_ident.identify.joint import JointFit, evaluate
+from ssmr_ident.identify.fitting.descent import descend
+from ssmr_ident.identify.fitting.joint import JointFit, evaluate
 from ssmr_ident.physics.effects import CATALOGUE
 
 BRANCH = {"K_m_N_m": 900.0, "tau_s": 0.03}

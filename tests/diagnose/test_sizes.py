@@ -12,9 +12,9 @@ from ssmr_ident.diagnose.baseline import fit_baseline
 from ssmr_ident.diagnose.scan import candidates, probes, scan
 from ssmr_ident.diagnose.setup import set_up
 from ssmr_ident.diagnose.sizes import limits_of, sizes_of
-from ssmr_ident.identify.joint import JointFit, differentiate, evaluate
+from ssmr_ident.identify.fitting.joint import JointFit, differentiate, evaluate
 from ssmr_ident.physics.effects import CATALOGUE
-from ssmr_ident.pipeline.diagnose import diagnose
+from ssmr_ident.workflows.diagnose import diagnose
 
 SEED, K3 = 6264, -4.222e7
 OF_ANY_SIZE = ("flexible_mast", "com_offset", "motor_belt", "sensor_bandwidth")

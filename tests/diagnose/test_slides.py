@@ -9,13 +9,13 @@ import pytest
 
 from ssmr_ident.diagnose.baseline import unsteady
 from ssmr_ident.diagnose.sliding import crossed
-from ssmr_ident.identify.coordinates import Model, Unknown
-from ssmr_ident.identify.descent import chatters, descend
-from ssmr_ident.identify.joint import JointFit, evaluate
-from ssmr_ident.identify.noise import AutoregressiveNoise
-from ssmr_ident.identify.swings import first_part, led_through_slides
+from ssmr_ident.identify.fitting.coordinates import Model, Unknown
+from ssmr_ident.identify.fitting.descent import chatters, descend
+from ssmr_ident.identify.fitting.joint import JointFit, evaluate
+from ssmr_ident.identify.fitting.swings import first_part, led_through_slides
 from ssmr_ident.identify.trials.moments import lets_go
 from ssmr_ident.identify.trials.trial import Array, Course, Trial, Values
+from ssmr_ident.signals.noise import AutoregressiveNoise
 
 TIMES = 0.05 * np.arange(400)
 LETS_GO, NOISE = 6.0, 0.6

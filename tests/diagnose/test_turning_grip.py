@@ -8,7 +8,7 @@ from made_pulls import made_pulls
 from ssmr_ident.diagnose.baseline import fit_baseline
 from ssmr_ident.diagnose.race import combined
 from ssmr_ident.diagnose.scan import scan
-from ssmr_ident.identify.descent import descend
+from ssmr_ident.identify.fitting.descent import descend
 from ssmr_ident.physics.effects import CATALOGUE
 
 TRUE = {"weight": 0.4, "lambda_max": 0.15}

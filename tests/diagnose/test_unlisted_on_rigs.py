@@ -12,9 +12,9 @@ from ssmr_ident.diagnose.explain import with_suspect
 from ssmr_ident.diagnose.race import ranked, started
 from ssmr_ident.diagnose.scan import PLACES, both_ways, scan
 from ssmr_ident.diagnose.sizes import sizes_of
-from ssmr_ident.identify.descent import LOUD
+from ssmr_ident.identify.fitting.descent import LOUD
 from ssmr_ident.physics.effects import CATALOGUE
-from ssmr_ident.pipeline.diagnose import diagnose
+from ssmr_ident.workflows.diagnose import diagnose
 
 RUNS = [Run(force=20.0), Run(force=40.0), Run(force=10.0)]
 RIDER = {"rider_share": 0.08, "rider_Hz": 6.0, "rider_ratio": 0.04}

@@ -7,7 +7,7 @@ from bank import FAMILIES, mixed
 
 from ssmr_ident.diagnose import explore
 from ssmr_ident.physics.effects import CATALOGUE
-from ssmr_ident.pipeline.diagnose import diagnose
+from ssmr_ident.workflows.diagnose import diagnose
 
 SEED, BOTH = 6375, ("viscoelastic_relaxation", "nonlinear_stiffness")
 

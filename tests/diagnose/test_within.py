@@ -12,8 +12,8 @@ from ssmr_ident.core.parameter import Estimate
 from ssmr_ident.diagnose.followed import explained
 from ssmr_ident.diagnose.weigh import Explanation
 from ssmr_ident.diagnose.within import REACH, measure_of
-from ssmr_ident.identify.descent import descend
-from ssmr_ident.identify.joint import differentiate, evaluate
+from ssmr_ident.identify.fitting.descent import descend
+from ssmr_ident.identify.fitting.joint import differentiate, evaluate
 
 RUNS = [Run(force=20.0), Run(force=40.0)]
 

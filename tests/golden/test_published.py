@@ -8,14 +8,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ssmr_ident.identify.stiffness import belt_stiffness
-from ssmr_ident.identify.tire_parameters import (
+from ssmr_ident.identify.body.tire_parameters import (
     Geometry,
     damping_as_printed,
     damping_ratio,
     natural_frequency,
     rotation_inertia,
 )
+from ssmr_ident.identify.forces.stiffness import belt_stiffness
 from ssmr_ident.session import read_parameters
 
 

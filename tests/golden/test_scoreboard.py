@@ -7,7 +7,7 @@ import time
 
 import pytest
 
-from ssmr_ident.pipeline.scoreboard import Scoreboard, thesis_scoreboard
+from thesis2012.scoreboard import Scoreboard, thesis_scoreboard
 
 HOLD = {
     "filter", "mains", "low_pass_20", "band_pass", "middle", "one_sided", "peaks", "log_amplitude", "ranges",

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ssmr_ident.identify.coupled import plane_modes
-from ssmr_ident.identify.thesis_table import TABLE_5_2, resolve_table
-from ssmr_ident.identify.tire_parameters import (
+from ssmr_ident.identify.body.coupled import plane_modes
+from ssmr_ident.identify.body.thesis_table import TABLE_5_2, resolve_table
+from ssmr_ident.identify.body.tire_parameters import (
     Geometry,
     damping_as_printed,
     damping_ratio,

@@ -7,10 +7,10 @@ import pytest
 
 from ssmr_ident.physics.motor import wheel_rates
 from ssmr_ident.physics.robot import GRAVITY, Robot
-from ssmr_ident.proof.mujoco_build import Build
-from ssmr_ident.proof.mujoco_run import run_mujoco
 from ssmr_ident.simulate import simulate
 from ssmr_ident.simulate.scenarios import straight, swivel
+from ssmr_proof.engine.build import Build
+from ssmr_proof.engine.run import run_mujoco
 
 pytestmark = pytest.mark.usefixtures("engine")
 

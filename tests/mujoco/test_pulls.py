@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from ssmr_ident.physics.robot import GRAVITY, Robot
-from ssmr_ident.proof.mujoco_build import Build, Cable
-from ssmr_ident.proof.mujoco_run import MujocoRun, run_mujoco
 from ssmr_ident.simulate import Simulation, simulate
 from ssmr_ident.simulate.scenarios import pull
+from ssmr_proof.engine.build import Build, Cable
+from ssmr_proof.engine.run import MujocoRun, run_mujoco
 
 pytestmark = pytest.mark.usefixtures("engine")
 

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from ssmr_ident.proof.recorded import Extent
-from ssmr_ident.proof.recorded_decays import Programme
-from ssmr_ident.proof.recorded_pulls import TESTS
-from ssmr_ident.proof.recorded_rigs import RUNS
+from ssmr_proof.lab.case import Extent
+from ssmr_proof.lab.decays import Programme
+from ssmr_proof.lab.pulls import TESTS
+from ssmr_proof.lab.rigs import RUNS
 
 HERE = Path(__file__).parent
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from ssmr_ident.compare.outcome import Prediction
-from ssmr_ident.proof.gallery import _drawn, _overlapping
+from ssmr_proof.page.gallery import _drawn, _overlapping
 
 
 def _from(first: int) -> Prediction:

@@ -5,16 +5,16 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ssmr_ident.identify.decay import fit_decay
+from ssmr_ident.identify.decays.fit import fit_decay
 from ssmr_ident.physics.linear import linear_robot
 from ssmr_ident.physics.robot import GRAVITY
-from ssmr_ident.proof.plant.rig_bench import STEP, RigPlant, drive
-from ssmr_ident.proof.plant.robot_bench import DECAY_STEP, PULL_STEP, Bench, Plant, Push
-from ssmr_ident.proof.plant.robot_model import Frame, platform
-from ssmr_ident.proof.plant.sensing import Chain
-from ssmr_ident.proof.plant.spring_laws import HIDDEN, advance, beside, law_vector
-from ssmr_ident.proof.recorded_pulls import hook
-from ssmr_ident.proof.robots import draw_robot
+from ssmr_proof.lab.pulls import hook
+from ssmr_proof.lab.robots import draw_robot
+from ssmr_proof.plant.rig_bench import STEP, RigPlant, drive
+from ssmr_proof.plant.robot_bench import DECAY_STEP, PULL_STEP, Bench, Plant, Push
+from ssmr_proof.plant.robot_model import Frame, platform
+from ssmr_proof.plant.sensing import Chain
+from ssmr_proof.plant.spring_laws import HIDDEN, advance, beside, law_vector
 
 ROBOT = draw_robot(np.random.default_rng(3)).robot
 

@@ -13,8 +13,8 @@ from ssmr_ident.campaign import load
 from ssmr_ident.compare import compare
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.physics.effects import CATALOGUE
-from ssmr_ident.proof.cases import FAMILIES, KINDS, MIMIC, ONE, OUTSIDE, TWO, Case, draw_case
-from ssmr_ident.proof.recorded import Extent, record, write_session
+from ssmr_proof.drawn.cases import FAMILIES, KINDS, MIMIC, ONE, OUTSIDE, TWO, Case, draw_case
+from ssmr_proof.lab.case import Extent, record, write_session
 
 NAMES = (*CATALOGUE, "unlisted", "play", "mast", "hidden", "truth", "mimic", "seed")
 

@@ -12,12 +12,12 @@ from typer.testing import CliRunner
 
 from ssmr_ident.cli import app
 from ssmr_ident.core.errors import InputError
-from ssmr_ident.proof.against import against
-from ssmr_ident.proof.kept import write_kept
-from ssmr_ident.proof.page import write_proof_page
-from ssmr_ident.proof.recorded import Extent
-from ssmr_ident.proof.run import STAGES, Proof, prove
-from ssmr_ident.proof.score import MEANING
+from ssmr_proof.kept import write_kept
+from ssmr_proof.lab.case import Extent
+from ssmr_proof.page.page import write_proof_page
+from ssmr_proof.run import STAGES, Proof, prove
+from ssmr_proof.scores.against import against
+from ssmr_proof.scores.score import MEANING
 
 CASES = 6
 
@@ -91,8 +91,8 @@ def test_a_folder_that_holds_something_else_is_left_alone(tmp_path: Path, tiny: 
 
 
 def test_other_programs_are_marked_alike(proof: Proof, monkeypatch: pytest.MonkeyPatch) -> None:
-    from ssmr_ident.proof import against as module
-    from ssmr_ident.proof.peers import PeerAnswer
+    from ssmr_proof.peers import PeerAnswer
+    from ssmr_proof.scores import against as module
 
     monkeypatch.setattr(module, "PEERS", {"mute": lambda campaign: PeerAnswer("mute", (), (), False, 0.1)})
     own, mute = against(proof.rows, proof.folder / "sessions")

@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 
 from ssmr_ident.core.errors import InputError
-from ssmr_ident.proof.recorded import Extent
-from ssmr_ident.proof.run import prove, seal_case
-from ssmr_ident.proof.seal import Envelope, SealBroken, read_seals, write_seals
-from ssmr_ident.proof.unseal import SEAL, TRUTH, keep, recheck, unseal
+from ssmr_proof.lab.case import Extent
+from ssmr_proof.run import prove, seal_case
+from ssmr_proof.seal import Envelope, SealBroken, read_seals, write_seals
+from ssmr_proof.unseal import SEAL, TRUTH, keep, recheck, unseal
 
 ENVELOPE = Envelope("session-001", b'{"effects": []}', {"a.csv": b"1,2", "b.csv": b"3"}, "s")
 
@@ -74,7 +74,7 @@ def test_a_diagnosis_that_changes_the_seals_ends_the_proof(tmp_path: Path, tiny:
 
 
 def test_a_kept_session_opens_beside_a_diagnosis_only(tmp_path: Path, tiny: Extent, pretended: tuple[str, ...]) -> None:
-    from ssmr_ident.proof.blind import run_blind
+    from ssmr_proof.blind import run_blind
 
     envelope = seal_case(33, 2, tmp_path, tiny)
     folder, answer = tmp_path / "session-002", tmp_path / "answer"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from scipy.stats import chi2
 
-from ssmr_ident.proof.thesis import showcase
+from ssmr_proof.page.thesis import showcase
 
 
 def test_pure_rotations_need_an_inertia_that_nobody_believes() -> None:

@@ -12,13 +12,13 @@ from typer.testing import CliRunner
 
 from ssmr_ident.cli import app
 from ssmr_ident.core.errors import InputError
-from ssmr_ident.identify.inverse_dynamics import fit_drive
-from ssmr_ident.identify.pull_model import pull_stiffness
-from ssmr_ident.identify.rig import ForcedRecord, fit_rig
-from ssmr_ident.identify.robot_builder import HEIGHT, RobotBuilder
+from ssmr_ident.identify.body.builder import HEIGHT, RobotBuilder
+from ssmr_ident.identify.forces.pull_model import pull_stiffness
+from ssmr_ident.identify.rigs.frequency_domain import ForcedRecord, fit_rig
+from ssmr_ident.identify.rigs.inverse_dynamics import fit_drive
 from ssmr_ident.physics.linear import linear_robot
-from ssmr_ident.pipeline.fit import fit_session
 from ssmr_ident.session import read_parameters, write_parameters
+from ssmr_ident.workflows.fit.run import fit_session
 
 STEP = 1e-3
 TRUTH = {

@@ -14,8 +14,8 @@ from ssmr_ident.campaign import load
 from ssmr_ident.cli import app
 from ssmr_ident.compare import compare
 from ssmr_ident.core.errors import InputError
-from ssmr_ident.pipeline.fit import fit_session
 from ssmr_ident.session import read_parameters
+from ssmr_ident.workflows.fit.run import fit_session
 
 KEYS = {
     "m": "mass_kg", "Ixx": "inertia_kg_m2.xx", "Iyy": "inertia_kg_m2.yy", "Izz": "inertia_kg_m2.zz",

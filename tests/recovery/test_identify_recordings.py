@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from ssmr_ident.pipeline.fit import fit_session
+from ssmr_ident.workflows.fit.run import fit_session
 
 pytestmark = pytest.mark.shared
 

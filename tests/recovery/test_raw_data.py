@@ -11,20 +11,20 @@ import pytest
 
 from ssmr_ident.campaign import Campaign, Measurement, load
 from ssmr_ident.compare.prediction import predict
-from ssmr_ident.identify.curves import load_curve
-from ssmr_ident.identify.decay import fit_decays
-from ssmr_ident.identify.friction import friction_of
-from ssmr_ident.identify.pull_model import pull_stiffness
-from ssmr_ident.identify.sawtooth import Pull, take_apart
-from ssmr_ident.identify.stiffness import behind_cable, belt_stiffness
+from ssmr_ident.identify.decays.fit import fit_decays
+from ssmr_ident.identify.forces.curves import load_curve
+from ssmr_ident.identify.forces.friction import friction_of
+from ssmr_ident.identify.forces.pull_model import pull_stiffness
+from ssmr_ident.identify.forces.sawtooth import Pull, take_apart
+from ssmr_ident.identify.forces.stiffness import behind_cable, belt_stiffness
 from ssmr_ident.physics.linear import linear_robot
 from ssmr_ident.physics.robot import GRAVITY, Robot, robot_from_parameters
 from ssmr_ident.physics.statics import rest_loads
-from ssmr_ident.pipeline.fit import fit_session
 from ssmr_ident.readers import ReadOptions, read_one
 from ssmr_ident.session import read_parameters, read_session
 from ssmr_ident.simulate.measure import Converter
 from ssmr_ident.simulate.scenarios import ROPE_STIFFNESS, STEEL_STIFFNESS
+from ssmr_ident.workflows.fit.run import fit_session
 
 SIGMAS = 3.0
 WHERE = {"roll": ("ay", 1), "pitch": ("ax", 0), "yaw": ("ay", 2)}  # channel, place among the modes by frequency

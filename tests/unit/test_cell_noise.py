@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from ssmr_ident.identify.cell_noise import SCATTER, Blocks, block_noises
-from ssmr_ident.identify.decay_record import spread
+from ssmr_ident.identify.decays.record import spread
+from ssmr_ident.identify.forces.cell_noise import SCATTER, Blocks, block_noises
 
 RATE = 100.0
 LENGTHS = (0.05, 0.1, 0.1, 0.2, 0.25, 0.04)

@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ssmr_ident.identify.clouds import averaged, settled
-from ssmr_ident.identify.coordinates import Model
-from ssmr_ident.identify.descent import descend
-from ssmr_ident.identify.joint import JointFit, evaluate
-from ssmr_ident.identify.noise import AutoregressiveNoise
-from ssmr_ident.identify.objective import Unknown
+from ssmr_ident.identify.fitting.clouds import averaged, settled
+from ssmr_ident.identify.fitting.coordinates import Model
+from ssmr_ident.identify.fitting.descent import descend
+from ssmr_ident.identify.fitting.joint import JointFit, evaluate
+from ssmr_ident.identify.posterior.objective import Unknown
 from ssmr_ident.identify.trials import Trial
 from ssmr_ident.identify.trials.trial import Course, Runner
+from ssmr_ident.signals.noise import AutoregressiveNoise
 
 MODEL = Model(tuple(Unknown(name, "1", 0.0, 1.0, positive=False) for name in ("a", "b")))
 TIME = np.arange(400) / 100.0

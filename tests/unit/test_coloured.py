@@ -9,7 +9,7 @@ import pytest
 from scipy.signal import lfilter
 
 from ssmr_ident.diagnose.coloured import told_by
-from ssmr_ident.identify.joint import worth
+from ssmr_ident.identify.fitting.joint import worth
 
 COUNT, STEP, POLE = 1000, 4e-3, 0.8
 

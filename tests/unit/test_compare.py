@@ -15,9 +15,9 @@ from ssmr_ident.compare import Prediction, compare
 from ssmr_ident.compare.comparison import measure
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import Estimate
-from ssmr_ident.pipeline.compare import compare_session
-from ssmr_ident.pipeline.simulate import Request, simulate_to_file
 from ssmr_ident.session import read_parameters, write_parameters
+from ssmr_ident.workflows.compare import compare_session
+from ssmr_ident.workflows.simulate import Request, simulate_to_file
 
 RIG = """\
 schema: ssmr-ident/parameters/1

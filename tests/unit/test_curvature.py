@@ -7,8 +7,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from ssmr_ident.identify.curvature import Curvature
-from ssmr_ident.identify.joint import Slopes
+from ssmr_ident.identify.fitting.curvature import Curvature
+from ssmr_ident.identify.fitting.joint import Slopes
 
 SIZES, SHARED, OWN = (40, 25), 3, (2, 4)
 WEIGHTS = np.array([0.7, 2.5])

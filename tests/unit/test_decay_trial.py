@@ -8,7 +8,7 @@ import pytest
 from ssmr_ident.campaign import Measurement
 from ssmr_ident.core.parameter import Estimate
 from ssmr_ident.core.recording import Channel, Provenance, Recording
-from ssmr_ident.identify.robot_builder import RobotBuilder
+from ssmr_ident.identify.body.builder import RobotBuilder
 from ssmr_ident.identify.trials.decay import decay_trial
 from ssmr_ident.identify.trials.trial import Trial
 from ssmr_ident.physics.robot import robot_from_parameters

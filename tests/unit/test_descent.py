@@ -7,14 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ssmr_ident.identify.coordinates import Model
-from ssmr_ident.identify.descent import corrected
-from ssmr_ident.identify.horizons import radian
-from ssmr_ident.identify.joint import JointFit, differentiate, evaluate
-from ssmr_ident.identify.noise import AutoregressiveNoise
-from ssmr_ident.identify.objective import Unknown
+from ssmr_ident.identify.fitting.coordinates import Model
+from ssmr_ident.identify.fitting.descent import corrected
+from ssmr_ident.identify.fitting.horizons import radian
+from ssmr_ident.identify.fitting.joint import JointFit, differentiate, evaluate
+from ssmr_ident.identify.posterior.objective import Unknown
 from ssmr_ident.identify.trials import Trial
 from ssmr_ident.identify.trials.trial import Course
+from ssmr_ident.signals.noise import AutoregressiveNoise
 
 MODEL = Model(tuple(Unknown(name, "1", 0.0, 1.0, positive=False) for name in ("a", "b")))
 RATE, COUNT = 100.0, 400

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ssmr_ident.identify.free_decays import BodyDecay, body_decay
+from ssmr_ident.identify.body.free_decays import BodyDecay, body_decay
 
 
 @pytest.fixture(scope="module")

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from ssmr_ident.core.parameter import ParameterSet
-from ssmr_ident.identify.coupled import body_modes, plane_modes, vibration_modes
-from ssmr_ident.identify.findings import conflicts, posterior_findings
-from ssmr_ident.identify.geometry import assemble, box, from_two_weighings, height_from_tilting
-from ssmr_ident.identify.posterior import Observation, Unknown, most_probable
-from ssmr_ident.identify.pull_model import pull_stiffness
-from ssmr_ident.identify.robot_builder import RobotBuilder
+from ssmr_ident.identify.body.builder import RobotBuilder
+from ssmr_ident.identify.body.coupled import body_modes, plane_modes, vibration_modes
+from ssmr_ident.identify.forces.pull_model import pull_stiffness
+from ssmr_ident.identify.geometry.mass_properties import assemble, box, from_two_weighings, height_from_tilting
+from ssmr_ident.identify.posterior.findings import conflicts, posterior_findings
+from ssmr_ident.identify.posterior.most_probable import Observation, Unknown, most_probable
 from ssmr_ident.physics.robot import GRAVITY
 from ssmr_ident.session import read_parameters
 

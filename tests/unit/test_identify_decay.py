@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from ssmr_ident.core.errors import InputError
-from ssmr_ident.identify.backbone import backbone
-from ssmr_ident.identify.classical import fft_grid, half_power, logarithmic_decrement, pencil
-from ssmr_ident.identify.decay import fit_decay, fit_decays
+from ssmr_ident.identify.decays.backbone import backbone
+from ssmr_ident.identify.decays.classical import fft_grid, half_power, logarithmic_decrement, pencil
+from ssmr_ident.identify.decays.fit import fit_decay, fit_decays
 
 STEP = 1e-3
 TIMES = STEP * np.arange(2048)

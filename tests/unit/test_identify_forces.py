@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ssmr_ident.identify.curves import block_pull, load_curve
-from ssmr_ident.identify.ramps import find_ramps
-from ssmr_ident.identify.sawtooth import take_apart
-from ssmr_ident.identify.speed_knee import speed_knee
-from ssmr_ident.identify.stiffness import behind_cable, belt_stiffness, compare_laws, in_series
+from ssmr_ident.identify.forces.curves import block_pull, load_curve
+from ssmr_ident.identify.forces.ramps import find_ramps
+from ssmr_ident.identify.forces.sawtooth import take_apart
+from ssmr_ident.identify.forces.speed_knee import speed_knee
+from ssmr_ident.identify.forces.stiffness import behind_cable, belt_stiffness, compare_laws, in_series
 
 
 def saw(position: np.ndarray, stiffness: float, peak: float, trough: float) -> np.ndarray:

@@ -10,7 +10,7 @@ from typer.testing import CliRunner
 
 from ssmr_ident.cli import app
 from ssmr_ident.core.errors import InputError
-from ssmr_ident.identify.measurements import robot_geometry
+from ssmr_ident.identify.geometry.sheet import robot_geometry
 from ssmr_ident.session import read_parameters
 from ssmr_ident.session.yaml_file import load_mapping
 

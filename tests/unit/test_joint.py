@@ -9,15 +9,15 @@ import pytest
 from scipy.linalg import block_diag
 from scipy.signal import lfilter
 
-from ssmr_ident.identify.coordinates import Model
-from ssmr_ident.identify.curvature import Curvature
-from ssmr_ident.identify.descent import descend
-from ssmr_ident.identify.joint import JointFit, differentiate, evaluate, worth
-from ssmr_ident.identify.noise import AutoregressiveNoise
-from ssmr_ident.identify.objective import Unknown
-from ssmr_ident.identify.scatter import covariance as scatter_of
+from ssmr_ident.identify.fitting.coordinates import Model
+from ssmr_ident.identify.fitting.curvature import Curvature
+from ssmr_ident.identify.fitting.descent import descend
+from ssmr_ident.identify.fitting.joint import JointFit, differentiate, evaluate, worth
+from ssmr_ident.identify.fitting.scatter import covariance as scatter_of
+from ssmr_ident.identify.posterior.objective import Unknown
 from ssmr_ident.identify.trials import Trial, decay
 from ssmr_ident.identify.trials.trial import Course
+from ssmr_ident.signals.noise import AutoregressiveNoise
 
 NAMES = ("a", "b", "c")
 MODEL = Model(tuple(Unknown(name, "1", 0.0, 2.0, positive=False) for name in NAMES))
@@ -103,7 +103,8 @@ def _full(
 def test_one_step_with_nuisances_eliminated_is_the_full_least_squares_solution(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("ssmr_ident.identify.descent.SECANTS", 0)  # they would go on to the weights of what is left
+    # secants would go on to the weights of what is left
+    monkeypatch.setattr("ssmr_ident.identify.fitting.descent.SECANTS", 0)
     fit, *blocks = _linear()
     expected, covariance = _full(fit, *blocks, fit.weights)
     # one iteration: Gauss-Newton is exact for what is linear

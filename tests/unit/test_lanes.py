@@ -10,7 +10,7 @@ import pytest
 from numba import njit
 
 from ssmr_ident.core.exponential import exp
-from ssmr_ident.core.lanes import WIDTH, anywhere, first, lanes_of, lanewise, space, where
+from ssmr_ident.core.simd import WIDTH, anywhere, first, lanes_of, lanewise, space, where
 from ssmr_ident.physics.effects import CATALOGUE
 from ssmr_ident.physics.robot import Robot, robot_from_parameters
 from ssmr_ident.session import read_parameters

@@ -10,11 +10,11 @@ import pytest
 from ssmr_ident.campaign import Measurement
 from ssmr_ident.core.errors import Impossible, InputError
 from ssmr_ident.core.recording import Channel, Provenance, Recording
-from ssmr_ident.identify import parallel
-from ssmr_ident.identify.coordinates import Model
-from ssmr_ident.identify.joint import differentiate, evaluate
-from ssmr_ident.identify.objective import Unknown
-from ssmr_ident.identify.robot_builder import RobotBuilder
+from ssmr_ident.identify.body.builder import RobotBuilder
+from ssmr_ident.identify.fitting import parallel
+from ssmr_ident.identify.fitting.coordinates import Model
+from ssmr_ident.identify.fitting.joint import differentiate, evaluate
+from ssmr_ident.identify.posterior.objective import Unknown
 from ssmr_ident.identify.trials.decay import decay_trial
 from ssmr_ident.physics.robot import Robot, robot_from_parameters
 from ssmr_ident.physics.slots import Effects

@@ -10,13 +10,13 @@ import pytest
 
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.recording import Channel, Provenance, Recording
-from ssmr_ident.pipeline.fit import fit_session
-from ssmr_ident.pipeline.new_log import DIES_AWAY, guess_log
-from ssmr_ident.pipeline.new_session import draft_session
-from ssmr_ident.pipeline.simulate import Request, simulate_to_file
 from ssmr_ident.readers import read_one, writers
 from ssmr_ident.session import read_session
 from ssmr_ident.session.parameters_file import read_parameters
+from ssmr_ident.workflows.fit.run import fit_session
+from ssmr_ident.workflows.new.log import DIES_AWAY, guess_log
+from ssmr_ident.workflows.new.run import draft_session
+from ssmr_ident.workflows.simulate import Request, simulate_to_file
 
 
 def _recording(rate: float, **channels: tuple[np.ndarray, str]) -> Recording:

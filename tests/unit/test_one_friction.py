@@ -6,7 +6,7 @@ import pytest
 
 from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.diagnose.setup import twin
-from ssmr_ident.identify.robot_builder import RobotBuilder
+from ssmr_ident.identify.body.builder import RobotBuilder
 from ssmr_ident.physics.robot import Robot, robot_from_parameters
 from ssmr_ident.session import read_parameters
 

@@ -10,11 +10,11 @@ import pytest
 from made_fit import made_fit
 
 from ssmr_ident.cli.called import called
-from ssmr_ident.pipeline.fit_page import fit_page
-from ssmr_ident.pipeline.spectrum import spectrum
-from ssmr_ident.pipeline.spectrum_page import spectrum_page
 from ssmr_ident.report.dark import on_dark
 from ssmr_ident.report.html import render_page
+from ssmr_ident.workflows.fit.page import fit_page
+from ssmr_ident.workflows.spectrum.page import spectrum_page
+from ssmr_ident.workflows.spectrum.run import spectrum
 
 
 def test_fit_page_says_conflict_first_and_what_was_learnt_most() -> None:

@@ -8,8 +8,8 @@ from contextvars import ContextVar
 
 import pytest
 
-from ssmr_ident.identify import parallel
-from ssmr_ident.identify.parallel import Pool, side_by_side
+from ssmr_ident.identify.fitting import parallel
+from ssmr_ident.identify.fitting.parallel import Pool, side_by_side
 
 SETTING: ContextVar[int] = ContextVar("setting", default=0)
 

@@ -11,8 +11,8 @@ from bank import draw
 from ssmr_ident.campaign import Campaign
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.physics.rig import rig_from_parameters
-from ssmr_ident.proof.peers import grey_box, mujoco_sysid, sindy
 from ssmr_ident.simulate.rig import simulate_rig
+from ssmr_proof.peers import grey_box, mujoco_sysid, sindy
 
 
 def quiet(campaign: Campaign, noise: float = 0.01) -> Campaign:

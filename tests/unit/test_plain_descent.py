@@ -7,8 +7,8 @@ import pytest
 from scipy.optimize import least_squares
 from small_rigs import Run, campaign, prepared
 
-from ssmr_ident.identify.descent import descend
-from ssmr_ident.identify.joint import evaluate
+from ssmr_ident.identify.fitting.descent import descend
+from ssmr_ident.identify.fitting.joint import evaluate
 
 
 def test_plain_squares_end_where_another_optimiser_ends() -> None:

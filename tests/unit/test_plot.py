@@ -13,7 +13,7 @@ from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.diagnosis import Diagnosis, Worth
 from ssmr_ident.diagnose.evidence import Evidence, Overlay
-from ssmr_ident.pipeline.spectrum import spectrum
+from ssmr_ident.workflows.spectrum.run import spectrum
 
 
 def _labels(figure: Figure) -> list[str]:

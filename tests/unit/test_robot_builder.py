@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ssmr_ident.identify.robot_builder import GAINS, HEIGHT, RobotBuilder
+from ssmr_ident.identify.body.builder import GAINS, HEIGHT, RobotBuilder
 from ssmr_ident.physics.robot import Robot, robot_from_parameters
 from ssmr_ident.session import read_parameters
 

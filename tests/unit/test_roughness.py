@@ -12,9 +12,9 @@ from bank import draw
 from ssmr_ident.diagnose import exported
 from ssmr_ident.diagnose.baseline import best_baseline
 from ssmr_ident.diagnose.sliding import with_law_of_sliding
-from ssmr_ident.identify.joint import Slopes, evaluate
-from ssmr_ident.identify.roughness import scatter_of
-from ssmr_ident.identify.scatter import covariance
+from ssmr_ident.identify.fitting.joint import Slopes, evaluate
+from ssmr_ident.identify.fitting.roughness import scatter_of
+from ssmr_ident.identify.fitting.scatter import covariance
 
 SAMPLES, COUNT, STEEP, HIDDEN = 400, 12, 20.0, 1.5
 

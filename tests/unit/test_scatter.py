@@ -10,15 +10,15 @@ from scipy.signal import lfilter
 from small_rigs import Run, campaign, fitted, prepared
 
 from ssmr_ident.core.parameter import Estimate
-from ssmr_ident.identify.coordinates import Model
-from ssmr_ident.identify.curvature import Curvature
-from ssmr_ident.identify.descent import descend
-from ssmr_ident.identify.joint import JointFit, differentiate, evaluate
-from ssmr_ident.identify.noise import AutoregressiveNoise
-from ssmr_ident.identify.objective import Unknown
-from ssmr_ident.identify.scatter import covariance, sharpened, smoothed
+from ssmr_ident.identify.fitting.coordinates import Model
+from ssmr_ident.identify.fitting.curvature import Curvature
+from ssmr_ident.identify.fitting.descent import descend
+from ssmr_ident.identify.fitting.joint import JointFit, differentiate, evaluate
+from ssmr_ident.identify.fitting.scatter import covariance, sharpened, smoothed
+from ssmr_ident.identify.posterior.objective import Unknown
 from ssmr_ident.identify.trials import Trial
 from ssmr_ident.identify.trials.trial import Course
+from ssmr_ident.signals.noise import AutoregressiveNoise
 
 MODEL = Model((Unknown("a", "1", 0.0, 50.0, positive=False),))
 

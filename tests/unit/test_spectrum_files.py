@@ -11,11 +11,11 @@ from typer.testing import CliRunner
 from ssmr_ident.cli import app
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.recording import Channel, Provenance, Recording
-from ssmr_ident.pipeline import spectrum as spectrum_module
-from ssmr_ident.pipeline.spectrum import SpectrumChoices, spectrum
-from ssmr_ident.pipeline.spectrum_files import write
-from ssmr_ident.pipeline.spectrum_table import label_of_file
 from ssmr_ident.signals.grid import even_samples
+from ssmr_ident.workflows.spectrum import run as spectrum_module
+from ssmr_ident.workflows.spectrum.files import write
+from ssmr_ident.workflows.spectrum.run import SpectrumChoices, spectrum
+from ssmr_ident.workflows.spectrum.table import label_of_file
 
 
 def write_csv(path: Path, time: np.ndarray, **columns: np.ndarray) -> Path:

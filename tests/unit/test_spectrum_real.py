@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ssmr_ident.pipeline.spectrum import SpectrumChoices, spectrum
+from ssmr_ident.workflows.spectrum.run import SpectrumChoices, spectrum
 
 
 def test_hammer_shows_both_modes(shared: Path) -> None:

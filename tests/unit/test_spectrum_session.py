@@ -12,10 +12,10 @@ from typer.testing import CliRunner
 
 from ssmr_ident.cli import app
 from ssmr_ident.core.errors import InputError
-from ssmr_ident.pipeline.spectrum import SpectrumChoices, spectrum
-from ssmr_ident.pipeline.spectrum_files import write
-from ssmr_ident.pipeline.spectrum_screen import screen_text
 from ssmr_ident.report.figures_speed import amplitude_figure, peaks_figure
+from ssmr_ident.workflows.spectrum.files import write
+from ssmr_ident.workflows.spectrum.run import SpectrumChoices, spectrum
+from ssmr_ident.workflows.spectrum.screen import screen_text
 
 RATE = 250.0
 LINES = {("concrete", 20): 24.0, ("concrete", 40): 8.0, ("carpet", 20): 6.0, ("carpet", 40): 7.0}

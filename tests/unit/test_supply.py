@@ -7,7 +7,7 @@ import pytest
 
 from ssmr_ident.campaign import Measurement, _from_volts
 from ssmr_ident.core.recording import Channel, Provenance, Recording
-from ssmr_ident.identify.robot_builder import RobotBuilder
+from ssmr_ident.identify.body.builder import RobotBuilder
 from ssmr_ident.identify.trials.decay import decay_trial
 from ssmr_ident.physics.robot import robot_from_parameters
 from ssmr_ident.readers.health import at_rails, ends_of_supply

@@ -35,7 +35,7 @@ def command(
 ) -> None:
     """Simulate every recording of a session with given parameters and say how far they are apart."""
     from ssmr_ident.cli.progress import stages
-    from ssmr_ident.pipeline.compare import compare_session
+    from ssmr_ident.workflows.compare import compare_session
 
     with stages(hidden=quiet or as_json) as step:
         result = compare_session(session, params, output, step, called())

@@ -33,17 +33,17 @@ def command(
     from ssmr_ident.cli.progress import doing, stages
 
     if thesis:
-        from ssmr_ident.pipeline.scoreboard import thesis_scoreboard
+        from ssmr_ident.workflows.demo.thesis import thesis_scoreboard
 
         with doing(hidden=quiet or as_json) as tell:
-            board = thesis_scoreboard(tell)
+            board = thesis_scoreboard().thesis_scoreboard(tell)
         if as_json:
             print(json.dumps(board.as_dict(), ensure_ascii=False))
         elif not quiet:
             print(board)
         return
-    from ssmr_ident.pipeline.demo import find_data, run_demo
-    from ssmr_ident.pipeline.demo_report import write_demo_report
+    from ssmr_ident.workflows.demo.page import write_demo_report
+    from ssmr_ident.workflows.demo.run import find_data, run_demo
 
     with stages(hidden=quiet or as_json) as step:
         demo = run_demo(find_data(data), output, step)

@@ -32,9 +32,9 @@ def command(
     from ssmr_ident.cli.called import called
     from ssmr_ident.cli.progress import stages
     from ssmr_ident.core.errors import InputError
-    from ssmr_ident.pipeline.diagnose import diagnose, write_diagnosis
-    from ssmr_ident.pipeline.files_read import files_read
     from ssmr_ident.session import read_parameters
+    from ssmr_ident.workflows.diagnose import diagnose, write_diagnosis
+    from ssmr_ident.workflows.files_read import files_read
 
     if output.exists() and not output.is_dir():
         raise InputError(str(output), "is a file, expected a folder", "Give another name with -o")

@@ -36,7 +36,7 @@ def command(
     from ssmr_ident.cli.progress import doing
     from ssmr_ident.core.errors import InputError
     from ssmr_ident.physics.effects import CATALOGUE
-    from ssmr_ident.pipeline.effects import catalogue_text, draw, effect_text, effect_values, find
+    from ssmr_ident.workflows.effects.catalogue import catalogue_text, draw, effect_text, effect_values, find
 
     if effect_id is None:
         if output is not None:

@@ -43,9 +43,9 @@ def command(
     from ssmr_ident.cli.called import called
     from ssmr_ident.cli.progress import stages
     from ssmr_ident.core.errors import InputError
-    from ssmr_ident.pipeline.fit import fit_session
-    from ssmr_ident.pipeline.fit_page import write_fit_page
     from ssmr_ident.session import write_parameters
+    from ssmr_ident.workflows.fit.page import write_fit_page
+    from ssmr_ident.workflows.fit.run import fit_session
 
     if output is not None and not output.absolute().parent.is_dir():
         raise InputError(str(output), "its folder does not exist", "Make the folder, or write elsewhere with -o")

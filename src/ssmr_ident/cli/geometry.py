@@ -28,7 +28,7 @@ def command(
     import numpy as np
 
     from ssmr_ident.core.errors import InputError
-    from ssmr_ident.identify.measurements import robot_geometry
+    from ssmr_ident.identify.geometry.sheet import robot_geometry
     from ssmr_ident.session import write_parameters
     from ssmr_ident.session.yaml_file import load_mapping
 

@@ -47,7 +47,7 @@ def command(
     import json
 
     from ssmr_ident.cli.progress import progress
-    from ssmr_ident.pipeline.new_session import draft_session, refuse_existing
+    from ssmr_ident.workflows.new.run import draft_session, refuse_existing
 
     refuse_existing(session)
     with progress("reading logs", hidden=quiet or as_json) as step:

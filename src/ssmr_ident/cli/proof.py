@@ -35,8 +35,14 @@ def command(
 ) -> None:
     """Hide physics in another engine's recordings, seal it, diagnose blind, open the seals and count."""
     import json
+    from importlib.util import find_spec
 
-    from ssmr_ident.proof.seal import SealBroken
+    from ssmr_ident.core.errors import InputError
+
+    if find_spec("ssmr_proof") is None:
+        mend = "It comes with the library: pip install 'ssmr_ident[proof]'"
+        raise InputError("proof", "the package ssmr_proof is not installed", mend)
+    from ssmr_proof.seal import SealBroken
 
     try:
         if unseal is not None:
@@ -58,10 +64,10 @@ def _proved(
     import secrets
 
     from ssmr_ident.cli.progress import stages
-    from ssmr_ident.proof.against import against, peer_rows, peer_section
-    from ssmr_ident.proof.kept import write_kept
-    from ssmr_ident.proof.page import write_proof_page
-    from ssmr_ident.proof.run import prove
+    from ssmr_proof.kept import write_kept
+    from ssmr_proof.page.page import write_proof_page
+    from ssmr_proof.run import prove
+    from ssmr_proof.scores.against import against, peer_rows, peer_section
 
     seed = secrets.randbelow(2**31) if seed is None else seed
     call = f"ident proof --cases {cases} --seed {seed} --jobs {jobs} -o {output}" + (" --peers" if peers else "")
@@ -88,7 +94,7 @@ def _proved(
 
 
 def _unsealed(folder: Path, diagnosis: Path | None) -> tuple[dict[str, object], str]:
-    from ssmr_ident.proof.unseal import recheck, unseal
+    from ssmr_proof.unseal import recheck, unseal
 
     if (folder / "seals.csv").is_file():
         count = recheck(folder)

@@ -69,7 +69,7 @@ def command(
 ) -> None:
     """Simulate one experiment and write it as a log."""
     from ssmr_ident.cli.progress import doing
-    from ssmr_ident.pipeline.simulate import Request, simulate_to_file
+    from ssmr_ident.workflows.simulate import Request, simulate_to_file
 
     request = Request(
         experiment=experiment, motion=motion, amplitude_mm=amplitude_mm, push_N=push_n, direction=direction,

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 
 if TYPE_CHECKING:
-    from ssmr_ident.pipeline.spectrum import SpectrumReport
+    from ssmr_ident.workflows.spectrum.run import SpectrumReport
 
 RANGE_HELP = (
     "Samples transformed: middle, beginning, end, all, or T0:T1 in seconds. "
@@ -56,10 +56,10 @@ def command(
     """Butterworth, FFT and peaks of logs (thesis section 3.2): table, spectrum.csv and figures."""
     from ssmr_ident.cli.called import called
     from ssmr_ident.core.errors import InputError
-    from ssmr_ident.pipeline.spectrum import SpectrumChoices, spectrum
-    from ssmr_ident.pipeline.spectrum_files import write
-    from ssmr_ident.pipeline.spectrum_page import write_spectrum_page
     from ssmr_ident.readers import ReadOptions
+    from ssmr_ident.workflows.spectrum.files import write
+    from ssmr_ident.workflows.spectrum.page import write_spectrum_page
+    from ssmr_ident.workflows.spectrum.run import SpectrumChoices, spectrum
 
     for option, value in (("--low-pass", low_pass), ("--half-width", half_width), ("--fs", fs)):
         if value is not None and not 0 < value < float("inf"):
@@ -79,7 +79,7 @@ def command(
     if as_json:
         _print_json(report)
     elif not quiet:
-        from ssmr_ident.pipeline.spectrum_screen import screen_text
+        from ssmr_ident.workflows.spectrum.screen import screen_text
 
         typer.echo(screen_text(report))
 

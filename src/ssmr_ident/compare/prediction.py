@@ -9,7 +9,7 @@ from ssmr_ident.compare import turning
 from ssmr_ident.compare.outcome import Prediction
 from ssmr_ident.compare.recorded import follow, predicted
 from ssmr_ident.core.parameter import ParameterSet
-from ssmr_ident.identify.coordinates import Model
+from ssmr_ident.identify.fitting.coordinates import Model
 from ssmr_ident.identify.trials import trial_of
 from ssmr_ident.physics.slots import effect_values
 

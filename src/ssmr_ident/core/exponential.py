@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from ssmr_ident.core.kernel import kernel
-from ssmr_ident.core.lanes import floor, power_of_two, where
+from ssmr_ident.core.simd import floor, power_of_two, where
 
 _PER_TURN, _TURN_HIGH, _TURN_LOW = 1.4426950408889634, 6.93147180369123816490e-01, 1.90821492927058770002e-10
 """1/ln 2, and ln 2 in two parts of which the first has zeros at its end (Cody and Waite, Software Manual, 1980)."""

@@ -12,9 +12,9 @@ from ssmr_ident.diagnose.coloured import told_by
 from ssmr_ident.diagnose.setup import BANDWIDTH, SHEET
 from ssmr_ident.diagnose.weigh import CERTAIN, Explanation, asked, evidences, surplus
 from ssmr_ident.diagnose.worth import BY_CHANCE, grows_with_motion, predictions, reddest, worth
-from ssmr_ident.identify.descent import LOUD, chatters, slides
-from ssmr_ident.identify.joint import JointFit
-from ssmr_ident.identify.scatter import covariance
+from ssmr_ident.identify.fitting.descent import LOUD, chatters, slides
+from ssmr_ident.identify.fitting.joint import JointFit
+from ssmr_ident.identify.fitting.scatter import covariance
 
 SECOND = 0.7
 """Share of the first effect's unexplained variance, mean over all recordings, that may be left when a second one is

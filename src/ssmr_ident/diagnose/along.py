@@ -21,9 +21,9 @@ from ssmr_ident.diagnose.explain import with_suspect
 from ssmr_ident.diagnose.path import Path, path_of
 from ssmr_ident.diagnose.residual_force import Oscillator
 from ssmr_ident.diagnose.scan import Suspect, smaller
-from ssmr_ident.identify.coordinates import Model
-from ssmr_ident.identify.joint import JointFit
-from ssmr_ident.identify.parallel import side_by_side
+from ssmr_ident.identify.fitting.coordinates import Model
+from ssmr_ident.identify.fitting.joint import JointFit
+from ssmr_ident.identify.fitting.parallel import side_by_side
 from ssmr_ident.physics.effect import Site
 from ssmr_ident.physics.effects import CATALOGUE
 from ssmr_ident.physics.rig import RIG_KEYS

@@ -36,9 +36,9 @@ from ssmr_ident.diagnose.worth import (
     without_jolts,
     worth,
 )
-from ssmr_ident.identify.descent import slides
-from ssmr_ident.identify.joint import JointFit, differentiate
-from ssmr_ident.identify.parallel import side_by_side
+from ssmr_ident.identify.fitting.descent import slides
+from ssmr_ident.identify.fitting.joint import JointFit, differentiate
+from ssmr_ident.identify.fitting.parallel import side_by_side
 
 METRIC = "nrmse_percent"
 

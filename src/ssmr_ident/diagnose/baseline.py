@@ -16,13 +16,13 @@ from ssmr_ident.diagnose.hollows import from_afar
 from ssmr_ident.diagnose.race import far_off
 from ssmr_ident.diagnose.setup import Setup
 from ssmr_ident.diagnose.start import begin, pooled
-from ssmr_ident.identify.cell_noise import block_noises
-from ssmr_ident.identify.clouds import settled
-from ssmr_ident.identify.descent import LOUD, chatters, descend, slides
-from ssmr_ident.identify.horizons import horizons, led, radian
-from ssmr_ident.identify.joint import JointFit, differentiate, evaluate
-from ssmr_ident.identify.parallel import side_by_side
-from ssmr_ident.identify.swings import led_through_slides
+from ssmr_ident.identify.fitting.clouds import settled
+from ssmr_ident.identify.fitting.descent import LOUD, chatters, descend, slides
+from ssmr_ident.identify.fitting.horizons import horizons, led, radian
+from ssmr_ident.identify.fitting.joint import JointFit, differentiate, evaluate
+from ssmr_ident.identify.fitting.parallel import side_by_side
+from ssmr_ident.identify.fitting.swings import led_through_slides
+from ssmr_ident.identify.forces.cell_noise import block_noises
 from ssmr_ident.identify.trials import Trial
 
 WIDE = 4.0

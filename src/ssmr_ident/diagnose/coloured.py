@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ssmr_ident.identify.joint import JointFit
+from ssmr_ident.identify.fitting.joint import JointFit
 
 Array = np.ndarray
 

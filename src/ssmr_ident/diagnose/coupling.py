@@ -10,9 +10,9 @@ from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.baseline import LAST, best_baseline, prepared
 from ssmr_ident.diagnose.setup import COUPLING, Setup
 from ssmr_ident.diagnose.weigh import Explanation
-from ssmr_ident.identify.descent import descend
-from ssmr_ident.identify.joint import evaluate
-from ssmr_ident.identify.robot_builder import RobotBuilder
+from ssmr_ident.identify.body.builder import RobotBuilder
+from ssmr_ident.identify.fitting.descent import descend
+from ssmr_ident.identify.fitting.joint import evaluate
 from ssmr_ident.identify.trials import Trial
 from ssmr_ident.identify.trials.decay import decay_trial
 

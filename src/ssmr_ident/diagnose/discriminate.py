@@ -15,8 +15,8 @@ from scipy.stats import norm
 
 from ssmr_ident.diagnose.experiments import Experiment, experiments
 from ssmr_ident.diagnose.setup import Setup
-from ssmr_ident.identify.joint import BURST, JointFit, differentiate, evaluate
-from ssmr_ident.identify.scatter import covariance
+from ssmr_ident.identify.fitting.joint import BURST, JointFit, differentiate, evaluate
+from ssmr_ident.identify.fitting.scatter import covariance
 
 Array = np.ndarray
 

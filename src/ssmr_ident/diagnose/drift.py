@@ -16,8 +16,8 @@ from ssmr_ident.diagnose.evidence import Drift
 from ssmr_ident.diagnose.parts import Part, windows
 from ssmr_ident.diagnose.reading import reading
 from ssmr_ident.diagnose.trend import bins, chance, scatter
-from ssmr_ident.identify.joint import JointFit
-from ssmr_ident.identify.objective import Unknown
+from ssmr_ident.identify.fitting.joint import JointFit
+from ssmr_ident.identify.posterior.objective import Unknown
 
 Array = np.ndarray
 

@@ -34,9 +34,9 @@ from ssmr_ident.diagnose.rotate import left_elsewhere, shown_by_all
 from ssmr_ident.diagnose.setup import Setup
 from ssmr_ident.diagnose.stripped import good_enough, outdone, shaken, stripped_of, way_home
 from ssmr_ident.diagnose.weigh import Explanation, evidences
-from ssmr_ident.identify.descent import slides
-from ssmr_ident.identify.joint import differentiate
-from ssmr_ident.identify.roughness import scatter_of
+from ssmr_ident.identify.fitting.descent import slides
+from ssmr_ident.identify.fitting.joint import differentiate
+from ssmr_ident.identify.fitting.roughness import scatter_of
 
 MOST_EFFECTS = 2
 """Effects that are looked for together."""

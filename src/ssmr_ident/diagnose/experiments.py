@@ -13,8 +13,8 @@ from ssmr_ident.core.recording import Channel
 from ssmr_ident.diagnose.motion import main_channel, motion_of
 from ssmr_ident.diagnose.quantity import prefixed
 from ssmr_ident.diagnose.setup import Setup
-from ssmr_ident.identify.joint import JointFit
-from ssmr_ident.identify.robot_builder import RobotBuilder
+from ssmr_ident.identify.body.builder import RobotBuilder
+from ssmr_ident.identify.fitting.joint import JointFit
 from ssmr_ident.identify.trials import trial_of
 from ssmr_ident.identify.trials.decay import SCALES
 from ssmr_ident.identify.trials.trial import Trial

@@ -11,10 +11,10 @@ from ssmr_ident.compare.recorded import nearest
 from ssmr_ident.diagnose.gathered import OFFSET, gathered
 from ssmr_ident.diagnose.scan import Suspect, smaller
 from ssmr_ident.diagnose.sizes import limits_of
-from ssmr_ident.identify.coordinates import Model
-from ssmr_ident.identify.descent import descend
-from ssmr_ident.identify.horizons import led
-from ssmr_ident.identify.joint import JointFit, Slopes, evaluate
+from ssmr_ident.identify.fitting.coordinates import Model
+from ssmr_ident.identify.fitting.descent import descend
+from ssmr_ident.identify.fitting.horizons import led
+from ssmr_ident.identify.fitting.joint import JointFit, Slopes, evaluate
 from ssmr_ident.physics.effects import CATALOGUE
 
 Array = np.ndarray

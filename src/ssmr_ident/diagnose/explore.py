@@ -26,9 +26,9 @@ from ssmr_ident.diagnose.race import (
     within_reach,
 )
 from ssmr_ident.diagnose.scan import Suspect, candidates, moves_beyond, out_of_reach, promising, scan, variants
-from ssmr_ident.identify.descent import LOUD, chatters, descend, slides
-from ssmr_ident.identify.joint import JointFit
-from ssmr_ident.identify.parallel import side_by_side
+from ssmr_ident.identify.fitting.descent import LOUD, chatters, descend, slides
+from ssmr_ident.identify.fitting.joint import JointFit
+from ssmr_ident.identify.fitting.parallel import side_by_side
 from ssmr_ident.physics.effects import CATALOGUE
 
 SCREENED = 8

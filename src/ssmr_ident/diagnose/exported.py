@@ -8,10 +8,10 @@ import numpy as np
 
 from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.diagnose.setup import twin
-from ssmr_ident.identify.descent import chatters
-from ssmr_ident.identify.joint import JointFit
-from ssmr_ident.identify.robot_builder import HEIGHT, SENSOR, SHIFTS
-from ssmr_ident.identify.roughness import scatter_of
+from ssmr_ident.identify.body.builder import HEIGHT, SENSOR, SHIFTS
+from ssmr_ident.identify.fitting.descent import chatters
+from ssmr_ident.identify.fitting.joint import JointFit
+from ssmr_ident.identify.fitting.roughness import scatter_of
 from ssmr_ident.physics.effects import CATALOGUE
 
 SOURCE = "fit of the recordings"

@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from ssmr_ident.diagnose.sizes import sizes_of
-from ssmr_ident.identify.coordinates import Model
-from ssmr_ident.identify.joint import JointFit
+from ssmr_ident.identify.fitting.coordinates import Model
+from ssmr_ident.identify.fitting.joint import JointFit
 from ssmr_ident.physics.effect import Sized
 from ssmr_ident.physics.effects import CATALOGUE
 

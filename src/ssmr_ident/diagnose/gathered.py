@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ssmr_ident.identify.joint import JointFit, evaluate
+from ssmr_ident.identify.fitting.joint import JointFit, evaluate
 
 OFFSET = "com_offset"
 

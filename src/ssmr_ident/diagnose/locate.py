@@ -13,7 +13,7 @@ from ssmr_ident.diagnose.ordering import CLEAR, Ordering, ordering, state_variab
 from ssmr_ident.diagnose.residual_force import unexplained_force
 from ssmr_ident.diagnose.residual_map import Cells, axes, cells, column, counting, excess, ranked
 from ssmr_ident.diagnose.tire_force import is_robot, tire_state
-from ssmr_ident.identify.joint import JointFit
+from ssmr_ident.identify.fitting.joint import JointFit
 
 Array = np.ndarray
 

@@ -10,8 +10,8 @@ import numpy as np
 
 from ssmr_ident.diagnose.explain import with_suspect
 from ssmr_ident.diagnose.scan import Suspect, probes, smaller
-from ssmr_ident.identify.descent import descend
-from ssmr_ident.identify.joint import JointFit, evaluate
+from ssmr_ident.identify.fitting.descent import descend
+from ssmr_ident.identify.fitting.joint import JointFit, evaluate
 from ssmr_ident.physics.effect import Effect
 from ssmr_ident.physics.effects import CATALOGUE
 

@@ -13,8 +13,8 @@ from ssmr_ident.diagnose.followed import all_explained, at_its_best, each_set_on
 from ssmr_ident.diagnose.polish import loud, polish
 from ssmr_ident.diagnose.race import Progress, within_reach
 from ssmr_ident.diagnose.weigh import Explanation, evidences
-from ssmr_ident.identify.descent import chatters, descend
-from ssmr_ident.identify.joint import differentiate
+from ssmr_ident.identify.fitting.descent import chatters, descend
+from ssmr_ident.identify.fitting.joint import differentiate
 from ssmr_ident.identify.trials import Trial
 
 OTHERS = 2

@@ -15,7 +15,7 @@ import numpy as np
 
 from ssmr_ident.diagnose.motion import main_channel, motion_of
 from ssmr_ident.diagnose.residual_map import counting
-from ssmr_ident.identify.joint import JointFit
+from ssmr_ident.identify.fitting.joint import JointFit
 
 Array = np.ndarray
 

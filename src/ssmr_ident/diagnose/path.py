@@ -14,7 +14,7 @@ import numpy as np
 from ssmr_ident.core.kernel import kernel
 from ssmr_ident.diagnose.motion import LOWEST, ORDER, Band, integrated, main_channel, main_frequency
 from ssmr_ident.diagnose.residual_force import Oscillator, force_of, highest
-from ssmr_ident.identify.joint import JointFit
+from ssmr_ident.identify.fitting.joint import JointFit
 from ssmr_ident.physics.effects import unlisted
 from ssmr_ident.physics.element import element_force, element_next
 from ssmr_ident.physics.slots import UNLISTED, checked, effect_vector

@@ -15,12 +15,12 @@ from ssmr_ident.diagnose.gathered import gathered
 from ssmr_ident.diagnose.race import far_off, ranked
 from ssmr_ident.diagnose.scan import held_at
 from ssmr_ident.diagnose.weigh import TIE
-from ssmr_ident.identify.clouds import settled
-from ssmr_ident.identify.descent import LOUD, chatters, descend
-from ssmr_ident.identify.horizons import led
-from ssmr_ident.identify.joint import JointFit, evaluate
-from ssmr_ident.identify.parallel import side_by_side
-from ssmr_ident.identify.swings import led_through_slides
+from ssmr_ident.identify.fitting.clouds import settled
+from ssmr_ident.identify.fitting.descent import LOUD, chatters, descend
+from ssmr_ident.identify.fitting.horizons import led
+from ssmr_ident.identify.fitting.joint import JointFit, evaluate
+from ssmr_ident.identify.fitting.parallel import side_by_side
+from ssmr_ident.identify.fitting.swings import led_through_slides
 from ssmr_ident.physics.effects import CATALOGUE
 
 MOST_TURNS = 2

@@ -14,10 +14,10 @@ from ssmr_ident.diagnose.explain import as_large_as_it_takes, beside, in_its_pla
 from ssmr_ident.diagnose.gathered import gathered
 from ssmr_ident.diagnose.loose import begun_loose
 from ssmr_ident.diagnose.scan import Suspect, both_ways, promising
-from ssmr_ident.identify.descent import chatters, descend, slides
-from ssmr_ident.identify.horizons import STEPS, led
-from ssmr_ident.identify.joint import JointFit, each_best, evaluate
-from ssmr_ident.identify.parallel import side_by_side
+from ssmr_ident.identify.fitting.descent import chatters, descend, slides
+from ssmr_ident.identify.fitting.horizons import STEPS, led
+from ssmr_ident.identify.fitting.joint import JointFit, each_best, evaluate
+from ssmr_ident.identify.fitting.parallel import side_by_side
 from ssmr_ident.identify.trials.trial import Trial
 from ssmr_ident.physics.effects import CATALOGUE
 

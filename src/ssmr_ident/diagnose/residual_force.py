@@ -13,7 +13,7 @@ import numpy as np
 
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.motion import ORDER, filtered, integrated, main_frequency
-from ssmr_ident.identify.joint import JointFit
+from ssmr_ident.identify.fitting.joint import JointFit
 from ssmr_ident.identify.trials.trial import Trial
 from ssmr_ident.physics.rig import RIG_KEYS
 

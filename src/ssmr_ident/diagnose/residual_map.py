@@ -15,7 +15,7 @@ import numpy as np
 from scipy.stats import chi2
 
 from ssmr_ident.diagnose.evidence import ResidualMap
-from ssmr_ident.identify.joint import JointFit
+from ssmr_ident.identify.fitting.joint import JointFit
 
 Array = np.ndarray
 

@@ -13,8 +13,8 @@ from ssmr_ident.diagnose.scan import Suspect
 from ssmr_ident.diagnose.stripped import good_enough
 from ssmr_ident.diagnose.weigh import TIE, Explanation, all_fitted, evidences
 from ssmr_ident.diagnose.worth import BY_CHANCE, grows_with_motion, predictions
-from ssmr_ident.identify.descent import chatters, descend
-from ssmr_ident.identify.parallel import side_by_side
+from ssmr_ident.identify.fitting.descent import chatters, descend
+from ssmr_ident.identify.fitting.parallel import side_by_side
 from ssmr_ident.identify.trials import Trial
 
 NONE_OF_THEM = "unlisted"

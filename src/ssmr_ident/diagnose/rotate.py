@@ -9,8 +9,8 @@ from scipy.stats import f as fisher
 from ssmr_ident.compare.recorded import follow
 from ssmr_ident.diagnose.accept import CHANCE, certain, harmless
 from ssmr_ident.diagnose.weigh import CERTAIN, Explanation, surplus
-from ssmr_ident.identify.descent import descend, slides
-from ssmr_ident.identify.joint import JointFit, evaluate
+from ssmr_ident.identify.fitting.descent import descend, slides
+from ssmr_ident.identify.fitting.joint import JointFit, evaluate
 
 FEWEST = 3
 """Recordings from which one can be spared."""

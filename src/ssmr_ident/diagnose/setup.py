@@ -10,11 +10,11 @@ from ssmr_ident.campaign import Campaign, Measurement
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.arranged import loudness
-from ssmr_ident.identify.coordinates import Model
-from ssmr_ident.identify.joint import JointFit
-from ssmr_ident.identify.objective import Unknown
-from ssmr_ident.identify.robot_builder import GAINS
-from ssmr_ident.identify.robot_map import robot_unknowns
+from ssmr_ident.identify.body.builder import GAINS
+from ssmr_ident.identify.body.unknowns import robot_unknowns
+from ssmr_ident.identify.fitting.coordinates import Model
+from ssmr_ident.identify.fitting.joint import JointFit
+from ssmr_ident.identify.posterior.objective import Unknown
 from ssmr_ident.identify.trials import Trial, trial_of
 from ssmr_ident.identify.trials.make import EXPERIMENTS
 from ssmr_ident.physics.rig import RIG_KEYS

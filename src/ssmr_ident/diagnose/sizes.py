@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ssmr_ident.identify.joint import JointFit
+from ssmr_ident.identify.fitting.joint import JointFit
 from ssmr_ident.identify.trials import Trial
 from ssmr_ident.identify.trials.trial import Array
 from ssmr_ident.physics.effect import Effect

@@ -14,8 +14,8 @@ from ssmr_ident.diagnose.polish import calmed
 from ssmr_ident.diagnose.race import Progress
 from ssmr_ident.diagnose.setup import Setup, set_up
 from ssmr_ident.diagnose.weigh import CERTAIN
-from ssmr_ident.identify.descent import LOUD, descend
-from ssmr_ident.identify.joint import JointFit, differentiate, evaluate
+from ssmr_ident.identify.fitting.descent import LOUD, descend
+from ssmr_ident.identify.fitting.joint import JointFit, differentiate, evaluate
 from ssmr_ident.physics.robot import SLIDING_SPEED
 
 KEY = "tire.sliding_speed_m_s"

@@ -10,16 +10,16 @@ from ssmr_ident.campaign import Campaign, Measurement
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.setup import Setup
-from ssmr_ident.identify.coordinates import scaled_at
-from ssmr_ident.identify.curvature import Curvature
-from ssmr_ident.identify.decay import fit_decay
-from ssmr_ident.identify.decay_result import Mode
-from ssmr_ident.identify.descent import search_again
-from ssmr_ident.identify.joint import JointFit, differentiate, evaluate
-from ssmr_ident.identify.posterior import most_probable
-from ssmr_ident.identify.rig import DERIVATIVES, ForcedRecord, fit_rig
-from ssmr_ident.identify.robot_builder import RobotBuilder
-from ssmr_ident.identify.robot_map import match_further, modal_observations, pick_mode, predicted_modes
+from ssmr_ident.identify.body.builder import RobotBuilder
+from ssmr_ident.identify.body.unknowns import match_further, modal_observations, pick_mode, predicted_modes
+from ssmr_ident.identify.decays.fit import fit_decay
+from ssmr_ident.identify.decays.result import Mode
+from ssmr_ident.identify.fitting.coordinates import scaled_at
+from ssmr_ident.identify.fitting.curvature import Curvature
+from ssmr_ident.identify.fitting.descent import search_again
+from ssmr_ident.identify.fitting.joint import JointFit, differentiate, evaluate
+from ssmr_ident.identify.posterior.most_probable import most_probable
+from ssmr_ident.identify.rigs.frequency_domain import DERIVATIVES, ForcedRecord, fit_rig
 from ssmr_ident.identify.trials import Trial
 from ssmr_ident.physics.rig import RIG_KEYS, rig_from_parameters
 

@@ -15,8 +15,8 @@ from ssmr_ident.diagnose.hollows import challenged
 from ssmr_ident.diagnose.polish import calmed
 from ssmr_ident.diagnose.rotate import shown_in_turn
 from ssmr_ident.diagnose.weigh import Explanation
-from ssmr_ident.identify.descent import descend, slides
-from ssmr_ident.identify.joint import JointFit, differentiate
+from ssmr_ident.identify.fitting.descent import descend, slides
+from ssmr_ident.identify.fitting.joint import JointFit, differentiate
 from ssmr_ident.identify.trials import Trial
 
 

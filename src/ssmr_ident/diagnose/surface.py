@@ -12,7 +12,7 @@ from ssmr_ident.diagnose.motion import main_channel, motion_of
 from ssmr_ident.diagnose.residual_force import force_of, oscillator
 from ssmr_ident.diagnose.residual_map import excess
 from ssmr_ident.diagnose.tire_force import is_robot, tire_state
-from ssmr_ident.identify.joint import JointFit
+from ssmr_ident.identify.fitting.joint import JointFit
 from ssmr_ident.identify.trials.trial import Trial
 
 Array = np.ndarray

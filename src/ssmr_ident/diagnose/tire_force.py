@@ -14,9 +14,9 @@ import numpy as np
 
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.motion import filtered, main_channel, main_frequency
-from ssmr_ident.identify.joint import JointFit
-from ssmr_ident.identify.output_error import START_SCALES
-from ssmr_ident.identify.robot_builder import RobotBuilder
+from ssmr_ident.identify.body.builder import RobotBuilder
+from ssmr_ident.identify.body.output_error import START_SCALES
+from ssmr_ident.identify.fitting.joint import JointFit
 from ssmr_ident.identify.trials.decay import SCALES
 from ssmr_ident.identify.trials.trial import Trial
 from ssmr_ident.physics.linear import LinearRobot, accelerometer_rows, linear_robot, responses

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ssmr_ident.diagnose.coloured import told_by
-from ssmr_ident.identify.joint import JointFit
+from ssmr_ident.identify.fitting.joint import JointFit
 from ssmr_ident.physics.effects import CATALOGUE
 
 UNLISTED = CATALOGUE["unlisted"]

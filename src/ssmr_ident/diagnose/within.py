@@ -8,8 +8,8 @@ import numpy as np
 
 from ssmr_ident.compare.recorded import follow
 from ssmr_ident.diagnose.weigh import CERTAIN, Explanation, from_recordings
-from ssmr_ident.identify.descent import descend
-from ssmr_ident.identify.joint import differentiate
+from ssmr_ident.identify.fitting.descent import descend
+from ssmr_ident.identify.fitting.joint import differentiate
 
 REACH = 3.0
 """Standard deviations of what is known of a parameter within which a baseline is still the robot of the file."""

@@ -13,13 +13,13 @@ from ssmr_ident.compare.outcome import Prediction
 from ssmr_ident.compare.recorded import predicted
 from ssmr_ident.diagnose.diagnosis import Worth
 from ssmr_ident.diagnose.evidence import Overlay
-from ssmr_ident.identify.decay_record import spread
-from ssmr_ident.identify.decay_start import nuisance_columns
-from ssmr_ident.identify.joint import JointFit
-from ssmr_ident.identify.mains import any_mains_lines
+from ssmr_ident.identify.decays.record import spread
+from ssmr_ident.identify.decays.start import nuisance_columns
+from ssmr_ident.identify.fitting.joint import JointFit
 from ssmr_ident.identify.trials.trial import Trial
 from ssmr_ident.signals.clean import rounding
 from ssmr_ident.signals.filters import ORDER, low_pass
+from ssmr_ident.signals.mains import any_mains_lines
 
 Array = np.ndarray
 

@@ -7,7 +7,7 @@ these two functions; each is passed over while it is off, so the baseline is nes
 from __future__ import annotations
 
 from ssmr_ident.core.kernel import kernel
-from ssmr_ident.core.lanes import first, lanewise
+from ssmr_ident.core.simd import first, lanewise
 from ssmr_ident.physics.effects import (
     dry_friction,
     free_play,

@@ -6,7 +6,7 @@ import math
 
 from ssmr_ident.core.exponential import exp
 from ssmr_ident.core.kernel import kernel
-from ssmr_ident.core.lanes import anywhere, where
+from ssmr_ident.core.simd import anywhere, where
 
 
 @kernel

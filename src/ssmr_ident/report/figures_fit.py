@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.figure import Figure
 
-from ssmr_ident.identify.backbone import Backbone
-from ssmr_ident.identify.friction import full_teeth
-from ssmr_ident.identify.sawtooth import Pull
+from ssmr_ident.identify.decays.backbone import Backbone
+from ssmr_ident.identify.forces.friction import full_teeth
+from ssmr_ident.identify.forces.sawtooth import Pull
 from ssmr_ident.report import style
 
 

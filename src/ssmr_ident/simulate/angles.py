@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from ssmr_ident.core.kernel import kernel
-from ssmr_ident.core.lanes import anywhere, where
+from ssmr_ident.core.simd import anywhere, where
 
 SMALL = 0.125
 """Angle [rad] up to which the series below end beyond the last bit; the library's functions cost several times as

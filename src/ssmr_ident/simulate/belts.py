@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ssmr_ident.core.kernel import kernel
-from ssmr_ident.core.lanes import first
+from ssmr_ident.core.simd import first
 from ssmr_ident.simulate.layout import KX, POINTS, RADIUS
 
 

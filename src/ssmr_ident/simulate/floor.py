@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from ssmr_ident.core.kernel import kernel
-from ssmr_ident.core.lanes import anywhere
+from ssmr_ident.core.simd import anywhere
 from ssmr_ident.physics.effects import ground_joints, ground_roughness, wheel_eccentricity
 from ssmr_ident.physics.slots import ECCENTRICITY, JOINT_DEPTH, JOINT_PITCH, JOINT_WIDTH
 

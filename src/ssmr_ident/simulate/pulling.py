@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ssmr_ident.core.kernel import kernel
-from ssmr_ident.core.lanes import where
+from ssmr_ident.core.simd import where
 
 PULLED, CABLE_K, CABLE_D, PULL_X, PULL_Y, HOOK_X, HOOK_Y, HOOK_Z, HELD, MOBILITY = range(10)
 PULLING = 10

@@ -14,7 +14,7 @@ from __future__ import annotations
 import math
 
 from ssmr_ident.core.kernel import kernel
-from ssmr_ident.core.lanes import anywhere, first, lanewise, space, where
+from ssmr_ident.core.simd import anywhere, first, lanewise, space, where
 from ssmr_ident.physics import slots
 from ssmr_ident.physics.effects import (
     load_sensitive_friction,

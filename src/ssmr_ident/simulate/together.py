@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ssmr_ident.core.kernel import kernel
-from ssmr_ident.core.lanes import WIDTH, lane, lanes_of
+from ssmr_ident.core.simd import WIDTH, lane, lanes_of
 from ssmr_ident.physics.sensor import low_pass_coefficients
 from ssmr_ident.simulate.body import Body
 from ssmr_ident.simulate.layout import OUTPUTS

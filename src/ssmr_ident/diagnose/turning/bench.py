@@ -12,7 +12,7 @@ from ssmr_ident.core.errors import Impossible, SimulationError
 from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.diagnose.turning.conditions import Condition
 from ssmr_ident.diagnose.turning.spectra import Look, average, levels_of, look
-from ssmr_ident.identify.parallel import side_by_side
+from ssmr_ident.identify.fitting.parallel import side_by_side
 from ssmr_ident.physics.slots import Effects
 from ssmr_ident.simulate.scenarios import Scenario
 from ssmr_ident.simulate.simulation import simulate

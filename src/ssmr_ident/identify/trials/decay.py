@@ -10,12 +10,11 @@ import numpy as np
 
 from ssmr_ident.campaign import Measurement
 from ssmr_ident.core.errors import InputError
-from ssmr_ident.identify.body_response import body_response, sensor_gains
-from ssmr_ident.identify.decay_record import spread
-from ssmr_ident.identify.free_decays import BodyDecay, body_decay
-from ssmr_ident.identify.noise import AutoregressiveNoise
-from ssmr_ident.identify.output_error import START_SCALES
-from ssmr_ident.identify.robot_builder import RobotBuilder
+from ssmr_ident.identify.body.builder import RobotBuilder
+from ssmr_ident.identify.body.free_decays import BodyDecay, body_decay
+from ssmr_ident.identify.body.output_error import START_SCALES
+from ssmr_ident.identify.body.response import body_response, sensor_gains
+from ssmr_ident.identify.decays.record import spread
 from ssmr_ident.identify.trials.pure_rotation import PureRotation, seen_axis
 from ssmr_ident.identify.trials.trial import Array, Asked, Course, Trial, Values
 from ssmr_ident.physics.linear import COORDINATES
@@ -23,6 +22,7 @@ from ssmr_ident.physics.robot import Robot
 from ssmr_ident.physics.slots import Effects
 from ssmr_ident.signals.clean import rounding
 from ssmr_ident.signals.metrics import LOW_PASS_HZ
+from ssmr_ident.signals.noise import AutoregressiveNoise
 from ssmr_ident.simulate.body import AWAY, MOVING
 from ssmr_ident.simulate.many import Release, simulate_many
 

@@ -15,14 +15,14 @@ from scipy.signal import lfilter
 from ssmr_ident.campaign import MOTIONS, UNITS, Measurement
 from ssmr_ident.core.errors import InputError, SimulationError
 from ssmr_ident.core.parameter import ParameterSet
-from ssmr_ident.identify.decay_record import spread
-from ssmr_ident.identify.noise import AutoregressiveNoise
+from ssmr_ident.identify.decays.record import spread
 from ssmr_ident.identify.trials.trial import Array, Course, Trial, Values
 from ssmr_ident.physics.rig import RIG_KEYS, Rig, rig_from_parameters
 from ssmr_ident.physics.slots import Effects
 from ssmr_ident.signals.clean import rounding
 from ssmr_ident.signals.grid import even_samples
 from ssmr_ident.signals.metrics import LOW_PASS_HZ
+from ssmr_ident.signals.noise import AutoregressiveNoise
 from ssmr_ident.simulate.rig import band_limited, simulate_rig
 
 COLUMN = {"position": 0, "angle": 0, "velocity": 1, "angular_rate": 1, "acceleration": 2, "acceleration_2": 2}

@@ -8,7 +8,7 @@ import numpy as np
 
 from ssmr_ident.core.errors import SimulationError
 from ssmr_ident.core.parameter import ParameterSet
-from ssmr_ident.identify.robot_builder import RobotBuilder
+from ssmr_ident.identify.body.builder import RobotBuilder
 from ssmr_ident.identify.trials.trial import Array, Values
 from ssmr_ident.physics.rig import Block, block_from_parameters
 from ssmr_ident.physics.robot import Robot

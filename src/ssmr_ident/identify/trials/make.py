@@ -5,7 +5,7 @@ from __future__ import annotations
 from ssmr_ident.campaign import Measurement
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import ParameterSet
-from ssmr_ident.identify.robot_builder import RobotBuilder
+from ssmr_ident.identify.body.builder import RobotBuilder
 from ssmr_ident.identify.trials.decay import decay_trial
 from ssmr_ident.identify.trials.forced import forced_trial
 from ssmr_ident.identify.trials.pull import pull_trial

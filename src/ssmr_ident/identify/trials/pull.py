@@ -11,15 +11,15 @@ from scipy.optimize import minimize_scalar
 from ssmr_ident.campaign import Measurement
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import ParameterSet
-from ssmr_ident.identify.decay_record import spread
-from ssmr_ident.identify.noise import AutoregressiveNoise
-from ssmr_ident.identify.robot_builder import RobotBuilder
+from ssmr_ident.identify.body.builder import RobotBuilder
+from ssmr_ident.identify.decays.record import spread
 from ssmr_ident.identify.trials.machine import QUICK, force_model
 from ssmr_ident.identify.trials.moments import lets_go, tightening
 from ssmr_ident.identify.trials.teeth import find_teeth
 from ssmr_ident.identify.trials.trial import Array, Asked, Course, Trial, Values
 from ssmr_ident.physics.slots import Effects
 from ssmr_ident.signals.grid import even_samples
+from ssmr_ident.signals.noise import AutoregressiveNoise
 
 STARTING = 3
 """Samples at the start that do not count: how the head takes up speed is not in the log."""

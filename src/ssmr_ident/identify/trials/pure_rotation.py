@@ -9,7 +9,7 @@ from scipy.signal import lfilter, lfilter_zi
 
 from ssmr_ident.campaign import Measurement
 from ssmr_ident.core.errors import InputError
-from ssmr_ident.identify.output_error import START_SCALES
+from ssmr_ident.identify.body.output_error import START_SCALES
 from ssmr_ident.physics.linear import accelerometer_rows, pure_rotations, responses
 from ssmr_ident.physics.robot import GRAVITY, Robot
 from ssmr_ident.physics.sensor import low_pass_coefficients

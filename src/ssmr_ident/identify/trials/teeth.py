@@ -13,8 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ssmr_ident.identify.decay_record import spread
-from ssmr_ident.identify.sawtooth import machine_moves, take_apart
+from ssmr_ident.identify.decays.record import spread
+from ssmr_ident.identify.forces.sawtooth import machine_moves, take_apart
 
 Array = np.ndarray
 

@@ -9,12 +9,12 @@ from functools import cached_property
 import numpy as np
 from scipy.signal import lfilter
 
-from ssmr_ident.identify.cell_noise import Blocks
-from ssmr_ident.identify.decay_record import spread
-from ssmr_ident.identify.decay_start import nuisance_columns
-from ssmr_ident.identify.mains import any_mains_lines
-from ssmr_ident.identify.noise import AutoregressiveNoise
+from ssmr_ident.identify.decays.record import spread
+from ssmr_ident.identify.decays.start import nuisance_columns
+from ssmr_ident.identify.forces.cell_noise import Blocks
 from ssmr_ident.physics.slots import Effects
+from ssmr_ident.signals.mains import any_mains_lines
+from ssmr_ident.signals.noise import AutoregressiveNoise
 
 Array = np.ndarray
 Values = Mapping[str, float]

@@ -6,8 +6,8 @@ import math
 
 from ssmr_ident.core.exponential import exp
 from ssmr_ident.core.kernel import kernel
-from ssmr_ident.core.lanes import first, where
 from ssmr_ident.core.parameter import Parameter
+from ssmr_ident.core.simd import first, where
 from ssmr_ident.physics.effect import Effect, Site, Sized
 
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from ssmr_ident.core.kernel import kernel
-from ssmr_ident.core.lanes import where
 from ssmr_ident.core.parameter import Parameter
+from ssmr_ident.core.simd import where
 from ssmr_ident.physics.effect import Effect, Site, Sized
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from ssmr_ident.core.exponential import exp
 from ssmr_ident.core.kernel import kernel
-from ssmr_ident.core.lanes import anywhere, lanewise
 from ssmr_ident.core.parameter import Parameter
+from ssmr_ident.core.simd import anywhere, lanewise
 from ssmr_ident.physics.effect import Effect, Site
 
 

@@ -8,8 +8,8 @@ from collections.abc import Mapping
 import numpy as np
 
 from ssmr_ident.core.kernel import kernel
-from ssmr_ident.core.lanes import first, lanewise
 from ssmr_ident.core.parameter import Parameter
+from ssmr_ident.core.simd import first, lanewise
 from ssmr_ident.physics.effect import Effect, Site, Sized
 
 TERMS = {

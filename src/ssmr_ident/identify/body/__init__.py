@@ -1,0 +1,1 @@
+"""A robot's body and tires from its free responses."""

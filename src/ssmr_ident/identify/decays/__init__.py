@@ -1,0 +1,1 @@
+"""Free decays of one signal: start, poles, noise, uncertainty."""

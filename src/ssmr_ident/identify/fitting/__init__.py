@@ -1,0 +1,1 @@
+"""All recordings of a session fitted together."""

@@ -1,0 +1,1 @@
+"""What force logs say: ramps, saw-teeth, friction, springs."""

@@ -1,0 +1,1 @@
+"""Centre of mass, contact points and inertia from lengths, weighings and parts."""

@@ -1,0 +1,1 @@
+"""Parameters from many small results, the user's own knowledge as prior, and how they print."""

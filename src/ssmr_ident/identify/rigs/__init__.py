@@ -1,0 +1,1 @@
+"""A rig's mass, spring and damper from measured force and motion."""

@@ -1,1 +1,0 @@
-"""Corridor: the main jobs in order, each a short readable function."""

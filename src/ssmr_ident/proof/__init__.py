@@ -1,1 +1,0 @@
-"""Proving ground: the same robot in engines that nobody here wrote."""

@@ -1,1 +1,0 @@
-"""The plant: a robot and a rig in MuJoCo whose physics shares no law with the bundled simulator."""

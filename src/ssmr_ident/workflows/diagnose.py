@@ -1,0 +1,105 @@
+"""``ident diagnose``: from a session to what physics was left out, its files and its report."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import yaml
+from threadpoolctl import threadpool_limits
+
+from ssmr_ident.campaign import Campaign, load
+from ssmr_ident.core.atomic import write_text
+from ssmr_ident.core.parameter import ParameterSet
+from ssmr_ident.diagnose.diagnosis import Diagnosis
+from ssmr_ident.session import write_parameters
+from ssmr_ident.workflows.files_read import files_read
+
+TURNING = ("swivel", "straight")
+
+Progress = Callable[[str, int, int], None]
+
+
+def diagnose(
+    campaign: Campaign,
+    parameters: ParameterSet | None = None,
+    seed: int = 0,
+    progress: Progress | None = None,
+) -> Diagnosis:
+    """Locate the mismatch between recordings and baseline, name it, model it, and prove it on recordings kept back.
+
+    Parameters
+    ----------
+    campaign : Campaign
+    parameters : ParameterSet, optional
+        What is known beforehand, in place of the session's own file.
+    seed : int
+        Of permutations and simulated floors.
+    progress : callable, optional
+        Called with the name of a stage, what of it is done, and of how much.
+
+    Raises
+    ------
+    InputError
+        A recording that the baseline has no model of, or nothing to fit.
+    """
+    known = campaign.parameters if parameters is None else parameters
+    # recordings are simulated side by side; matrices are small, and threads of their own would stand in the way
+    with threadpool_limits(1, user_api="blas"):
+        return _diagnosed(replace(campaign, parameters=known), known, seed, progress)
+
+
+def _diagnosed(campaign: Campaign, known: ParameterSet, seed: int, progress: Progress | None) -> Diagnosis:
+    experiments = {m.entry.experiment for m in campaign.measurements}
+    if experiments & set(TURNING):
+        from ssmr_ident.diagnose.turning import diagnose_turning
+
+        return diagnose_turning(campaign, known, seed, progress)
+    from ssmr_ident.diagnose.arranged import arranged
+    from ssmr_ident.diagnose.assemble import assembled
+    from ssmr_ident.diagnose.engine import examine
+    from ssmr_ident.diagnose.sliding import with_law_of_sliding
+
+    setup, known = with_law_of_sliding(arranged(campaign), known, progress)
+    return assembled(examine(setup, known, progress), known, seed)
+
+
+def diagnose_session(
+    path: str | Path, parameters: ParameterSet | None = None, seed: int = 0, progress: Progress | None = None
+) -> Diagnosis:
+    """Read a session folder and diagnose it; see ``diagnose``."""
+    return diagnose(load(path), parameters, seed, progress)
+
+
+def write_diagnosis(
+    diagnosis: Diagnosis,
+    campaign: Campaign,
+    out: Path,
+    command: str = "",
+    seed: int = 0,
+    files: Sequence[Path] = (),
+) -> None:
+    """diagnosis.yaml, before.yaml, after.yaml, report.html and its figures.
+
+    Parameters
+    ----------
+    diagnosis : Diagnosis
+    campaign : Campaign
+    out : Path
+        A folder; made where it is missing.
+    command : str
+        The call, for the report's last lines.
+    seed : int
+    files : sequence of Path
+        What was read, for their SHA-256; empty takes the session's file, robot and logs.
+    """
+    from ssmr_ident.report.diagnosis_page import write_report
+
+    out.mkdir(parents=True, exist_ok=True)
+    write_parameters(out / "before.yaml", diagnosis.before)
+    write_parameters(out / "after.yaml", diagnosis.after)
+    write_report(diagnosis, out / "report.html", command, seed, files or files_read(campaign.session.folder))
+    # last, so that who finds it finds the rest as well
+    text = yaml.safe_dump(diagnosis.as_dict(), sort_keys=False, allow_unicode=True, width=110)
+    write_text(out / "diagnosis.yaml", text)

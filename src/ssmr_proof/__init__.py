@@ -1,0 +1,1 @@
+"""The blind proof: physics concealed by another engine, found by ``ident diagnose``, unsealed and counted."""

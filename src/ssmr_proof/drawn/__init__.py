@@ -1,0 +1,1 @@
+"""What a case hides, drawn from a seed."""

@@ -1,0 +1,1 @@
+"""proof.html and its figures."""

@@ -1,0 +1,1 @@
+"""What a diagnosis claims against the truth, counted."""
