@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 # small matrices: threads of the linear algebra only get into each other's way
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: demo test check docs bench data clean
+.PHONY: demo test check docs bench bench-doctor data clean
 
 demo: $(VENV)/.runtime
 	$(BIN)/ident demo -o out
@@ -26,6 +26,11 @@ docs: $(VENV)/.docs
 
 bench: $(VENV)/.test
 	for f in benchmarks/bench_*.py; do $(BIN)/python $$f; done
+
+# N: sessions of each kind; FAMILIES: some of them; START: others than the frozen ones; ENGINE: another one
+bench-doctor: $(VENV)/.test
+	$(BIN)/python benchmarks/bench_doctor.py $(if $(N),-n $(N)) $(if $(FAMILIES),--families $(FAMILIES)) \
+	  $(if $(START),--start $(START)) $(if $(ENGINE),--engine $(ENGINE))
 
 data: $(VENV)/.runtime
 	$(BIN)/python data/make_raw.py

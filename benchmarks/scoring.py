@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import itertools
 import json
 import math
@@ -33,12 +34,12 @@ def outcome(truth: Sequence[str], diagnosis: Diagnosis) -> str:
     """What the answer is worth.
 
     ``right``: verdict and all names; ``tie``: every true name is there or in the tie, of three at most, of a name
-    that is, and there is no name more; ``clean``: nothing missing and none named; ``false alarm``, ``extra`` (right
-    names and more), ``part`` (some of the right names, no wrong ones), ``wrong``, ``missed``, ``undetermined``.
+    that is, and there is no name more; ``part`` (some of the right names, no wrong ones), ``wrong`` (a name that is
+    none, beside right ones too), ``missed``, ``false alarm``, ``undetermined``.
     """
     named = [effect.id for effect in diagnosis.effects]
     if not truth:
-        return {NOTHING: "clean", UNDETERMINED: "undetermined"}.get(diagnosis.verdict, "false alarm")
+        return {NOTHING: "right", UNDETERMINED: "undetermined"}.get(diagnosis.verdict, "false alarm")
     if diagnosis.verdict == NOTHING:
         return "missed"
     if diagnosis.verdict == MISSING and sorted(named) == sorted(truth):
@@ -50,8 +51,6 @@ def outcome(truth: Sequence[str], diagnosis: Diagnosis) -> str:
                 return "tie"
     if diagnosis.verdict == UNDETERMINED:
         return "undetermined"
-    if set(truth) < set(named):
-        return "extra"
     return "part" if set(named) < set(truth) else "wrong"
 
 
@@ -123,13 +122,17 @@ def errors(
 
 
 def engine() -> str:
-    """Commit of the checkout, with a + where files are changed."""
-    folder = Path(__file__).parent
-    commands = (["rev-parse", "--short", "HEAD"], ["status", "--porcelain", "--", "../src"])
-    head, changed = (
-        subprocess.run(["git", *c], cwd=folder, capture_output=True, text=True, check=False).stdout for c in commands
-    )
-    return head.strip() + ("+" if changed.strip() else "")
+    """The last commit that changed the package; with a digest of its files where they are changed beside it."""
+    root = Path(__file__).resolve().parents[1]
+
+    def git(*words: str) -> str:
+        return subprocess.run(["git", *words], cwd=root, capture_output=True, text=True, check=True).stdout.strip()
+
+    commit = git("log", "-1", "--format=%h", "--", "src")
+    if not git("status", "--porcelain", "--", "src"):
+        return commit
+    files = sorted((root / "src").rglob("*.py"))
+    return f"{commit}+{hashlib.sha256(b''.join(file.read_bytes() for file in files)).hexdigest()[:6]}"
 
 
 def read(file: Path) -> list[Row]:

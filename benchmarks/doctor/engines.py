@@ -1,0 +1,24 @@
+"""The engines that can be measured: functions with the arguments and the answer of ``diagnose(campaign, seed=...)``."""
+
+from __future__ import annotations
+
+import importlib
+from typing import Protocol
+
+from ssmr_ident.campaign import Campaign
+from ssmr_ident.diagnose.diagnosis import Diagnosis
+
+ENGINES = {
+    "diagnose": "ssmr_ident.workflows.diagnose:diagnose",  # what `ident diagnose` runs
+}
+
+
+class Engine(Protocol):
+    def __call__(self, campaign: Campaign, *, seed: int) -> Diagnosis: ...
+
+
+def engine_named(name: str) -> Engine:
+    """By its name in the table, or any other as ``module:function``."""
+    module, _, function = ENGINES.get(name, name).partition(":")
+    found: Engine = getattr(importlib.import_module(module), function)
+    return found

@@ -1,0 +1,49 @@
+"""What an answer is worth: the row that is kept of a session."""
+
+from __future__ import annotations
+
+import time
+import traceback
+from collections.abc import Callable
+
+import numpy as np
+from scoring import Row, errors, outcome
+
+from doctor.opened import Opened
+from ssmr_ident.diagnose.diagnosis import Diagnosis
+
+OUTCOMES = ("right", "tie", "part", "wrong", "missed", "false alarm", "undetermined", "failed")
+
+
+def judged(session: Opened, run: Callable[[], Diagnosis]) -> Row:
+    """Run an engine and hold its answer against what is right.
+
+    Where several answers are right, the one that the engine came nearest to counts.
+    """
+    begun = time.process_time()
+    try:
+        diagnosis = run()
+    except Exception:  # a session that breaks the engine is a result
+        error = traceback.format_exc(limit=-3)
+        return {"outcome": "failed", "seconds": time.process_time() - begun, "error": error}
+    seconds = time.process_time() - begun
+    before, after, floor = (session.heldout or kept_back)(session, diagnosis)
+    return {
+        "outcome": min((outcome(names, diagnosis) for names in session.right), key=OUTCOMES.index),
+        "seconds": seconds,
+        "verdict": diagnosis.verdict,
+        "named": [effect.id for effect in diagnosis.effects],
+        "ties": [list(effect.indistinguishable_from) for effect in diagnosis.effects],
+        "confidence": [effect.confidence for effect in diagnosis.effects],
+        "before": before,
+        "after": after,
+        "floor": floor,
+        "errors": errors(diagnosis, session.effects, session.parameters),
+    }
+
+
+def kept_back(session: Opened, diagnosis: Diagnosis) -> tuple[float, float, float]:
+    """Before, after and the floor of the true signals, on what the engine kept back of the session itself."""
+    heldout = diagnosis.heldout
+    floors = [session.floors[file] for file in heldout.recordings if file in session.floors]
+    return heldout.before, heldout.after, float(np.mean(floors)) if floors else float("nan")

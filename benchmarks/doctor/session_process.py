@@ -1,0 +1,68 @@
+"""One session in a process of its own: what hangs is killed, what crashes takes nothing with it."""
+
+from __future__ import annotations
+
+import math
+import multiprocessing
+import resource
+import time
+from multiprocessing.connection import Connection
+
+from scoring import Row
+
+from doctor.engines import ENGINES, engine_named
+from doctor.frozen import Case
+from doctor.judged import judged
+from doctor.opened import opened
+
+# children are forked from a process that has imported what takes long (of the package: a fork server does not find
+# modules beside a script) and has started no thread
+PROCESSES = multiprocessing.get_context("forkserver")
+PROCESSES.set_forkserver_preload(
+    ["ssmr_ident.simulate", "ssmr_ident.compare", *(e.split(":")[0] for e in ENGINES.values())]
+)
+PATIENCE = 10.0
+"""Seconds on the clock over seconds of processor, until a session that sleeps or shares the machine is given up."""
+MAKING = 600.0
+"""Seconds on the clock for drawing or reading a session."""
+
+
+def answered(case: Case, engine: str, limit: float) -> Row:
+    """The row of one session.
+
+    Parameters
+    ----------
+    case : Case
+    engine : str
+        See ``engine_named``.
+    limit : float
+        Processor seconds that the engine may take; more is a failure.
+    """
+    receiver, sender = PROCESSES.Pipe(duplex=False)
+    process = PROCESSES.Process(target=_answer, args=(sender, case, engine, limit), daemon=True)
+    process.start()
+    sender.close()
+    row: Row = {"key": case.key, "family": case.family, "outcome": "failed", "seconds": limit}
+    try:
+        for patience in (MAKING, PATIENCE * limit):
+            if not receiver.poll(patience):
+                row["error"] = f"no answer within {patience:g} s"
+                break
+            row |= receiver.recv()
+    except EOFError:  # it died without a word
+        process.join()
+        row["error"] = f"ended with {process.exitcode} (the limit is {limit:g} s of processor)"
+    process.kill()
+    process.join()
+    return row
+
+
+def _answer(sender: Connection, case: Case, engine: str, limit: float) -> None:
+    session, diagnose = opened(case), engine_named(engine)
+    sender.send({"right": [list(names) for names in session.right]})
+    wall, begun = time.perf_counter(), time.process_time()
+    most = math.ceil(begun + limit)
+    resource.setrlimit(resource.RLIMIT_CPU, (most, most))
+    row = judged(session, lambda: diagnose(session.campaign, seed=session.seed))
+    sender.send({**row, "wall": time.perf_counter() - wall})
+    sender.close()
