@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.identify.posterior.lmfit_report import Variable
-from ssmr_ident.workflows.fit.run import SessionFit
+from ssmr_ident.workflows.fit.result import SessionFit
 
 
 def made_fit() -> SessionFit:

@@ -23,7 +23,7 @@ from ssmr_ident.report.figures_spectrum import NamedAnalysis, recording_figure
 from ssmr_ident.report.overlay import overlay_figure
 from ssmr_ident.simulate.simulation import Simulation
 from ssmr_ident.workflows.effects.panels import panels
-from ssmr_ident.workflows.fit.run import SessionFit
+from ssmr_ident.workflows.fit.result import SessionFit
 from ssmr_ident.workflows.spectrum.files import MOST_PANELS
 from ssmr_ident.workflows.spectrum.run import SpectrumReport
 

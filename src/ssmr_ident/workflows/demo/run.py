@@ -15,7 +15,8 @@ from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.session import write_parameters
 from ssmr_ident.workflows.demo.simulated import write_simulated_session
 from ssmr_ident.workflows.demo.table import DemoTable, demo_table
-from ssmr_ident.workflows.fit.run import SessionFit, fit_session
+from ssmr_ident.workflows.fit.result import SessionFit
+from ssmr_ident.workflows.fit.run import fit_session
 from ssmr_ident.workflows.spectrum.files import write as write_spectrum
 from ssmr_ident.workflows.spectrum.run import SpectrumReport, spectrum
 

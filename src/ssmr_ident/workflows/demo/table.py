@@ -13,7 +13,7 @@ import numpy as np
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.shown import Shown
 from ssmr_ident.report.numbers import NONE, measured, unit
-from ssmr_ident.workflows.fit.run import SessionFit
+from ssmr_ident.workflows.fit.result import SessionFit
 
 
 @dataclass(frozen=True)

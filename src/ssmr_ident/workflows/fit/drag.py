@@ -17,7 +17,7 @@ from ssmr_ident.identify.posterior.findings import conflicts, posterior_findings
 from ssmr_ident.identify.posterior.most_probable import Observation, Unknown, most_probable
 from ssmr_ident.physics.rig import block_from_parameters
 from ssmr_ident.physics.robot import GRAVITY
-from ssmr_ident.workflows.fit.run import SessionFit
+from ssmr_ident.workflows.fit.result import SessionFit
 
 
 def fit_drag_session(campaign: Campaign, chosen: tuple[Measurement, ...]) -> SessionFit:

@@ -23,7 +23,7 @@ from ssmr_ident.report.html import (
 )
 from ssmr_ident.report.numbers import NONE, interval, measured, unit
 from ssmr_ident.workflows.files_read import files_read
-from ssmr_ident.workflows.fit.run import SessionFit
+from ssmr_ident.workflows.fit.result import SessionFit
 
 SHOWN = 6
 """As many pulls are drawn; the folder holds the figures of all."""

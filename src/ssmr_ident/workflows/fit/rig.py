@@ -17,8 +17,8 @@ from ssmr_ident.identify.rigs.frequency_domain import DERIVATIVES, ForcedRecord,
 from ssmr_ident.identify.rigs.inverse_dynamics import fit_drive
 from ssmr_ident.physics.rig import RIG_KEYS, rig_from_parameters
 from ssmr_ident.report.figures_fit import NamedBackbone
+from ssmr_ident.workflows.fit.result import SessionFit
 from ssmr_ident.workflows.fit.rig_decays import free_decay, modes_after_a_hit
-from ssmr_ident.workflows.fit.run import SessionFit
 
 ONE_MODE_LEAVES = 50.0
 """Percent of a forced record that a single mode may leave; beyond, mass and stiffness are not those of the rig."""

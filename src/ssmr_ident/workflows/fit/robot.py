@@ -25,6 +25,7 @@ from ssmr_ident.identify.posterior.findings import amplitude_findings, conflicts
 from ssmr_ident.identify.posterior.most_probable import Unknown, most_probable
 from ssmr_ident.report.figures_fit import NamedBackbone
 from ssmr_ident.simulate.scenarios import ROPE_STIFFNESS
+from ssmr_ident.workflows.fit.result import SessionFit
 from ssmr_ident.workflows.fit.robot_decays import body_statistics, fit_samples
 from ssmr_ident.workflows.fit.robot_forces import (
     Gathered,
@@ -37,7 +38,6 @@ from ssmr_ident.workflows.fit.robot_forces import (
     stick_slip_findings,
 )
 from ssmr_ident.workflows.fit.robot_result import ROPE, in_file, path_of, strongest, tables, updated, variables
-from ssmr_ident.workflows.fit.run import SessionFit
 from ssmr_ident.workflows.fit.speeds import rate_findings, slip_findings
 
 SEEN_BY = {"roll": ("ay", "wx"), "pitch": ("ax", "wy"), "yaw": ("ay", "wz")}
