@@ -12,19 +12,19 @@ from scipy.signal import lfilter
 from ssmr_ident.identify.fitting.coordinates import Model
 from ssmr_ident.identify.fitting.curvature import Curvature
 from ssmr_ident.identify.fitting.descent import descend
-from ssmr_ident.identify.fitting.joint import JointFit, differentiate, evaluate, worth
+from ssmr_ident.identify.fitting.joint import JointFit, differentiate, evaluate
 from ssmr_ident.identify.fitting.scatter import covariance as scatter_of
 from ssmr_ident.identify.posterior.objective import Unknown
 from ssmr_ident.identify.trials import Trial, decay
 from ssmr_ident.identify.trials.trial import Course
-from ssmr_ident.signals.noise import AutoregressiveNoise
+from ssmr_ident.signals.noise import AutoregressiveNoise, independent_samples
 
 NAMES = ("a", "b", "c")
 MODEL = Model(tuple(Unknown(name, "1", 0.0, 2.0, positive=False) for name in NAMES))
 
 
 def test_white_samples_are_worth_themselves() -> None:
-    shares = [worth(np.random.default_rng(seed).standard_normal(4000)) / 4000 for seed in range(20)]
+    shares = [independent_samples(np.random.default_rng(seed).standard_normal(4000)) / 4000 for seed in range(20)]
     assert min(shares) > 0.85
     assert np.mean(shares) == pytest.approx(1.0, abs=0.05)
 
@@ -39,17 +39,17 @@ def test_correlated_samples_are_worth_what_bartlett_says(phi: float) -> None:
     count, exact = 40_000, (1.0 - phi**2) / (1.0 + phi**2)
     whites = [np.random.default_rng(seed).standard_normal(count) for seed in range(10)]
     for sign in (1.0, -1.0):
-        share = np.mean([worth(lfilter([1.0], [1.0, -sign * phi], white)) / count for white in whites])
+        share = np.mean([independent_samples(lfilter([1.0], [1.0, -sign * phi], white)) / count for white in whites])
         assert 0.66 * exact < share < 1.06 * exact
 
 
 def test_what_is_masked_or_short_or_silent_is_counted_as_it_is() -> None:
     white = np.random.default_rng(1).standard_normal(2000)
     masked = np.concatenate([white, np.zeros(3000)])
-    assert worth(masked) == worth(white)
-    assert worth(white[:5]) == 5.0
-    assert worth(np.zeros(100)) <= 100.0
-    assert worth(3e-7 * white) == pytest.approx(worth(white))
+    assert independent_samples(masked) == independent_samples(white)
+    assert independent_samples(white[:5]) == 5.0
+    assert independent_samples(np.zeros(100)) <= 100.0
+    assert independent_samples(3e-7 * white) == pytest.approx(independent_samples(white))
 
 
 def _trial(shared: np.ndarray, own: np.ndarray, target: np.ndarray, scale: float, name: str) -> Trial:

@@ -11,7 +11,7 @@ import numpy as np
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.recording import Recording
 from ssmr_ident.readers.health import LogHealth, health_of
-from ssmr_ident.signals.clean import mains_line
+from ssmr_ident.signals.noise.hum import mains_line
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ from ssmr_ident.physics.motor import wheel_rates
 from ssmr_ident.physics.robot import Robot, robot_from_parameters
 from ssmr_ident.physics.slots import Effects, effect_values
 from ssmr_ident.signals.grid import even_samples
-from ssmr_ident.signals.spectra import power_density
+from ssmr_ident.signals.noise import quietest_density
 from ssmr_ident.simulate.scenarios import Scenario
 from ssmr_ident.simulate.simulation import simulate
 
@@ -43,22 +43,6 @@ def with_floor(effects: Effects, parameters: ParameterSet, seed: float = 1.0) ->
     return {"ground_roughness": grain, **{name: dict(values) for name, values in effects.items()}}
 
 
-def sensor_noise(samples: np.ndarray, sample_rate: float) -> np.ndarray:
-    """Standard deviation of the white noise in each channel, from the quietest tenth of the spectrum above 1 Hz.
-
-    Parameters
-    ----------
-    samples : (n, c) float
-
-    Returns
-    -------
-    (c,) float
-        Unit of the samples; an upper bound where motion fills the whole band.
-    """
-    density = power_density(samples, sample_rate, band_hz=(1.0, 0.45 * sample_rate), width_hz=2.0).density
-    return np.sqrt(np.quantile(density, 0.1, axis=0) * 0.5 * sample_rate)
-
-
 def predict(parameters: ParameterSet, measurement: Measurement) -> Prediction:
     """Simulate a run at the wanted speed for as long as it was recorded, with as much sensor noise as it holds.
 
@@ -78,7 +62,7 @@ def predict(parameters: ParameterSet, measurement: Measurement) -> Prediction:
     simulation = simulate(robot, scenario, even.sample_rate, effects=active)
     skip = len(simulation.time) - len(even.samples)
     simulated = simulation.values[skip:][:, [AXES.index(name) for name in names]]
-    noise = sensor_noise(even.samples, even.sample_rate)
+    noise = np.sqrt(quietest_density(even.samples, even.sample_rate) * 0.5 * even.sample_rate)
     simulated = simulated + noise * np.random.default_rng(_NOISE_SEED).standard_normal(simulated.shape)
     # a mounting that is not quite level shows as a constant: it is the sensor's, not the motion's
     simulated = simulated - simulated.mean(axis=0) + even.samples.mean(axis=0)

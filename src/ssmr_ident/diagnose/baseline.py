@@ -22,8 +22,8 @@ from ssmr_ident.identify.fitting.horizons import horizons, led, radian
 from ssmr_ident.identify.fitting.joint import JointFit, differentiate, evaluate
 from ssmr_ident.identify.fitting.parallel import side_by_side
 from ssmr_ident.identify.fitting.swings import led_through_slides
-from ssmr_ident.identify.forces.cell_noise import block_noises
 from ssmr_ident.identify.trials import Trial
+from ssmr_ident.signals.noise import block_noises
 
 WIDE = 4.0
 """Variance over the noise's that the median recording may be left with when an effect has been found already, or where

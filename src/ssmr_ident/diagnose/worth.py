@@ -13,13 +13,10 @@ from ssmr_ident.compare.outcome import Prediction
 from ssmr_ident.compare.recorded import predicted
 from ssmr_ident.diagnose.diagnosis import Worth
 from ssmr_ident.diagnose.evidence import Overlay
-from ssmr_ident.identify.decays.record import spread
-from ssmr_ident.identify.decays.start import nuisance_columns
 from ssmr_ident.identify.fitting.joint import JointFit
 from ssmr_ident.identify.trials.trial import Trial
-from ssmr_ident.signals.clean import rounding
 from ssmr_ident.signals.filters import ORDER, low_pass
-from ssmr_ident.signals.mains import any_mains_lines
+from ssmr_ident.signals.noise import rounding, white_noise, without_mains
 
 Array = np.ndarray
 
@@ -95,18 +92,9 @@ def noise_floor(prediction: Prediction) -> float:
     noise = 0.0
     for column, logged, own, size in zip(clean.T, prediction.measured.T, power, scale, strict=True):
         # a tail that rests within one step of the converter has no differences
-        white = max(spread(column), rounding(logged))
-        noise += (share * white**2 + own) / size**2
+        noise += (share * white_noise(column, rounding(logged)).std ** 2 + own) / size**2
     signal = float(np.sum(((measured - measured.mean(axis=0)) / scale).var(axis=0)))
     return 100.0 * float(np.sqrt(noise / signal))
-
-
-def without_mains(rest: Array, time: Array) -> tuple[Array, Array, Array]:
-    """(n, c) samples less the mains lines that stand out of them; those, (k,) [Hz], and their waves, (2 k, c)."""
-    lines = any_mains_lines(rest, float(time[1] - time[0]))
-    columns = nuisance_columns(time, lines)
-    waves = np.linalg.lstsq(columns, rest, rcond=None)[0][1:]
-    return rest - columns[:, 1:] @ waves, np.array(lines), waves
 
 
 def passed(prediction: Prediction) -> float:

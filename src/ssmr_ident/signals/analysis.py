@@ -8,8 +8,9 @@ import numpy as np
 from scipy import signal
 
 from ssmr_ident.core.shown import Shown
-from ssmr_ident.signals import clean, filters
+from ssmr_ident.signals import filters
 from ssmr_ident.signals.checks import checked_samples
+from ssmr_ident.signals.noise import hum
 from ssmr_ident.signals.peaks import BAND_HZ, Peaks, find_peaks
 from ssmr_ident.signals.spectra import SWIVEL_LENGTH, SampleRange, Spectrum, amplitude_spectrum, select_range
 
@@ -74,7 +75,7 @@ class ChannelAnalysis(Shown):
     spectrum: Spectrum
     peaks: Peaks
     amplitude: float
-    mains: clean.Line | None
+    mains: hum.Line | None
 
     @property
     def time(self) -> np.ndarray:
@@ -126,10 +127,10 @@ def analyse(
     spectrum = amplitude_spectrum(array[part.indices], sample_rate)
     peaks = find_peaks(spectrum, band_hz=options.band_hz)
     duration = len(array) / sample_rate
-    shows_mains = sample_rate / 2 > clean.MAINS_HZ and duration * clean.MAINS_HZ >= 4
-    mains = clean.mains_line(array, sample_rate) if shows_mains else None
+    shows_mains = sample_rate / 2 > hum.MAINS_HZ and duration * hum.MAINS_HZ >= 4
+    mains = hum.mains_line(array, sample_rate) if shows_mains else None
     humless = array
-    if mains is not None and options.low_pass_hz < clean.MAINS_HZ:
+    if mains is not None and options.low_pass_hz < hum.MAINS_HZ:
         humless = array - mains.samples(len(array), sample_rate)
     low_passed = filters.low_pass(humless, sample_rate, options.low_pass_hz)
     band_passed = None

@@ -13,9 +13,10 @@ from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.core.recording import Recording
 from ssmr_ident.diagnose.turning.likelihood import NEPER_DB, log_variance
-from ssmr_ident.diagnose.turning.spectra import Look, average, look, white_noise
+from ssmr_ident.diagnose.turning.spectra import Look, average, look
 from ssmr_ident.physics.robot import Robot, robot_from_parameters
 from ssmr_ident.signals.grid import even_samples
+from ssmr_ident.signals.noise import line_power, quietest_density
 
 SHORTEST = 4.0  # s; shorter records are starting and stopping, and hold too few segments
 LONGEST = 40.0  # s of simulation; a density is known to 16 % by then
@@ -176,7 +177,7 @@ def _condition(robot: Robot, group: list[Measurement]) -> Condition:
         even = even_samples(m.recording.time, np.column_stack([m.recording[name] for name in names]))
         looks.append(look(even.samples, even.sample_rate))
         halves.append(_halves(even.samples, even.sample_rate))
-        noises.append(white_noise(even.samples, even.sample_rate))
+        noises.append(quietest_density(even.samples, even.sample_rate))
         spreads.append(_disturbance(even.samples, even.sample_rate, noises[-1]))
         if "wz" in m.recording:
             turns.append(float(np.mean(m.recording["wz"])))
@@ -220,7 +221,5 @@ def _disturbance(samples: np.ndarray, sample_rate: float, noise: np.ndarray) -> 
     """Noise up to half the rate, and the mains line where the log holds it: (c,) float."""
     power = noise * sample_rate / 2.0
     if sample_rate > 130.0:
-        steps = np.arange(len(samples)) / sample_rate
-        wave = np.exp(-2j * np.pi * 60.0 * steps)
-        power = power + 2.0 * np.abs((wave[:, None] * samples).mean(axis=0)) ** 2
+        power = power + line_power(samples, sample_rate, 60.0)
     return np.sqrt(power)

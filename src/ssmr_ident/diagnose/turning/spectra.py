@@ -8,8 +8,6 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from scipy import signal
 
-from ssmr_ident.signals.spectra import power_density
-
 BAND_HZ = (1.0, 50.0)  # of the contract's log_psd_db
 WELCH = 0.53
 """Variance of a Welch density of T seconds (Hann, half overlapping, 1 Hz wide) is WELCH/T of its square."""
@@ -108,12 +106,3 @@ def average(looks: list[Look]) -> Look:
         np.einsum("l,ls->s", share, np.array([one.levels for one in looks])),
         np.einsum("l,ls->s", share**2, np.array([one.level_variance for one in looks])),
     )
-
-
-def white_noise(samples: np.ndarray, sample_rate: float) -> np.ndarray:
-    """One-sided density of the sensor's white noise per channel, (c,) float [(m/s^2)^2/Hz].
-
-    The quietest tenth of the spectrum: an upper bound where motion fills the whole band.
-    """
-    density = power_density(samples, sample_rate, band_hz=(1.0, 0.45 * sample_rate), width_hz=2.0).density
-    return np.quantile(density, 0.1, axis=0)

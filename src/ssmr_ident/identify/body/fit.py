@@ -14,7 +14,7 @@ from ssmr_ident.identify.body.output_error import DecaySamples
 from ssmr_ident.identify.posterior.most_probable import Observation, Posterior, Unknown, most_probable
 from ssmr_ident.physics.robot import Robot
 from ssmr_ident.physics.slots import Effects
-from ssmr_ident.signals.noise import whiteness
+from ssmr_ident.signals.noise import samples_together, whiteness
 
 Array = np.ndarray
 
@@ -169,10 +169,7 @@ def distrust_of(residual: Array) -> Array:
         variance = float(np.mean(part**2))
         if variance < NOTICED or whiteness(residual[:, c]) > 1e-4:
             continue
-        size = 1 << (2 * len(part) - 1).bit_length()
-        covariance = np.fft.irfft(np.abs(np.fft.rfft(part, size)) ** 2, size)[: len(part) // 2]
-        together = 1.0 + 2.0 * float(np.sum((covariance[1:] / covariance[0]) ** 2))
-        sizes[c] = np.sqrt(max(variance * together, 1.0))
+        sizes[c] = np.sqrt(max(variance * samples_together(part), 1.0))
     return sizes
 
 

@@ -14,10 +14,9 @@ from functools import cached_property
 import numpy as np
 
 from ssmr_ident.core.kernel import kernel
-from ssmr_ident.identify.decays.record import Record, prepare, spread
-from ssmr_ident.identify.decays.start import nuisance_columns
+from ssmr_ident.identify.decays.record import Record, prepare
 from ssmr_ident.physics.sensor import low_pass_coefficients
-from ssmr_ident.signals.noise import AutoregressiveNoise, fit_noise
+from ssmr_ident.signals.noise import AutoregressiveNoise, fit_noise, nuisance_columns, white_noise
 
 Array = np.ndarray
 
@@ -151,10 +150,7 @@ class BodyDecay:
         """The same with each column's noise taken ``sizes`` times as large, (c,) float."""
         return replace(
             self,
-            noises=tuple(
-                AutoregressiveNoise(noise.filter, noise.std * float(size))
-                for noise, size in zip(self.noises, sizes, strict=True)
-            ),
+            noises=tuple(noise.louder(float(size)) for noise, size in zip(self.noises, sizes, strict=True)),
         )
 
 
@@ -185,7 +181,7 @@ def body_decay(
         skip = math.ceil(-math.log(SETTLED) / (2 * math.pi * bandwidth_hz / math.sqrt(2.0)) / record.step)
     count = (len(record.samples) - skip) // block
     samples = record.samples[skip : skip + count * block].reshape(count, block, -1).mean(axis=1)
-    noises = tuple(AutoregressiveNoise(np.ones(1), spread(samples[:, c])) for c in range(samples.shape[1]))
+    noises = tuple(white_noise(samples[:, c]) for c in range(samples.shape[1]))
     first = (skip + (block - 1) / 2) * record.step
     return BodyDecay(
         name, tuple(axis for axis, _ in channels), samples, first, block * record.step, block, record, noises

@@ -15,7 +15,7 @@ from scipy.stats import norm
 from ssmr_ident.core.shown import Shown
 from ssmr_ident.identify.decays.poles import Block, fit_poles, modelled
 from ssmr_ident.identify.decays.result import DecayFit
-from ssmr_ident.identify.decays.start import nuisance_columns
+from ssmr_ident.signals.noise import nuisance_columns
 
 Array = np.ndarray
 

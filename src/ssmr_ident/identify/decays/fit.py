@@ -13,11 +13,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ssmr_ident.identify.decays.record import noise_models, prepare, spread
+from ssmr_ident.identify.decays.record import noise_models, prepare
 from ssmr_ident.identify.decays.result import DecayFit
 from ssmr_ident.identify.decays.search import evidence, ladder
 from ssmr_ident.identify.decays.summary import summarise
-from ssmr_ident.signals.noise import AutoregressiveNoise
+from ssmr_ident.signals.noise import white_noise
 
 Array = np.ndarray
 
@@ -94,9 +94,7 @@ def fit_decays(
         prepare(time, samples, None if starts_s is None else starts_s[number], mains_hz, number)
         for number, (time, samples) in enumerate(records)
     ]
-    silent = [
-        [AutoregressiveNoise(np.ones(1), spread(r.samples[:, c])) for c in range(r.samples.shape[1])] for r in prepared
-    ]
+    silent = [[white_noise(r.samples[:, c]) for c in range(r.samples.shape[1])] for r in prepared]
     top = modes or max_modes
     first = ladder(prepared, silent, top, wanted=modes)
     richest = first[max(first)]

@@ -10,15 +10,10 @@ import numpy as np
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.identify.decays.poles import Block, PoleFit, modelled
 from ssmr_ident.identify.decays.release import find_release
-from ssmr_ident.identify.decays.start import nuisance_columns
-from ssmr_ident.signals.mains import mains_lines
-from ssmr_ident.signals.noise import AutoregressiveNoise, fit_noise
+from ssmr_ident.signals.noise import AutoregressiveNoise, mains_lines, nuisance_columns, quiet_noise
 
 Array = np.ndarray
 Noises = Sequence[Sequence[AutoregressiveNoise]]
-
-SHORTEST_QUIET = 400
-"""Samples of quiet tail from which an autoregressive model of order up to 24 is taken; below, the residual."""
 
 
 @dataclass(frozen=True)
@@ -58,13 +53,6 @@ def prepare(time: Array, samples: Array, start_s: float | None, mains_hz: float 
     return Record(samples[start:], step, start, float(time[start]), lines)
 
 
-def spread(samples: Array) -> float:
-    """Noise by the median of second differences, which a slow motion hardly enters."""
-    difference = np.diff(samples, 2)
-    spread = 1.4826 * float(np.median(np.abs(difference))) / np.sqrt(6.0)
-    return spread if spread > 0 else max(float(np.std(samples)), 1e-300) * 1e-6
-
-
 def whitened_blocks(records: Sequence[Record], noises: Noises) -> list[Block]:
     blocks = []
     for record, channel_noises in zip(records, noises, strict=True):
@@ -99,12 +87,8 @@ def noise_models(records: Sequence[Record], silent: Noises, fit: PoleFit) -> lis
         quiet = quiet_from(record, block, fit, index, below=0.3)
         channels = []
         for channel in range(residual.shape[1]):
-            tail = residual[quiet[channel] :, channel]
-            scale = silent[index][channel].std
-            if len(tail) >= max(SHORTEST_QUIET, len(residual) // 8):
-                channels.append(fit_noise(scale * tail))
-            else:
-                spent = 4 * len(fit.rates) + block.nuisances.shape[1]
-                channels.append(fit_noise(scale * residual[:, channel], spent=spent))
+            spent = 4 * len(fit.rates) + block.nuisances.shape[1]
+            std = silent[index][channel].std
+            channels.append(quiet_noise(residual[:, channel], quiet[channel], spent, std))
         models.append(channels)
     return models

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from ssmr_ident.identify.decays.poles import Block, fit_poles, modelled
-from ssmr_ident.identify.decays.start import nuisance_columns, rest_after, spectral_poles
+from ssmr_ident.identify.decays.start import spectral_poles
+from ssmr_ident.signals.noise import median_std, nuisance_columns, rest_after
 
 Array = np.ndarray
 
@@ -37,7 +38,7 @@ def find_release(samples: Array, step: float, lines_hz: tuple[float, ...] = ()) 
     times = step * np.arange(count)
     rest = rest_after(samples, times, lines_hz)
     last = rest[int(0.8 * count) :]
-    noise = 1.4826 * np.median(np.abs(last), axis=0) + 1e-12 * np.max(np.abs(rest))
+    noise = median_std(last) + 1e-12 * np.max(np.abs(rest))
     loud = int(np.argmax(np.max(np.abs(rest), axis=0) / noise))
     signal, level = rest[:, loud], float(noise[loud])
     width = max(1, round(0.004 / step))

@@ -87,29 +87,3 @@ def matrix_pencil(samples: Array, step: float, modes: int, pencil: int | None = 
     # The right singular vectors span conjugated exponentials as well, so the sign of ω is free.
     poles = poles[poles.imag > 0]
     return poles[np.argsort(-np.abs(poles.imag))][:modes]
-
-
-def nuisance_columns(times: Array, lines_hz: tuple[float, ...]) -> Array:
-    """Offset, and sine and cosine of each line, (n, 1 + 2·lines)."""
-    columns = [np.ones(len(times))]
-    for line in lines_hz:
-        phase = 2 * np.pi * line * times
-        columns += [np.cos(phase), np.sin(phase)]
-    return np.column_stack(columns)
-
-
-def rest_after(samples: Array, times: Array, lines_hz: tuple[float, ...], share: float = 0.2) -> Array:
-    """Samples with the offset and lines of their last part removed, (n, c); also tells noise from motion.
-
-    Parameters
-    ----------
-    samples : (n, c) float
-    times : (n,) float [s]
-    lines_hz : tuple of float [Hz]
-    share : float
-        Last part of the record that is taken as being at rest.
-    """
-    columns = nuisance_columns(times, lines_hz)
-    tail = slice(int(len(times) * (1 - share)), None)
-    solution = np.linalg.lstsq(columns[tail], samples[tail], rcond=None)[0]
-    return samples - columns @ solution

@@ -20,6 +20,7 @@ import numpy as np
 from ssmr_ident.identify.fitting.coordinates import Model, Split
 from ssmr_ident.identify.fitting.parallel import side_by_side
 from ssmr_ident.identify.trials.trial import Asked, Trial
+from ssmr_ident.signals.noise import independent_samples
 
 Array = np.ndarray
 T = TypeVar("T")
@@ -102,7 +103,7 @@ class JointFit:
         """(t,) float, samples of each trial that are independent of each other, by its residual's correlation."""
         return np.array(
             [
-                sum(worth(trial.by_channel(r)[:, c]) for c in range(len(trial.channels)))
+                sum(independent_samples(trial.by_channel(r)[:, c]) for c in range(len(trial.channels)))
                 for trial, r in zip(self.trials, self.residuals, strict=True)
             ]
         )
@@ -155,21 +156,6 @@ def each_best(fits: Sequence[JointFit]) -> JointFit:
     """Fits of the same trials at one point, each trial as it is left with least."""
     parts = np.array([np.where(np.isfinite(f.parts), f.parts, np.inf) for f in fits])
     return together([fits[best].only(k) for k, best in enumerate(np.argmin(parts, axis=0))])
-
-
-def worth(residual: Array) -> float:
-    """Number of independent samples in a residual, n/(1 + 2 Σ ρ²) (Bartlett 1946)."""
-    used = residual[residual != 0.0] if np.any(residual == 0.0) else residual
-    count = len(used)
-    if count < 8:
-        return float(count)
-    size = 1 << (2 * count - 1).bit_length()
-    covariance = np.fft.irfft(np.abs(np.fft.rfft(used, size)) ** 2, size)[: max(2, count // 4)]
-    if not covariance[0] > 0:
-        return float(count)
-    rho = covariance[1:] / covariance[0]
-    excess = float(np.sum(rho**2)) - len(rho) / count  # what white noise shows of it by chance
-    return count / (1.0 + 2.0 * max(excess, 0.0))
 
 
 def evaluate(

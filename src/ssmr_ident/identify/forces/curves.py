@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ssmr_ident.identify.forces.ramps import noise_of
 from ssmr_ident.identify.forces.sawtooth import machine_moves
 from ssmr_ident.identify.forces.stiffness import StiffnessChoice, compare_laws
+from ssmr_ident.signals.noise import force_noise
 
 Array = np.ndarray
 
@@ -55,7 +55,7 @@ def load_curve(position: Array, force: Array) -> LoadCurve:
     position, force = np.asarray(position)[moving], np.asarray(force)[moving]
     if len(force) < 30:
         raise ValueError("the machine hardly moves")
-    noise = noise_of(force)
+    noise = force_noise(force)
     width = max(1, len(force) // 300)
     smooth = np.convolve(force, np.ones(width) / width, mode="same")
     inner = slice(width, len(force) - width)
@@ -129,7 +129,7 @@ def block_pull(time: Array, force: Array) -> BlockPull:
     The force before the pull is taken as zero only within five standard deviations of its noise: a load cell
     whose zero differs from run to run, or a cable that was not slack, leaves the level unknown by as much.
     """
-    noise = noise_of(force)
+    noise = force_noise(force)
     head = force[: max(8, len(force) // 1000)]
     zero = float(np.median(head))
     settled = float(np.median(force[len(force) // 100 : max(len(force) // 20, len(force) // 100 + 10)]))

@@ -11,6 +11,8 @@ from itertools import pairwise
 
 import numpy as np
 
+from ssmr_ident.signals.noise import force_noise, median_std
+
 Array = np.ndarray
 
 FINEST = 1200
@@ -47,12 +49,6 @@ class Ramp:
     @property
     def samples(self) -> int:
         return self.last - self.first + 1
-
-
-def noise_of(force: Array) -> float:
-    """Noise standard deviation [N] from second differences, which ramps do not enter and few teeth disturb."""
-    spread = 1.4826 * float(np.median(np.abs(np.diff(force, 2)))) / np.sqrt(6.0)
-    return max(spread, 1e-9 * (float(np.ptp(force)) + 1e-12))
 
 
 def partition(x: Array, y: Array, variance: float, shortest: int = 3) -> list[int]:
@@ -132,7 +128,7 @@ def find_ramps(position: Array, force: Array) -> tuple[Ramp, ...]:
     block = max(1, -(-count // FINEST))
     whole = count // block * block
     y = force[:whole].reshape(-1, block).mean(axis=1)
-    variance = noise_of(y) ** 2
+    variance = force_noise(y) ** 2
     # A first pass shows how far neighbouring points go together; the second one charges for it.
     for _ in range(2):
         starts = partition(np.arange(len(y), dtype=float), y, variance)
@@ -143,7 +139,7 @@ def find_ramps(position: Array, force: Array) -> tuple[Ramp, ...]:
         power = float(residual @ residual)
         correlation = float(np.clip(residual[1:] @ residual[:-1] / power, 0.0, 0.9)) if power > 0 else 0.0
         # The median keeps the few points that a jump smears from inflating the noise of all.
-        level = 1.4826 * float(np.median(np.abs(residual)))
+        level = float(median_std(residual))
         variance = max(variance, level**2) * (1 + correlation) / (1 - correlation)
     ramps = []
     for a, b in pairwise(edges):

@@ -14,7 +14,8 @@ import numpy as np
 from scipy.ndimage import median_filter
 
 from ssmr_ident.core.shown import Shown
-from ssmr_ident.identify.forces.ramps import Ramp, find_ramps, noise_of
+from ssmr_ident.identify.forces.ramps import Ramp, find_ramps
+from ssmr_ident.signals.noise import force_noise
 
 Array = np.ndarray
 
@@ -124,7 +125,7 @@ def take_apart(position: Array, force: Array) -> Pull:
     if len(force) < 30:
         raise ValueError("the machine hardly moves")
     ramps = find_ramps(position, force)
-    noise = noise_of(force)
+    noise = force_noise(force)
     first = first_rise(ramps, noise)
     peak = float(np.max(median_filter(force, size=5)))
     teeth = _teeth(ramps, first, noise, position, force)

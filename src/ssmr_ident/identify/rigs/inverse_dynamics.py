@@ -13,22 +13,9 @@ import numpy as np
 from scipy.signal import butter, sosfiltfilt
 
 from ssmr_ident.identify.rigs.frequency_domain import RigFit
-from ssmr_ident.signals.noise import long_run_variance, whiteness
+from ssmr_ident.signals.noise import long_run_variance, usable_band, whiteness
 
 Array = np.ndarray
-
-
-def usable_band(position: Array, step: float) -> float:
-    """Highest frequency [Hz] at which the motion stands ten times above the position's noise, in amplitude."""
-    centred = position - np.linspace(position[0], position[-1], len(position))
-    power = np.abs(np.fft.rfft(centred * np.hanning(len(position)))) ** 2
-    frequency = np.fft.rfftfreq(len(position), step)
-    width = max(3, len(power) // 400)
-    smooth = np.convolve(power, np.ones(width) / width, mode="same")
-    floor = float(np.median(smooth[len(smooth) // 2 :]))
-    below = np.flatnonzero(smooth[width:] < 100 * floor)
-    first = frequency[width + below[0]] if len(below) else 0.1 / step
-    return float(np.clip(first, 5.0 / (len(position) * step), 0.2 / step))
 
 
 COLUMNS = ("mass", "damping", "friction", "offset")

@@ -14,15 +14,13 @@ from ssmr_ident.identify.body.builder import RobotBuilder
 from ssmr_ident.identify.body.free_decays import BodyDecay, body_decay
 from ssmr_ident.identify.body.output_error import START_SCALES
 from ssmr_ident.identify.body.response import body_response, sensor_gains
-from ssmr_ident.identify.decays.record import spread
 from ssmr_ident.identify.trials.pure_rotation import PureRotation, seen_axis
 from ssmr_ident.identify.trials.trial import Array, Asked, Course, Trial, Values
 from ssmr_ident.physics.linear import COORDINATES
 from ssmr_ident.physics.robot import Robot
 from ssmr_ident.physics.slots import Effects
-from ssmr_ident.signals.clean import rounding
 from ssmr_ident.signals.metrics import LOW_PASS_HZ
-from ssmr_ident.signals.noise import AutoregressiveNoise
+from ssmr_ident.signals.noise import rounding, white_noise
 from ssmr_ident.simulate.body import AWAY, MOVING
 from ssmr_ident.simulate.many import Release, simulate_many
 
@@ -104,7 +102,7 @@ def decay_trial(measurement: Measurement, builder: RobotBuilder, decoupled: bool
     rest = decay.samples - whole @ np.linalg.lstsq(whole[quiet:], decay.samples[quiet:], rcond=None)[0]
     # second differences hardly see a motion that goes on to the end; a fitted noise model would take it for noise
     noises = tuple(
-        AutoregressiveNoise(np.ones(1), max(spread(rest[quiet:, c]), rounding(column) / math.sqrt(decay.block)))
+        white_noise(rest[quiet:, c], rounding(column) / math.sqrt(decay.block))
         for c, (_, column) in enumerate(channels)
     )
     kept = _loud_until(rest, quiet, decay.step)

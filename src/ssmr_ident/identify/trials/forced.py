@@ -10,19 +10,16 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.signal import lfilter
 
 from ssmr_ident.campaign import MOTIONS, UNITS, Measurement
 from ssmr_ident.core.errors import InputError, SimulationError
 from ssmr_ident.core.parameter import ParameterSet
-from ssmr_ident.identify.decays.record import spread
 from ssmr_ident.identify.trials.trial import Array, Course, Trial, Values
 from ssmr_ident.physics.rig import RIG_KEYS, Rig, rig_from_parameters
 from ssmr_ident.physics.slots import Effects
-from ssmr_ident.signals.clean import rounding
 from ssmr_ident.signals.grid import even_samples
 from ssmr_ident.signals.metrics import LOW_PASS_HZ
-from ssmr_ident.signals.noise import AutoregressiveNoise
+from ssmr_ident.signals.noise import AutoregressiveNoise, rounding, white_noise
 from ssmr_ident.simulate.rig import band_limited, simulate_rig
 
 COLUMN = {"position": 0, "angle": 0, "velocity": 1, "angular_rate": 1, "acceleration": 2, "acceleration_2": 2}
@@ -188,7 +185,7 @@ def _noise(samples: Array, loose: bool, least: float) -> AutoregressiveNoise:
     away for good, so its path is compared by its curvature."""
     bend = np.array([1.0, -2.0, 1.0]) if loose else np.ones(1)
     least *= float(np.linalg.norm(bend))
-    return AutoregressiveNoise(bend, max(spread(lfilter(bend, [1.0], samples)[len(bend) - 1 :]), least), least)
+    return white_noise(samples, least, bend)
 
 
 def linear_start(trial: Trial, run, second: int | None = None) -> Array:

@@ -12,14 +12,13 @@ from ssmr_ident.campaign import Measurement
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.identify.body.builder import RobotBuilder
-from ssmr_ident.identify.decays.record import spread
 from ssmr_ident.identify.trials.machine import QUICK, force_model
 from ssmr_ident.identify.trials.moments import lets_go, tightening
 from ssmr_ident.identify.trials.teeth import find_teeth
 from ssmr_ident.identify.trials.trial import Array, Asked, Course, Trial, Values
 from ssmr_ident.physics.slots import Effects
 from ssmr_ident.signals.grid import even_samples
-from ssmr_ident.signals.noise import AutoregressiveNoise
+from ssmr_ident.signals.noise import AutoregressiveNoise, white_std
 
 STARTING = 3
 """Samples at the start that do not count: how the head takes up speed is not in the log."""
@@ -146,7 +145,7 @@ def _trial(measurement: Measurement, parameters: ParameterSet, unseen: tuple[str
     # a block alone has nothing to swing on
     robot = RobotBuilder.of(parameters).facts if "tire.stiffness_y_N_m" in parameters else {}
     swings = measurement.entry.experiment == "pull" and bool(robot)
-    noise = spread(averaged(measured)[:, 0] / share[:, 0]) if teeth is None else teeth.noise
+    noise = white_std(averaged(measured)[:, 0] / share[:, 0]) if teeth is None else teeth.noise
     target = averaged(measured)
     trial = Trial(
         measurement.name,

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ssmr_ident.identify.decays.record import spread
 from ssmr_ident.identify.forces.sawtooth import machine_moves, take_apart
+from ssmr_ident.signals.noise import white_std
 
 Array = np.ndarray
 
@@ -82,7 +82,7 @@ def find_teeth(force: Array, travel: Array, block: int) -> Teeth | None:
         return None
     windows = min(max(1, len(pull.teeth) // TEETH), WINDOWS)
     edges = tuple(int(e) for e in np.linspace(begin, count, windows + 1))
-    noise = spread(force) / math.sqrt(block)
+    noise = white_std(force) / math.sqrt(block)
     sliding = force[begin * block : count * block].reshape(-1, block).mean(axis=1)
     chance = float(np.std(sliding)) / math.sqrt(len(pull.teeth) / windows)
     weight = np.ones(count)

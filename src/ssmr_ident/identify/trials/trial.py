@@ -7,14 +7,9 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
-from scipy.signal import lfilter
 
-from ssmr_ident.identify.decays.record import spread
-from ssmr_ident.identify.decays.start import nuisance_columns
-from ssmr_ident.identify.forces.cell_noise import Blocks
 from ssmr_ident.physics.slots import Effects
-from ssmr_ident.signals.mains import any_mains_lines
-from ssmr_ident.signals.noise import AutoregressiveNoise
+from ssmr_ident.signals.noise import AutoregressiveNoise, Blocks, any_mains_lines, nuisance_columns, white_noise
 
 Array = np.ndarray
 Values = Mapping[str, float]
@@ -236,8 +231,7 @@ class Trial:
         rest = self.colour(simulated)
         found = []
         for noise, column in zip(self.noises, rest.T, strict=True):
-            std = spread(lfilter(noise.filter, [1.0], column)[noise.order :])
-            found.append(replace(noise, std=max(std, noise.least)))
+            found.append(white_noise(column, noise.least, noise.filter))
         return self.with_noises(tuple(found))
 
     def blocks(self, simulated: Array) -> Blocks:

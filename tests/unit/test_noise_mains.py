@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ssmr_ident.signals.mains import mains_lines
+from ssmr_ident.signals.noise import mains_lines
 
 
 def _hum(rate: float, seconds: float = 4.0, orders: tuple[int, ...] = (1, 3)) -> np.ndarray:

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from ssmr_ident.identify.decays.record import spread
-from ssmr_ident.identify.forces.cell_noise import SCATTER, Blocks, block_noises
+from ssmr_ident.signals.noise.load_cell import SCATTER, Blocks, block_noises
+from ssmr_ident.signals.noise.white import white_std
 
 RATE = 100.0
 LENGTHS = (0.05, 0.1, 0.1, 0.2, 0.25, 0.04)
@@ -50,14 +50,14 @@ def test_noise_of_any_colour_is_as_large_as_it_is(share: float, corner_hz: float
 
 def test_second_differences_of_blocks_alone_miss_most_of_slow_noise() -> None:
     random = np.random.default_rng(2)
-    seen = np.mean([[spread(b.left) for b in pulls(random, 0.4, 1.0)] for _ in range(20)], axis=0)
+    seen = np.mean([[white_std(b.left) for b in pulls(random, 0.4, 1.0)] for _ in range(20)], axis=0)
     assert np.all(seen / truly(0.4, 1.0) < 0.75)
 
 
 def test_logarithm_of_a_variance_from_a_median_scatters_as_stated() -> None:
     random = np.random.default_rng(3)
     for count in (36, 150):
-        logs = np.log([spread(random.standard_normal(count)) ** 2 for _ in range(10_000)])
+        logs = np.log([white_std(random.standard_normal(count)) ** 2 for _ in range(10_000)])
         assert np.std(logs) * np.sqrt(count) == pytest.approx(SCATTER, rel=0.06)
 
 

@@ -109,3 +109,44 @@ def _folded(frequency: float, step: float) -> tuple[float, float]:
     """Where a line is seen in samples, and 1 or -1: whether it moves there with the true one, or against it."""
     apart = frequency - round(frequency * step) / step
     return abs(apart), float(np.sign(apart))
+
+
+def nuisance_columns(times: Array, lines_hz: tuple[float, ...]) -> Array:
+    """Offset, and sine and cosine of each line, (n, 1 + 2·lines)."""
+    columns = [np.ones(len(times))]
+    for line in lines_hz:
+        phase = 2 * np.pi * line * times
+        columns += [np.cos(phase), np.sin(phase)]
+    return np.column_stack(columns)
+
+
+def rest_after(samples: Array, times: Array, lines_hz: tuple[float, ...], share: float = 0.2) -> Array:
+    """Samples with the offset and lines of their last part removed, (n, c); also tells noise from motion.
+
+    Parameters
+    ----------
+    samples : (n, c) float
+    times : (n,) float [s]
+    lines_hz : tuple of float [Hz]
+    share : float
+        Last part of the record that is taken as being at rest.
+    """
+    columns = nuisance_columns(times, lines_hz)
+    tail = slice(int(len(times) * (1 - share)), None)
+    solution = np.linalg.lstsq(columns[tail], samples[tail], rcond=None)[0]
+    return samples - columns @ solution
+
+
+def without_mains(rest: Array, time: Array) -> tuple[Array, Array, Array]:
+    """(n, c) samples less the mains lines that stand out of them; those, (k,) [Hz], and their waves, (2 k, c)."""
+    lines = any_mains_lines(rest, float(time[1] - time[0]))
+    columns = nuisance_columns(time, lines)
+    waves = np.linalg.lstsq(columns, rest, rcond=None)[0][1:]
+    return rest - columns[:, 1:] @ waves, np.array(lines), waves
+
+
+def line_power(samples: Array, sample_rate: float, frequency: float) -> Array:
+    """Mean square of a line of known frequency, (c,) float; samples : (n, c) float."""
+    steps = np.arange(len(samples)) / sample_rate
+    wave = np.exp(-2j * np.pi * frequency * steps)
+    return np.asarray(2.0 * np.abs((wave[:, None] * samples).mean(axis=0)) ** 2)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ssmr_ident.core.errors import InputError
-from ssmr_ident.signals.clean import mains_frequency, mains_line, offset, remove_mains
+from ssmr_ident.signals.noise.hum import mains_frequency, mains_line, offset, remove_mains
 
 RATE = 1000.0
 TIME = np.arange(20000) / RATE

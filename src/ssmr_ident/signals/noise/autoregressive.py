@@ -1,14 +1,21 @@
-"""Coloured noise: an autoregressive model, whitening by it, and a test whether anything is left."""
+"""Noise as an autoregressive process: told from differences where it is white, from what is quiet where it is not."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.signal import lfilter
-from scipy.stats import chi2
+
+from ssmr_ident.signals.noise.white import white_std
 
 Array = np.ndarray
+
+WHITE = np.ones(1)
+"""Whitening filter of noise that is white."""
+
+SHORTEST_QUIET = 400
+"""Samples of a quiet tail from which an autoregressive model of order up to 24 is taken; below, all that is left."""
 
 
 @dataclass(frozen=True)
@@ -42,6 +49,10 @@ class AutoregressiveNoise:
             return samples / self.std
         return lfilter(self.filter, [1.0], samples, axis=0)[self.order :] / self.std
 
+    def louder(self, factor: float) -> AutoregressiveNoise:
+        """The same, ``factor`` times as large."""
+        return replace(self, std=self.std * factor)
+
     def gain(self, poles: Array, step: float) -> Array:
         """What the whitening filter makes of e^(st), (k,) complex; without the division by ``std``.
 
@@ -58,6 +69,41 @@ class AutoregressiveNoise:
         response = np.abs(self.gain(2j * np.pi * np.asarray(frequency), step)) ** 2
         with np.errstate(divide="ignore"):  # what is white in its differences is infinitely dense where nothing changes
             return np.asarray(2.0 * step * self.std**2 / response)
+
+
+def white_noise(samples: Array, least: float = 0.0, whitening: Array = WHITE) -> AutoregressiveNoise:
+    """Noise of a known colour, as large as samples have it at their fastest, where a slow motion hardly enters.
+
+    Parameters
+    ----------
+    samples : (n,) float
+    least : float
+        What the noise is at the least: what is rounded away of such samples.
+    whitening : (p + 1,) float
+        Filter that makes it white, first coefficient 1.
+    """
+    order = len(whitening) - 1
+    white = lfilter(whitening, [1.0], samples)[order:] if order else samples
+    return AutoregressiveNoise(whitening, max(white_std(white), least), least)
+
+
+def quiet_noise(residual: Array, quiet_from: int, spent: int, std: float) -> AutoregressiveNoise:
+    """Noise from the quiet tail of a residual, or from all of it where too little is quiet.
+
+    Parameters
+    ----------
+    residual : (n,) float
+        In units of ``std``.
+    quiet_from : int
+        First sample of the tail.
+    spent : int
+        Degrees of freedom that a fit took out of the whole residual.
+    std : float
+    """
+    tail = residual[quiet_from:]
+    if len(tail) >= max(SHORTEST_QUIET, len(residual) // 8):
+        return fit_noise(std * tail)
+    return fit_noise(std * residual, spent=spent)
 
 
 def fit_noise(samples: Array, largest_order: int = 24, spent: int = 0) -> AutoregressiveNoise:
@@ -101,43 +147,3 @@ def fit_noise(samples: Array, largest_order: int = 24, spent: int = 0) -> Autore
             best, best_score = (coefficients, variance), score
     freedom = max(count - spent - len(best[0]) + 1, 1)
     return AutoregressiveNoise(best[0], float(np.sqrt(best[1] * count / freedom)))
-
-
-def whiteness(samples: Array, lags: int = 30, spent: int = 0) -> float:
-    """p-value of the Ljung–Box test that samples are white; small means that something is left.
-
-    Parameters
-    ----------
-    samples : (n,) float
-    lags : int
-    spent : int
-        Autoregressive coefficients already fitted to these samples.
-    """
-    count = len(samples)
-    lags = max(min(lags, count // 5), spent + 2)
-    centred = samples - samples.mean()
-    size = 1 << (2 * count - 1).bit_length()
-    covariance = np.fft.irfft(np.abs(np.fft.rfft(centred, size)) ** 2, size)[: lags + 1]
-    if covariance[0] <= 0:
-        return 1.0
-    correlation = covariance[1:] / covariance[0]
-    statistic = count * (count + 2) * np.sum(correlation**2 / (count - np.arange(1, lags + 1)))
-    return float(chi2.sf(statistic, lags - spent))
-
-
-def long_run_variance(scores: Array, bandwidth: int) -> Array:
-    """Covariance of the sum of autocorrelated scores (Newey and West 1987), (k, k).
-
-    Parameters
-    ----------
-    scores : (n, k) float
-        Contribution of each sample to a gradient.
-    bandwidth : int
-        Lags taken, with triangular weights.
-    """
-    total = scores.T @ scores
-    for lag in range(1, min(bandwidth, len(scores) - 1) + 1):
-        weight = 1.0 - lag / (bandwidth + 1.0)
-        product = scores[lag:].T @ scores[:-lag]
-        total += weight * (product + product.T)
-    return total

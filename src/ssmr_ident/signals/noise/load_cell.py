@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import chi2
 
-from ssmr_ident.identify.decays.record import spread
+from ssmr_ident.signals.noise.white import white_std
 
 Array = np.ndarray
 
@@ -25,7 +25,7 @@ FEWEST = 12
 
 SCATTER = 2.95
 """Standard deviation of the logarithm of a variance that is taken from the median of n second differences of white
-noise, times √n: 2.95 in 20,000 simulated series of 36 to 150 (``tests/unit/test_cell_noise.py``)."""
+noise, times √n: 2.95 in 20,000 simulated series of 36 to 150 (``tests/unit/test_noise_load_cell.py``)."""
 
 OUTSIDE = 2.5
 """Standard deviations beyond which a recording's differences count as if they were so far off."""
@@ -70,7 +70,7 @@ def block_noises(recordings: Sequence[Blocks]) -> Array:
     is louder or quieter than the others.
     """
     rows = [
-        (index, k * one.length, 2.0 * np.log(spread(together)), max(len(together) - 2, 1))
+        (index, k * one.length, 2.0 * np.log(white_std(together)), max(len(together) - 2, 1))
         for index, one in enumerate(recordings)
         for k in TOGETHER
         if len(together := _averages(one.left, k)) - 2 >= FEWEST or k == 1

@@ -1,4 +1,4 @@
-"""Mains hum and offset: found and taken off by least squares, never by a filter that rings; a converter's steps."""
+"""The mains hum of a record and its offset: found and taken off by least squares, never by a filter that rings."""
 
 from __future__ import annotations
 
@@ -57,29 +57,6 @@ def offset(samples: np.ndarray, sample_rate: float, until: float = math.inf) -> 
         raise InputError("offset", f"no sample before {until:g} s", "Take a later time.")
     mean = array[:count].mean(axis=0)
     return float(mean) if np.ndim(mean) == 0 else mean
-
-
-def rounding(samples: np.ndarray) -> float:
-    """Standard deviation of what a converter, or the digits of a log, rounded away; 0 where values hardly repeat.
-
-    The step is the least distance of two values that occur. The deviation is that of rounding errors spread evenly,
-    step/√12 (Widrow 1956).
-
-    Parameters
-    ----------
-    samples : (n,) float [any unit]
-        As logged.
-
-    Examples
-    --------
-    >>> round(rounding(np.round(np.sin(np.arange(99.0)), 1)) * 12**0.5, 6)
-    0.1
-    """
-    values = np.unique(samples)
-    if not 1 < len(values) <= len(samples) / 2:
-        return 0.0
-    steps = np.diff(values)
-    return float(np.min(steps[steps > 1e-9 * (values[-1] - values[0])])) / math.sqrt(12.0)
 
 
 def mains_line(samples: np.ndarray, sample_rate: float, mains_hz: float = MAINS_HZ) -> Line:
