@@ -18,7 +18,7 @@ import numpy as np
 from bank import draw
 from bank.truth import BankSession
 
-from ssmr_ident.campaign import Campaign
+from ssmr_ident.experiments.campaign import Campaign
 from ssmr_ident.identify.fitting.parallel import processors
 from ssmr_ident.workflows.diagnose import diagnose
 

@@ -20,8 +20,8 @@ from bank import draw
 from score_practice import SHARED
 from scoring import append, read, share
 
-from ssmr_ident.campaign import Campaign, load
 from ssmr_ident.diagnose.diagnosis import NOTHING
+from ssmr_ident.experiments.campaign import Campaign, load
 from ssmr_ident.workflows.diagnose import diagnose
 from ssmr_proof.peers import PEERS
 

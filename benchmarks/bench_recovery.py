@@ -16,6 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ssmr_ident.experiments.scenario import Scenario
 from ssmr_ident.identify.body.builder import RobotBuilder
 from ssmr_ident.identify.body.coupled import body_modes
 from ssmr_ident.identify.body.fit import BodyFit, fit_body
@@ -26,7 +27,6 @@ from ssmr_ident.identify.posterior.most_probable import Unknown
 from ssmr_ident.physics.linear import COORDINATES, accelerometer_rows, linear_robot
 from ssmr_ident.physics.robot import GRAVITY, Robot
 from ssmr_ident.session import read_parameters
-from ssmr_ident.simulate.scenarios import Scenario
 from ssmr_ident.simulate.simulation import simulate
 
 PRIORS = Path(__file__).resolve().parents[1] / "data" / "raw" / "free_response" / "robot.yaml"

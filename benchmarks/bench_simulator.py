@@ -24,12 +24,13 @@ import numpy as np
 
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.simd import WIDTH
+from ssmr_ident.experiments.scenario import Scenario
+from ssmr_ident.experiments.swivel import swivel
 from ssmr_ident.physics.motor import wheel_rates
 from ssmr_ident.physics.robot import Robot, robot_from_parameters
 from ssmr_ident.session import read_parameters
 from ssmr_ident.simulate import simulate
 from ssmr_ident.simulate.many import Release, simulate_many, simulate_pulls
-from ssmr_ident.simulate.scenarios import Scenario, swivel
 
 STEP = 2e-5  # s
 YAW_RATE = np.radians(45.0)
@@ -179,7 +180,7 @@ from ssmr_ident.physics.motor import wheel_rates
 from ssmr_ident.physics.robot import robot_from_parameters
 from ssmr_ident.session import read_parameters
 from ssmr_ident.simulate import simulate
-from ssmr_ident.simulate.scenarios import swivel
+from ssmr_ident.experiments.swivel import swivel
 robot = robot_from_parameters(read_parameters("p3at-extended"))
 scenario = swivel(wheel_rates(robot, 0.0, 0.8), 2.0)
 simulate(robot, scenario, 1000.0)

@@ -29,7 +29,6 @@ from pathlib import Path
 import numpy as np
 from scipy.stats import beta
 
-from ssmr_ident.campaign import Campaign, Measurement, to_quantities
 from ssmr_ident.core.errors import SimulationError
 from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.diagnose.diagnosis import MISSING, NOTHING
@@ -42,12 +41,14 @@ from ssmr_ident.diagnose.turning.search import SPREAD_FACTOR
 from ssmr_ident.diagnose.turning.spectra import look
 from ssmr_ident.diagnose.turning.verdict import findings_of
 from ssmr_ident.diagnose.turning.worth import channel_logs, distance_db
+from ssmr_ident.experiments.campaign import Campaign, Measurement
+from ssmr_ident.experiments.quantities import to_quantities
+from ssmr_ident.experiments.swivel import swivel
 from ssmr_ident.physics.motor import wheel_rates
 from ssmr_ident.physics.robot import accelerometer_from_parameters, robot_from_parameters
 from ssmr_ident.physics.sensor import Noise
 from ssmr_ident.session import Entry, Session, read_parameters
 from ssmr_ident.simulate.measure import accelerometer_log
-from ssmr_ident.simulate.scenarios import swivel
 from ssmr_ident.simulate.simulation import simulate
 
 SECONDS, STEP, SETTLE = 20.0, 1.5e-4, 4.0

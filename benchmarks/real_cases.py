@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 from scoring import engine, row_of
 
-from ssmr_ident.campaign import Campaign, load
 from ssmr_ident.compare import predict
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.diagnosis import Diagnosis
+from ssmr_ident.experiments.campaign import Campaign, load
 from ssmr_ident.signals.filters import low_pass
 from ssmr_ident.workflows.diagnose import diagnose, write_diagnosis
 

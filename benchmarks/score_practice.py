@@ -20,8 +20,8 @@ import numpy as np
 from real_cases import REAL, judge
 from scoring import append, engine, read, row_of, summary, table
 
-from ssmr_ident.campaign import load
 from ssmr_ident.compare import compare
+from ssmr_ident.experiments.campaign import load
 from ssmr_ident.workflows.diagnose import diagnose, write_diagnosis
 
 SHARED = Path(__file__).resolve().parents[2] / "shared"

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ssmr_ident.campaign import load
 from ssmr_ident.compare import predict
+from ssmr_ident.experiments.campaign import load
 from ssmr_ident.report.overlay import overlay_figure
 from ssmr_ident.report.style import save
 from ssmr_ident.session import read_parameters

@@ -17,8 +17,8 @@ import typer
 from latex2mathml.converter import convert
 
 from ssmr_ident import cli
+from ssmr_ident.experiments import EXPERIMENTS
 from ssmr_ident.physics.effects import CATALOGUE
-from ssmr_ident.session.session_file import EXPERIMENTS
 
 SCHEMAS = Path(__file__).parent / "schemas"
 _TEX = re.compile(r'<(span|div) class="arithmatex">\\([(\[])(.*?)\\[)\]]</\1>', re.DOTALL)
@@ -45,12 +45,23 @@ def commands() -> str:
     return "\n".join(lines)
 
 
+def experiments() -> str:
+    """Kinds of experiment, from the declarations."""
+    lines = ["| experiment | what drives it | what has to be logged | compared by | refitted for each recording |"]
+    lines += ["| --- |" + " --- |" * 4]
+    for kind in EXPERIMENTS.values():
+        logged = "; ".join(" or ".join(f"`{name}`" for name in group) for group in kind.channels)
+        cells = (f"`{kind.name}`", kind.drive.value, logged, kind.likelihood.value, ", ".join(kind.nuisances))
+        lines.append(f"| {' | '.join(cells)} |")
+    return "\n".join(lines)
+
+
 def where_effects_show() -> str:
     """Effects against experiments, from the declarations."""
-    lines = [f"| effect | {' | '.join(name.replace('_', ' ') for name in EXPERIMENTS)} | on a rig |"]
+    lines = [f"| effect | {' | '.join(kind.words for kind in EXPERIMENTS.values())} | on a rig |"]
     lines += ["| --- |" + " :-: |" * (len(EXPERIMENTS) + 1)]
     for effect in CATALOGUE.values():
-        marks = ["●" if name in effect.experiments else "" for name in EXPERIMENTS]
+        marks = ["●" if kind.shows(effect) else "" for kind in EXPERIMENTS.values()]
         link = f"[`{effect.id}`](../reference/effects.md#{effect.id})"
         lines.append(f"| {link} | {' | '.join(marks)} | {'●' if effect.rig else ''} |")
     return "\n".join(lines)
@@ -67,6 +78,7 @@ def schemas() -> str:
 
 MARKS: dict[str, Callable[[], str]] = {
     "<!-- commands -->": commands,
+    "<!-- experiments -->": experiments,
     "<!-- where effects show -->": where_effects_show,
     "<!-- schemas -->": schemas,
 }

@@ -8,14 +8,15 @@ from pathlib import Path
 
 import numpy as np
 
-from ssmr_ident.campaign import Campaign, Measurement
 from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.core.recording import Channel, Provenance, Recording
 from ssmr_ident.diagnose.setup import Setup, set_up
+from ssmr_ident.experiments import Scenario
+from ssmr_ident.experiments.campaign import Campaign, Measurement
 from ssmr_ident.physics.robot import robot_from_parameters
 from ssmr_ident.session import Entry, Session
 from ssmr_ident.session.parameters_file import read_parameters
-from ssmr_ident.simulate import Scenario, simulate
+from ssmr_ident.simulate import simulate
 
 RATE, NOISE = 50.0, 0.5
 """Hz; N."""

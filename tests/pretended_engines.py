@@ -6,7 +6,7 @@ import os
 import time
 from typing import NoReturn
 
-from ssmr_ident.campaign import Campaign
+from ssmr_ident.experiments.campaign import Campaign
 
 
 def breaks(campaign: Campaign, *, seed: int) -> NoReturn:

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import numpy as np
 
-from ssmr_ident.campaign import Campaign, Measurement
 from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.core.recording import Channel, Provenance, Recording
 from ssmr_ident.diagnose.setup import Setup, set_up
+from ssmr_ident.experiments.campaign import Campaign, Measurement
 from ssmr_ident.identify.fitting.descent import descend
 from ssmr_ident.identify.fitting.joint import JointFit, differentiate, evaluate
 from ssmr_ident.identify.trials import Trial

@@ -14,12 +14,13 @@ from bank.robot_plant import run_robot
 from bank.robots import draw_robot, true_values
 from bank.scaled import AS_IT_IS, Scale
 from bank.truth import BankSession, Made, Truth, recording
-from ssmr_ident.campaign import Campaign
 from ssmr_ident.core.errors import SimulationError
+from ssmr_ident.experiments import Scenario
+from ssmr_ident.experiments.campaign import Campaign
 from ssmr_ident.physics.linear import COORDINATES, linear_robot
 from ssmr_ident.physics.robot import GRAVITY, Robot
 from ssmr_ident.session import Entry, Session
-from ssmr_ident.simulate import Scenario, simulate
+from ssmr_ident.simulate import simulate
 
 PLAN = [(motion, trial, "target") for motion in ("roll", "pitch", "yaw") for trial in (1, 2, 3)]
 PLAN += [("roll", 4, "heldout"), ("roll", 5, "heldout"), ("pitch", 4, "heldout"), ("yaw", 4, "heldout")]

@@ -12,14 +12,15 @@ from bank.rig_physics import between
 from bank.robot_physics import BENCH, PULLS, SPINNING
 from bank.robots import draw_robot, true_values
 from bank.truth import BankSession, Made, Truth, recording
-from ssmr_ident.campaign import Campaign
 from ssmr_ident.core.parameter import Estimate, ParameterSet
+from ssmr_ident.experiments import Scenario
+from ssmr_ident.experiments.campaign import Campaign
+from ssmr_ident.experiments.pull import fixture_needed
 from ssmr_ident.physics.rig import Block
 from ssmr_ident.physics.robot import GRAVITY, Robot
 from ssmr_ident.session import Entry, Session
-from ssmr_ident.simulate import Scenario, simulate
+from ssmr_ident.simulate import simulate
 from ssmr_ident.simulate.bench import compress_wheel, drag_wheel, pull_block
-from ssmr_ident.simulate.scenarios import fixture_needed
 
 ALL = (1, 2, 3, 4)
 PLAN = (  # direction, speed mm/s, height m, wheels, wheel rate rad/s, role

@@ -14,8 +14,8 @@ from bank.laws import laws
 from bank.rig_physics import LISTED, OTHER, UNLISTED, Physics, Scale
 from bank.rig_plant import run_rig
 from bank.truth import BankSession, Made, Truth, recording
-from ssmr_ident.campaign import Campaign
 from ssmr_ident.core.parameter import Estimate, ParameterSet
+from ssmr_ident.experiments.campaign import Campaign
 from ssmr_ident.physics.rig import Rig
 from ssmr_ident.session import Entry, Session
 

@@ -7,11 +7,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ssmr_ident.campaign import Campaign, Measurement
 from ssmr_ident.compare.comparison import measure
 from ssmr_ident.compare.outcome import Prediction
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.core.recording import Channel, Provenance, Recording
+from ssmr_ident.experiments.campaign import Campaign, Measurement
 from ssmr_ident.session import Entry
 
 

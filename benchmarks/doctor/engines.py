@@ -5,8 +5,8 @@ from __future__ import annotations
 import importlib
 from typing import Protocol
 
-from ssmr_ident.campaign import Campaign
 from ssmr_ident.diagnose.diagnosis import Diagnosis
+from ssmr_ident.experiments.campaign import Campaign
 
 ENGINES = {
     "diagnose": "ssmr_ident.workflows.diagnose:diagnose",  # what `ident diagnose` runs

@@ -9,8 +9,8 @@ import numpy as np
 from bank import KINDS, SHARES, draw
 
 from doctor.frozen import Case
-from ssmr_ident.campaign import Campaign
 from ssmr_ident.diagnose.diagnosis import Diagnosis
+from ssmr_ident.experiments.campaign import Campaign
 
 FULL = 0.25
 """Share of drawn nulls that are as long as other sessions; the rest are short, so that there can be many."""

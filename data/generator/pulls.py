@@ -11,13 +11,14 @@ import numpy as np
 
 from generator import truth
 from generator.writing import write_robot, write_session
+from ssmr_ident.experiments import Scenario
+from ssmr_ident.experiments.pull import cable_properties, fixture_needed
 from ssmr_ident.physics.robot import Robot, robot_from_parameters
 from ssmr_ident.physics.sensor import Noise
 from ssmr_ident.readers.writers import write_mtestquattro
-from ssmr_ident.simulate import Scenario, simulate
+from ssmr_ident.simulate import simulate
 from ssmr_ident.simulate.bench import compress_wheel, drag_wheel
 from ssmr_ident.simulate.measure import load_cell_log
-from ssmr_ident.simulate.scenarios import cable_properties, fixture_needed
 
 STEP = 0.01  # s; the machine logs at 100 Hz
 SOFT_START = 0.3  # s until the head has its speed

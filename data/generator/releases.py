@@ -8,11 +8,12 @@ import numpy as np
 
 from generator import truth
 from generator.writing import write_robot, write_session
+from ssmr_ident.experiments import Scenario
 from ssmr_ident.physics.linear import COORDINATES, linear_robot
 from ssmr_ident.physics.robot import Robot, robot_from_parameters
 from ssmr_ident.physics.sensor import Noise
 from ssmr_ident.readers.writers import write_labview_xlsx
-from ssmr_ident.simulate import Scenario, simulate
+from ssmr_ident.simulate import simulate
 from ssmr_ident.simulate.measure import Converter, accelerometer_log
 
 TRIALS = 8  # Table 5.2

@@ -8,11 +8,12 @@ import numpy as np
 
 from generator import truth
 from generator.writing import write_robot, write_session
+from ssmr_ident.experiments import Scenario
 from ssmr_ident.physics.motor import wheel_rates
 from ssmr_ident.physics.robot import Robot, robot_from_parameters
 from ssmr_ident.physics.sensor import Noise
 from ssmr_ident.readers.writers import write_labview_xlsx, write_lvm
-from ssmr_ident.simulate import Scenario, Simulation, simulate
+from ssmr_ident.simulate import Simulation, simulate
 from ssmr_ident.simulate.measure import Converter, accelerometer_log
 
 SPEEDS = (10, 20, 30, 45, 60)  # deg/s; the thesis' wheels lift above 64

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.optimize import least_squares
 
+from ssmr_ident.experiments.pull import pull
 from ssmr_ident.identify.forces.curves import load_curve
 from ssmr_ident.identify.forces.friction import friction_of, gripping_load
 from ssmr_ident.identify.forces.sawtooth import take_apart
@@ -12,7 +13,6 @@ from ssmr_ident.identify.forces.stiffness import in_series
 from ssmr_ident.physics.robot import Robot
 from ssmr_ident.simulate import simulate
 from ssmr_ident.simulate.bench import compress_wheel, drag_wheel
-from ssmr_ident.simulate.scenarios import pull
 from thesis2012.rows import Row
 
 RATE = 100.0

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ssmr_ident.experiments.swivel import swivel
 from ssmr_ident.physics.motor import wheel_rates
 from ssmr_ident.physics.robot import GRAVITY, Robot, robot_from_parameters
 from ssmr_ident.report import style
@@ -14,7 +15,6 @@ from ssmr_ident.session import read_parameters
 from ssmr_ident.signals.spectra import power_density
 from ssmr_ident.simulate import simulate
 from ssmr_ident.simulate.bench import drag_wheel
-from ssmr_ident.simulate.scenarios import swivel
 from thesis2012.pulls import even_axles
 from thesis2012.scoreboard import Scoreboard, thesis_scoreboard
 from thesis2012.swivels import SPEEDS, turn

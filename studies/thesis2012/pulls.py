@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from ssmr_ident.experiments.pull import pull
+from ssmr_ident.experiments.straight import straight
 from ssmr_ident.physics.motor import wheel_rates
 from ssmr_ident.physics.robot import Robot
 from ssmr_ident.simulate import simulate
-from ssmr_ident.simulate.scenarios import pull, straight
 from thesis2012.forces import spinning_force
 from thesis2012.rows import Row
 

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from ssmr_ident.experiments import SWIVEL
 from ssmr_ident.identify.body.thesis_table import TABLE_5_2
 from ssmr_ident.signals.analysis import analyse
 from ssmr_ident.signals.filters import band_pass, low_pass
@@ -131,7 +132,7 @@ def _averages() -> Row:
     """Three repeats of a made-up configuration, with lines and heights 10 % apart."""
     rows = []
     for repeat, factor in enumerate((0.9, 1.0, 1.1)):
-        label = RecordingLabel(f"{repeat}.xlsx", "swivel", floor="tile", frame="frame", yaw_rate_deg_s=30.0)
+        label = RecordingLabel(f"{repeat}.xlsx", SWIVEL, floor="tile", frame="frame", yaw_rate_deg_s=30.0)
         rows.append(SpectrumRow(label, "ay", "m/s^2", analyse(factor * _tone(10.0 * factor), RATE)))
     averages = average_swivels(rows)
     line, height = float(averages[0].peak_hz[:, 0].mean()), float(averages[0].amplitude.mean())

@@ -7,12 +7,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ssmr_ident.experiments.swivel import swivel
 from ssmr_ident.physics.motor import wheel_rates
 from ssmr_ident.physics.robot import Robot
 from ssmr_ident.signals.filters import low_pass
 from ssmr_ident.signals.spectra import power_density
 from ssmr_ident.simulate import simulate
-from ssmr_ident.simulate.scenarios import swivel
 
 RATE = 1000.0
 LIMITS = (1.0, 0.1, 0.01, 0.001, 0.0001)  # λ_max

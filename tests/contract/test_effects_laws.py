@@ -16,6 +16,10 @@ from scipy.spatial.transform import Rotation
 from scipy.special import ellipk
 
 from ssmr_ident.core.errors import InputError
+from ssmr_ident.experiments import Scenario
+from ssmr_ident.experiments.free_response import free_response
+from ssmr_ident.experiments.pull import pull
+from ssmr_ident.experiments.straight import straight
 from ssmr_ident.physics.effects import CATALOGUE, ground_roughness
 from ssmr_ident.physics.element import STATES, element_advance, element_force, element_loaded
 from ssmr_ident.physics.linear import linear_robot
@@ -25,10 +29,9 @@ from ssmr_ident.physics.robot import GRAVITY, Robot, robot_from_parameters
 from ssmr_ident.physics.slots import checked, effect_vector
 from ssmr_ident.physics.tire import grip_shares
 from ssmr_ident.session import read_parameters
-from ssmr_ident.simulate import Scenario, simulate
+from ssmr_ident.simulate import simulate
 from ssmr_ident.simulate.bench import compress_wheel, drag_wheel
 from ssmr_ident.simulate.rig import simulate_rig
-from ssmr_ident.simulate.scenarios import free_response, pull, straight
 
 MASS, STIFFNESS = 8.0, 18000.0
 OMEGA = math.sqrt(STIFFNESS / MASS)

@@ -16,16 +16,20 @@ import pytest
 from scipy.optimize import least_squares
 from scipy.stats import chi2, norm
 
+from ssmr_ident.experiments import Scenario
+from ssmr_ident.experiments.free_response import free_response
+from ssmr_ident.experiments.pull import pull
+from ssmr_ident.experiments.straight import straight
+from ssmr_ident.experiments.swivel import swivel
 from ssmr_ident.physics.effects import CATALOGUE
 from ssmr_ident.physics.linear import LinearRobot, accelerometer_rows, linear_robot, responses
 from ssmr_ident.physics.motor import wheel_rates
 from ssmr_ident.physics.rig import Rig
 from ssmr_ident.physics.robot import GRAVITY, Robot, robot_from_parameters
 from ssmr_ident.session import read_parameters
-from ssmr_ident.simulate import Scenario, simulate
+from ssmr_ident.simulate import simulate
 from ssmr_ident.simulate.bench import drag_wheel
 from ssmr_ident.simulate.rig import simulate_rig
-from ssmr_ident.simulate.scenarios import free_response, pull, straight, swivel
 
 ACCELERATION_NOISE = 0.02  # m/s^2, of the reference campaign's accelerometers
 FORCE_NOISE = 0.5  # N

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from bank import draw
 
-from ssmr_ident.campaign import Campaign
 from ssmr_ident.core.recording import Provenance
 from ssmr_ident.diagnose.diagnosis import Diagnosis
+from ssmr_ident.experiments.campaign import Campaign
 from ssmr_ident.workflows.diagnose import diagnose
 
 LIES = ("free_play", "null", "dry-friction-heavy", "nothing-missing", "sensor_saturation", "zz", "a", "hysteresis-loop")

@@ -9,10 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ssmr_ident.campaign import Campaign, Measurement
 from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.core.recording import Channel, Provenance, Recording
 from ssmr_ident.diagnose import stripped
+from ssmr_ident.experiments.campaign import Campaign, Measurement
 from ssmr_ident.identify.fitting.joint import JointFit
 from ssmr_ident.physics.rig import Block
 from ssmr_ident.session import Entry, Session

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 from scipy.signal import butter, lfilter, sosfilt
 
-from ssmr_ident.campaign import Campaign, Measurement
 from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.core.recording import Channel, Provenance, Recording
 from ssmr_ident.diagnose import engine
 from ssmr_ident.diagnose.setup import set_up
+from ssmr_ident.experiments.campaign import Campaign, Measurement
 from ssmr_ident.identify.fitting.joint import differentiate, evaluate
 from ssmr_ident.session import Entry, Session
 from ssmr_ident.workflows.diagnose import diagnose

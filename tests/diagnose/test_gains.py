@@ -7,10 +7,10 @@ import pytest
 from bank import draw
 from bank.robots import draw_robot
 
-from ssmr_ident.campaign import Campaign
 from ssmr_ident.compare.recorded import follow
 from ssmr_ident.core.parameter import Estimate
 from ssmr_ident.diagnose.setup import set_up
+from ssmr_ident.experiments.campaign import Campaign
 from ssmr_ident.identify.body.builder import GAINS
 from ssmr_ident.workflows.diagnose import diagnose
 

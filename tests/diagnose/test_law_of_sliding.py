@@ -9,19 +9,20 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ssmr_ident.campaign import Campaign, Measurement
 from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.core.recording import Channel, Provenance, Recording
 from ssmr_ident.diagnose import sliding
 from ssmr_ident.diagnose.baseline import best_baseline
 from ssmr_ident.diagnose.setup import Setup, set_up
 from ssmr_ident.diagnose.sliding import KEY, of_those_that_stand, unexplained, with_law_of_sliding
+from ssmr_ident.experiments import Scenario
+from ssmr_ident.experiments.campaign import Campaign, Measurement
 from ssmr_ident.identify.fitting.joint import JointFit, differentiate, evaluate
 from ssmr_ident.identify.trials import Trial
 from ssmr_ident.physics.robot import SLIDING_SPEED, robot_from_parameters
 from ssmr_ident.session import Entry, Session
 from ssmr_ident.session.parameters_file import read_parameters
-from ssmr_ident.simulate import Scenario, simulate
+from ssmr_ident.simulate import simulate
 
 RATE, NOISE = 50.0, 0.3
 PULLS = ((1.0, (1, 2, 3, 4)), (1.0, (1, 2)), (0.6, (1, 2, 3, 4)), (1.5, (3, 4)))

@@ -10,11 +10,11 @@ import pytest
 from scipy.integrate import solve_ivp
 from small_rigs import NOISE, RIG, Run, campaign, fitted, prepared, quiet
 
-from ssmr_ident.campaign import Campaign
 from ssmr_ident.core.recording import Channel
 from ssmr_ident.diagnose import rivals
 from ssmr_ident.diagnose.followed import explained, on_all
 from ssmr_ident.diagnose.weigh import CERTAIN, TIE, all_fitted, log_evidence
+from ssmr_ident.experiments.campaign import Campaign
 from ssmr_ident.identify.fitting.joint import differentiate, evaluate
 from ssmr_ident.physics.effects import CATALOGUE
 from ssmr_ident.workflows.diagnose import diagnose

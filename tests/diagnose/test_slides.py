@@ -9,6 +9,7 @@ import pytest
 
 from ssmr_ident.diagnose.baseline import unsteady
 from ssmr_ident.diagnose.sliding import crossed
+from ssmr_ident.experiments import PULL
 from ssmr_ident.identify.fitting.coordinates import Model, Unknown
 from ssmr_ident.identify.fitting.descent import chatters, descend
 from ssmr_ident.identify.fitting.joint import JointFit, evaluate
@@ -44,7 +45,7 @@ def pull(law: float) -> Trial:
         return swing(values, law)
 
     return Trial(
-        "pull.csv", "pull", "lateral", ("force",), TIMES, measured, (AutoregressiveNoise(np.ones(1), NOISE),),
+        "pull.csv", PULL, "lateral", ("force",), TIMES, measured, (AutoregressiveNoise(np.ones(1), NOISE),),
         np.ones((len(TIMES), 1)), run, lambda values, effects: np.zeros(0), (), np.zeros(0),
         Course(TIMES, measured, run, ("N",), None), searched=True, slides_from=LETS_GO,
     )  # fmt: skip

@@ -7,16 +7,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ssmr_ident.campaign import Measurement
 from ssmr_ident.core.recording import Channel, Provenance, Recording
 from ssmr_ident.diagnose.surface import surfaces
 from ssmr_ident.diagnose.tire_force import tire_state
+from ssmr_ident.experiments.campaign import Measurement
+from ssmr_ident.experiments.free_response import free_response
 from ssmr_ident.identify.body.builder import RobotBuilder
 from ssmr_ident.identify.fitting.coordinates import Model
 from ssmr_ident.identify.fitting.joint import JointFit, evaluate
 from ssmr_ident.identify.trials.decay import SCALES, STATES, decay_trial
 from ssmr_ident.session import Entry, read_parameters
-from ssmr_ident.simulate.scenarios import free_response
 from ssmr_ident.simulate.simulation import simulate
 
 PARAMETERS = read_parameters("p3at-extended")

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from ssmr_ident.campaign import Measurement
 from ssmr_ident.compare.comparison import measure
 from ssmr_ident.compare.outcome import Prediction
 from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.core.recording import Channel, Provenance, Recording
 from ssmr_ident.diagnose.assemble import hidden_by_jolts
 from ssmr_ident.diagnose.worth import grows_with_motion, noise_floor, over_any_noise, without_jolts, worth
+from ssmr_ident.experiments.campaign import Measurement
 from ssmr_ident.identify.trials.pull import pull_trial
 from ssmr_ident.session import Entry
 

@@ -9,7 +9,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ssmr_ident.campaign import Campaign, Measurement, load
 from ssmr_ident.compare import compare
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import Estimate
@@ -18,10 +17,11 @@ from ssmr_ident.diagnose.turning import diagnose_turning
 from ssmr_ident.diagnose.turning.bench import STEP, Bench, measure
 from ssmr_ident.diagnose.turning.conditions import conditions_of, held_back
 from ssmr_ident.diagnose.turning.worth import channel_logs, distance_db
+from ssmr_ident.experiments.campaign import Campaign, Measurement, load
+from ssmr_ident.experiments.swivel import swivel
 from ssmr_ident.physics.motor import wheel_rates
 from ssmr_ident.physics.robot import robot_from_parameters
 from ssmr_ident.session import Entry, Session, read_parameters
-from ssmr_ident.simulate.scenarios import swivel
 from ssmr_ident.simulate.simulation import simulate
 
 JOINTS = {"ground_joints": {"pitch_m": 0.03, "depth_m": 6e-4, "width_m": 6e-3}}

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from ssmr_ident.experiments.free_response import free_response
 from ssmr_ident.identify.decays.fit import fit_decay
 from ssmr_ident.physics.linear import LinearRobot, linear_robot
 from ssmr_ident.physics.robot import GRAVITY, Robot
 from ssmr_ident.physics.statics import rest_loads, rest_pose, tilt
 from ssmr_ident.simulate import Simulation, simulate
-from ssmr_ident.simulate.scenarios import free_response
 from ssmr_proof.engine.build import Build, Mast
 from ssmr_proof.engine.run import MujocoRun, run_mujoco
 

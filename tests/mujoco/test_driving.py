@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from ssmr_ident.experiments.straight import straight
+from ssmr_ident.experiments.swivel import swivel
 from ssmr_ident.physics.motor import wheel_rates
 from ssmr_ident.physics.robot import GRAVITY, Robot
 from ssmr_ident.simulate import simulate
-from ssmr_ident.simulate.scenarios import straight, swivel
 from ssmr_proof.engine.build import Build
 from ssmr_proof.engine.run import run_mujoco
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from ssmr_ident.experiments.pull import pull
 from ssmr_ident.physics.robot import GRAVITY, Robot
 from ssmr_ident.simulate import Simulation, simulate
-from ssmr_ident.simulate.scenarios import pull
 from ssmr_proof.engine.build import Build, Cable
 from ssmr_proof.engine.run import MujocoRun, run_mujoco
 

@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ssmr_ident.campaign import load
 from ssmr_ident.compare import compare
 from ssmr_ident.core.parameter import ParameterSet
+from ssmr_ident.experiments.campaign import load
 from ssmr_ident.physics.effects import CATALOGUE
 from ssmr_proof.drawn.cases import FAMILIES, KINDS, MIMIC, ONE, OUTSIDE, TWO, Case, draw_case
 from ssmr_proof.lab.case import Extent, record, write_session

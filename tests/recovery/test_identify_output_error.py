@@ -10,10 +10,10 @@ import pytest
 from matplotlib.image import imread
 from typer.testing import CliRunner
 
-from ssmr_ident.campaign import load
 from ssmr_ident.cli import app
 from ssmr_ident.compare import compare
 from ssmr_ident.core.errors import InputError
+from ssmr_ident.experiments.campaign import load
 from ssmr_ident.session import read_parameters
 from ssmr_ident.workflows.fit.run import fit_session
 

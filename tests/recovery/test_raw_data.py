@@ -9,8 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ssmr_ident.campaign import Campaign, Measurement, load
 from ssmr_ident.compare.prediction import predict
+from ssmr_ident.experiments.campaign import Campaign, Measurement, load
+from ssmr_ident.experiments.pull import ROPE_STIFFNESS, STEEL_STIFFNESS
 from ssmr_ident.identify.decays.fit import fit_decays
 from ssmr_ident.identify.forces.curves import load_curve
 from ssmr_ident.identify.forces.friction import friction_of
@@ -23,7 +24,6 @@ from ssmr_ident.physics.statics import rest_loads
 from ssmr_ident.readers import ReadOptions, read_one
 from ssmr_ident.session import read_parameters, read_session
 from ssmr_ident.simulate.measure import Converter
-from ssmr_ident.simulate.scenarios import ROPE_STIFFNESS, STEEL_STIFFNESS
 from ssmr_ident.workflows.fit.run import fit_session
 
 SIGMAS = 3.0

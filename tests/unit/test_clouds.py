@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from ssmr_ident.experiments import PULL
 from ssmr_ident.identify.fitting.clouds import averaged, settled
 from ssmr_ident.identify.fitting.coordinates import Model
 from ssmr_ident.identify.fitting.descent import descend
@@ -21,7 +22,7 @@ RAMP, WAVE = TIME, np.sin(9.0 * TIME)
 
 def _begun(run: Runner, target: np.ndarray) -> JointFit:
     trial = Trial(
-        "drawn.csv", "pull", "lateral", ("force",), TIME, target[:, None], (AutoregressiveNoise(np.ones(1), 0.01),),
+        "drawn.csv", PULL, "lateral", ("force",), TIME, target[:, None], (AutoregressiveNoise(np.ones(1), 0.01),),
         np.ones((len(TIME), 1)), run, lambda values, effects: np.zeros(1), ("slack",), np.ones(1),
         Course(TIME, target[:, None], run, ("N",), None),
     )  # fmt: skip

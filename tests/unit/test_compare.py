@@ -10,11 +10,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ssmr_ident.campaign import load
 from ssmr_ident.compare import Prediction, compare
 from ssmr_ident.compare.comparison import measure
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import Estimate
+from ssmr_ident.experiments import FORCED, PULL
+from ssmr_ident.experiments.campaign import load
 from ssmr_ident.session import read_parameters, write_parameters
 from ssmr_ident.workflows.compare import compare_session
 from ssmr_ident.workflows.simulate import Request, simulate_to_file
@@ -42,7 +43,7 @@ def rig_session(tmp_path: Path) -> Path:
         RIG + "effects: {nonlinear_stiffness: {k3_N_m3: {value: 5.0e+9, unit: N/m^3}}}\n"
     )
     simulate_to_file(
-        str(tmp_path / "true.yaml"), Request("forced", force=str(tmp_path / "drive.csv")), tmp_path / "made.csv"
+        str(tmp_path / "true.yaml"), Request(FORCED, force=str(tmp_path / "drive.csv")), tmp_path / "made.csv"
     )
     made = np.loadtxt(tmp_path / "made.csv", delimiter=",", skiprows=1)
     made[:, 1] += 0.7  # the force sensor's zero
@@ -106,7 +107,7 @@ def test_a_decay_is_explained_by_its_own_parameters_whatever_its_start(root: Pat
 
 
 def test_a_pull_finds_slack_and_zero(tmp_path: Path) -> None:
-    simulate_to_file("p3at-extended", Request("pull", duration_s=3.0), tmp_path / "pull.csv")
+    simulate_to_file("p3at-extended", Request(PULL, duration_s=3.0), tmp_path / "pull.csv")
     rows = np.loadtxt(tmp_path / "pull.csv", delimiter=",", skiprows=1)
     slack, zero = 40, 2.5  # samples at 1 mm/s and 100 Hz: 0.4 mm
     force = np.concatenate([np.zeros(slack), rows[:-slack, 2]]) + zero

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from ssmr_ident.experiments import FREE_RESPONSE
 from ssmr_ident.identify.fitting.coordinates import Model
 from ssmr_ident.identify.fitting.descent import corrected
 from ssmr_ident.identify.fitting.horizons import radian
@@ -23,7 +24,7 @@ RATE, COUNT = 100.0, 400
 def _trial(target: np.ndarray, run=None, noise: float = 1.0, quiet: bool = False) -> Trial:
     times = np.arange(len(target)) / RATE
     return Trial(
-        "drawn.csv", "free_response", "roll", ("ay",), times, target[:, None],
+        "drawn.csv", FREE_RESPONSE, "roll", ("ay",), times, target[:, None],
         (AutoregressiveNoise(np.ones(1), noise),), np.ones((len(target), 1)), run, lambda values, effects: np.zeros(1),
         ("start",), np.ones(1), Course(times, target[:, None], run, ("m/s^2",), None), quiet=quiet,
     )  # fmt: skip

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from ssmr_ident.experiments.scenario import Scenario
 from ssmr_ident.identify.body.builder import RobotBuilder
 from ssmr_ident.identify.body.defects import defect, small_motion
 from ssmr_ident.identify.body.fit import fit_body
@@ -19,7 +20,6 @@ from ssmr_ident.identify.posterior.most_probable import most_probable
 from ssmr_ident.physics.linear import linear_robot, responses
 from ssmr_ident.session import read_parameters
 from ssmr_ident.signals.noise import AutoregressiveNoise
-from ssmr_ident.simulate.scenarios import Scenario
 from ssmr_ident.simulate.simulation import simulate
 
 STEP, COUNT, NOISE = 1e-3, 2048, 0.01

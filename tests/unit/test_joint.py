@@ -9,6 +9,7 @@ import pytest
 from scipy.linalg import block_diag
 from scipy.signal import lfilter
 
+from ssmr_ident.experiments import FORCED
 from ssmr_ident.identify.fitting.coordinates import Model
 from ssmr_ident.identify.fitting.curvature import Curvature
 from ssmr_ident.identify.fitting.descent import descend
@@ -61,7 +62,7 @@ def _trial(shared: np.ndarray, own: np.ndarray, target: np.ndarray, scale: float
     count = len(target)
     times = np.arange(count) / 100.0
     return Trial(
-        name, "forced", "", ("position",), times, target[:, None], (AutoregressiveNoise(np.ones(1), scale),),
+        name, FORCED, "", ("position",), times, target[:, None], (AutoregressiveNoise(np.ones(1), scale),),
         np.ones((count, 1)), run, lambda values, effects: np.zeros(own.shape[1]),
         tuple(f"n{i}" for i in range(own.shape[1])), np.ones(own.shape[1]),
         Course(times, target[:, None], run, ("m",), None),

@@ -11,11 +11,11 @@ from numba import njit
 
 from ssmr_ident.core.exponential import exp
 from ssmr_ident.core.simd import WIDTH, anywhere, first, lanes_of, lanewise, space, where
+from ssmr_ident.experiments.scenario import Scenario
 from ssmr_ident.physics.effects import CATALOGUE
 from ssmr_ident.physics.robot import Robot, robot_from_parameters
 from ssmr_ident.session import read_parameters
 from ssmr_ident.simulate.many import Release, simulate_many, simulate_pulls
-from ssmr_ident.simulate.scenarios import Scenario
 from ssmr_ident.simulate.simulation import simulate
 from ssmr_ident.simulate.together import FEWEST
 

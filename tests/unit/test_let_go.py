@@ -6,13 +6,13 @@ from pathlib import Path
 
 import numpy as np
 
-from ssmr_ident.campaign import Campaign, Measurement
 from ssmr_ident.compare import compare
 from ssmr_ident.core.parameter import Estimate
 from ssmr_ident.core.recording import Channel, Provenance, Recording
+from ssmr_ident.experiments.campaign import Campaign, Measurement
+from ssmr_ident.experiments.scenario import Scenario
 from ssmr_ident.physics.robot import robot_from_parameters
 from ssmr_ident.session import Entry, Session, read_parameters
-from ssmr_ident.simulate.scenarios import Scenario
 from ssmr_ident.simulate.simulation import simulate
 
 RATE, SECONDS = 1000.0, 2.5

@@ -7,9 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ssmr_ident.campaign import Measurement
 from ssmr_ident.core.errors import Impossible, InputError
 from ssmr_ident.core.recording import Channel, Provenance, Recording
+from ssmr_ident.experiments.campaign import Measurement
+from ssmr_ident.experiments.free_response import free_response
+from ssmr_ident.experiments.scenario import Scenario
 from ssmr_ident.identify.body.builder import RobotBuilder
 from ssmr_ident.identify.fitting import parallel
 from ssmr_ident.identify.fitting.coordinates import Model
@@ -23,7 +25,6 @@ from ssmr_ident.simulate import body as bodies
 from ssmr_ident.simulate.angles import SMALL, sin_cos
 from ssmr_ident.simulate.body import AWAY, MOVING
 from ssmr_ident.simulate.many import Release, simulate_many
-from ssmr_ident.simulate.scenarios import Scenario, free_response
 from ssmr_ident.simulate.simulation import simulate
 
 SECONDS = 0.3

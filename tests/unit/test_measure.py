@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from ssmr_ident.experiments.scenario import Scenario
 from ssmr_ident.physics.sensor import Accelerometer, Noise
 from ssmr_ident.simulate.measure import AXES, Converter, accelerometer_log, load_cell_log
-from ssmr_ident.simulate.scenarios import Scenario
 from ssmr_ident.simulate.simulation import Simulation
 
 SAMPLES = 8000

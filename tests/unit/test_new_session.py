@@ -10,6 +10,7 @@ import pytest
 
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.recording import Channel, Provenance, Recording
+from ssmr_ident.experiments import FORCED, FREE_RESPONSE, Conditions
 from ssmr_ident.readers import read_one, writers
 from ssmr_ident.session import read_session
 from ssmr_ident.session.parameters_file import read_parameters
@@ -118,7 +119,7 @@ def test_letters_without_units_are_guessed_and_said(tmp_path: Path) -> None:
 def robot_logs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("my logs")
     for index, motion in enumerate(("roll", "pitch", "yaw")):
-        request = Request("free_response", motion=motion, noise=True, seed=40 + index)
+        request = Request(FREE_RESPONSE, Conditions(motion=motion), noise=True, seed=40 + index)
         simulate_to_file("p3at-extended", request, folder / f"{motion}-1.lvm")
     (folder / "notes.md").write_text("not a log")
     (folder / "broken.csv").write_text("time,force\n0,1\n0.1,zero\n0.2,3\n")
@@ -168,7 +169,7 @@ def test_a_rig_gets_its_first_values_from_the_logs(tmp_path: Path) -> None:
     logs = tmp_path / "logs"
     logs.mkdir()
     writers.write_csv(tmp_path / "force.csv", _recording(1000.0, force=(50 * random.normal(size=8000), "N")))
-    simulate_to_file(str(tmp_path / "rig.yaml"), Request("forced", force=str(tmp_path / "force.csv")), logs / "run.csv")
+    simulate_to_file(str(tmp_path / "rig.yaml"), Request(FORCED, force=str(tmp_path / "force.csv")), logs / "run.csv")
     for kept in ("position", "velocity", "acceleration"):
         recording = read_one(logs / "run.csv")
         only = tuple(c for c in recording.channels if c.name in ("force", kept))

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from bank import draw
 
-from ssmr_ident.campaign import Campaign
 from ssmr_ident.core.errors import InputError
+from ssmr_ident.experiments.campaign import Campaign
 from ssmr_ident.physics.rig import rig_from_parameters
 from ssmr_ident.simulate.rig import simulate_rig
 from ssmr_proof.peers import grey_box, mujoco_sysid, sindy

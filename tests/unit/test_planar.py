@@ -9,13 +9,14 @@ import numpy as np
 import pytest
 
 from ssmr_ident.core.errors import InputError
+from ssmr_ident.experiments.straight import straight
+from ssmr_ident.experiments.swivel import swivel
 from ssmr_ident.physics import planar, planar_dynamics
 from ssmr_ident.physics.motor import wheel_rates
 from ssmr_ident.physics.robot import GRAVITY, Robot, robot_from_parameters
 from ssmr_ident.physics.statics import rest_loads
 from ssmr_ident.session import read_parameters
 from ssmr_ident.simulate import simulate
-from ssmr_ident.simulate.scenarios import straight, swivel
 
 RADIUS, HALF_TRACK = 0.111, 0.18
 

@@ -5,13 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ssmr_ident.campaign import Measurement
 from ssmr_ident.core.parameter import Estimate
 from ssmr_ident.core.recording import Channel, Provenance, Recording
+from ssmr_ident.experiments import Scenario
+from ssmr_ident.experiments.campaign import Measurement
 from ssmr_ident.identify.trials.pull import falls, find_slack, holds, pull_trial, tightening
 from ssmr_ident.physics.robot import robot_from_parameters
 from ssmr_ident.session import Entry, read_parameters
-from ssmr_ident.simulate import Scenario, simulate
+from ssmr_ident.simulate import simulate
 
 STEP, SPEED, STIFFNESS = 0.01, 1e-3, 2e4
 

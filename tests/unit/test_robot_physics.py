@@ -11,6 +11,9 @@ from scipy.linalg import expm
 from scipy.optimize import brentq
 
 from ssmr_ident.core.errors import SimulationError
+from ssmr_ident.experiments import Scenario
+from ssmr_ident.experiments.pull import pull
+from ssmr_ident.experiments.swivel import swivel
 from ssmr_ident.physics.linear import linear_robot
 from ssmr_ident.physics.motor import wheel_rates
 from ssmr_ident.physics.robot import GRAVITY, Robot, robot_from_parameters
@@ -18,8 +21,7 @@ from ssmr_ident.physics.slots import effect_vector
 from ssmr_ident.physics.statics import rest_loads, rest_pose
 from ssmr_ident.physics.tire import contact_force, release_share
 from ssmr_ident.session import read_parameters
-from ssmr_ident.simulate import Scenario, simulate
-from ssmr_ident.simulate.scenarios import pull, swivel
+from ssmr_ident.simulate import simulate
 from ssmr_ident.simulate.step import choose_step
 
 NAMES = ("x", "y", "z", "roll", "pitch", "yaw")

@@ -10,6 +10,7 @@ from scipy.signal import lfilter
 from small_rigs import Run, campaign, fitted, prepared
 
 from ssmr_ident.core.parameter import Estimate
+from ssmr_ident.experiments import FORCED
 from ssmr_ident.identify.fitting.coordinates import Model
 from ssmr_ident.identify.fitting.curvature import Curvature
 from ssmr_ident.identify.fitting.descent import descend
@@ -113,7 +114,7 @@ def _trial(wave: np.ndarray, target: np.ndarray, times: np.ndarray, open_by: flo
     course = Course(times, target[:, None], run, ("m",), None)
     noise = (AutoregressiveNoise(np.ones(1), 1.0),)
     return Trial(
-        "one.csv", "forced", "", ("position",), times, target[:, None], noise, np.ones((len(times), 1)), run,
+        "one.csv", FORCED, "", ("position",), times, target[:, None], noise, np.ones((len(times), 1)), run,
         lambda values, effects: np.zeros(len(own)), own, scales, course,
     )  # fmt: skip
 

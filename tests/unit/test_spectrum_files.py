@@ -43,7 +43,7 @@ def test_volts_without_a_session_use_the_thesis_and_say_so(tmp_path: Path, monke
 
 def test_other_names_say_nothing() -> None:
     label = label_of_file(Path("roll-1.xlsx"))
-    assert (label.experiment, label.floor, label.configuration) == ("", "", "all swivels")
+    assert (label.experiment, label.floor, label.configuration) == (None, "", "all swivels")
     assert np.isnan(label.yaw_rate_deg_s)
 
 

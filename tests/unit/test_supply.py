@@ -5,15 +5,16 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ssmr_ident.campaign import Measurement, _from_volts
 from ssmr_ident.core.recording import Channel, Provenance, Recording
+from ssmr_ident.experiments.campaign import Measurement
+from ssmr_ident.experiments.free_response import free_response
+from ssmr_ident.experiments.quantities import _from_volts
 from ssmr_ident.identify.body.builder import RobotBuilder
 from ssmr_ident.identify.trials.decay import decay_trial
 from ssmr_ident.physics.robot import robot_from_parameters
 from ssmr_ident.readers.health import at_rails, ends_of_supply
 from ssmr_ident.session import Entry, read_parameters
 from ssmr_ident.simulate import simulate
-from ssmr_ident.simulate.scenarios import free_response
 
 STEP = 5.0 / 2**12
 ROBOT = robot_from_parameters(read_parameters("p3at-extended"))

@@ -7,11 +7,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from ssmr_ident.experiments.pull import pull
+from ssmr_ident.experiments.straight import straight
+from ssmr_ident.experiments.swivel import swivel
 from ssmr_ident.physics.motor import wheel_rates
 from ssmr_ident.physics.robot import Robot, robot_from_parameters
 from ssmr_ident.session import read_parameters
 from ssmr_ident.simulate import Simulation, simulate
-from ssmr_ident.simulate.scenarios import pull, straight, swivel
 
 
 @pytest.fixture(scope="module")

@@ -28,10 +28,10 @@ def command(
     seed: Annotated[int, typer.Option(help="Of permutation tests and simulated floors.")] = 0,
 ) -> None:
     """Say what physics the simulation leaves out, model it, and show it on recordings that were never fitted."""
-    from ssmr_ident.campaign import load
     from ssmr_ident.cli.called import called
     from ssmr_ident.cli.progress import stages
     from ssmr_ident.core.errors import InputError
+    from ssmr_ident.experiments.campaign import load
     from ssmr_ident.session import read_parameters
     from ssmr_ident.workflows.diagnose import diagnose, write_diagnosis
     from ssmr_ident.workflows.files_read import files_read

@@ -69,14 +69,18 @@ def command(
 ) -> None:
     """Simulate one experiment and write it as a log."""
     from ssmr_ident.cli.progress import doing
-    from ssmr_ident.workflows.simulate import Request, simulate_to_file
+    from ssmr_ident.experiments import Conditions
+    from ssmr_ident.workflows.simulate import Request, experiment_of, simulate_to_file, wheels_of
 
-    request = Request(
-        experiment=experiment, motion=motion, amplitude_mm=amplitude_mm, push_N=push_n, direction=direction,
-        speed_mm_s=speed_mm_s, height_m=height_m, wheels_gripping=wheels_gripping, cable=cable,
+    conditions = Conditions(
+        motion=motion, amplitude_mm=amplitude_mm, push_N=push_n, direction=direction, speed_mm_s=speed_mm_s,
+        height_m=height_m, wheels_gripping=wheels_of(wheels_gripping), cable=cable,
         wheel_rate_rad_s=wheel_rate_rad_s, free_normal=free_normal, yaw_rate_deg_s=yaw_rate_deg_s,
-        speed_m_s=speed_m_s, force=force, duration_s=duration_s, rate_hz=rate_hz, noise=noise, seed=seed,
-        effects=tuple(effect or ()),
+        speed_m_s=speed_m_s,
+    )  # fmt: skip
+    request = Request(
+        experiment_of(experiment), conditions, force=force, duration_s=duration_s, rate_hz=rate_hz, noise=noise,
+        seed=seed, effects=tuple(effect or ()),
     )  # fmt: skip
     with doing(FIRST_RUN, hidden=quiet or as_json):
         recording = simulate_to_file(params, request, output)

@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from ssmr_ident.campaign import Campaign
 from ssmr_ident.compare.prediction import Prediction, predict
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.core.shown import Shown, html_table
+from ssmr_ident.experiments.campaign import Campaign
 from ssmr_ident.signals.filters import ORDER, low_pass
 from ssmr_ident.signals.metrics import log_psd_db, nrmse_percent
 from ssmr_ident.signals.noise.hum import MAINS_HZ, mains_line

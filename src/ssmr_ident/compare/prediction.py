@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from ssmr_ident.campaign import Campaign, Measurement
 from ssmr_ident.compare import turning
 from ssmr_ident.compare.outcome import Prediction
 from ssmr_ident.compare.recorded import follow, predicted
 from ssmr_ident.core.parameter import ParameterSet
+from ssmr_ident.experiments.campaign import Campaign, Measurement
 from ssmr_ident.identify.fitting.coordinates import Model
 from ssmr_ident.identify.trials import trial_of
 from ssmr_ident.physics.slots import effect_values
@@ -34,9 +34,10 @@ def predict(campaign: Campaign, measurement: Measurement, parameters: ParameterS
     InputError
         The model and the experiment do not go together, or a parameter is missing.
     """
-    if measurement.entry.experiment in ("swivel", "straight") and campaign.session.baseline in ("rigid6", "decoupled"):
+    experiment, baseline = measurement.experiment, campaign.session.baseline
+    if not experiment.repeats and baseline in experiment.baselines:
         return turning.predict(parameters, measurement)
-    trial = trial_of(campaign.session.baseline, measurement, parameters)
+    trial = trial_of(baseline, measurement, parameters)
     model = Model((), (), effect_values(parameters))
     fit = follow([trial], model, np.zeros(0))
     return predicted(trial, *model.split(fit.point), fit.nuisances[0])

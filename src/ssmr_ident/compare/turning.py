@@ -9,17 +9,17 @@ from __future__ import annotations
 
 import numpy as np
 
-from ssmr_ident.campaign import Measurement
 from ssmr_ident.compare.outcome import Prediction
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.core.recording import Recording
+from ssmr_ident.experiments.campaign import Measurement
+from ssmr_ident.experiments.scenario import Scenario
 from ssmr_ident.physics.motor import wheel_rates
 from ssmr_ident.physics.robot import Robot, robot_from_parameters
 from ssmr_ident.physics.slots import Effects, effect_values
 from ssmr_ident.signals.grid import even_samples
 from ssmr_ident.signals.noise import quietest_density
-from ssmr_ident.simulate.scenarios import Scenario
 from ssmr_ident.simulate.simulation import simulate
 
 AXES = ("ax", "ay", "az")
@@ -79,7 +79,7 @@ def wanted_rates(robot: Robot, measurement: Measurement) -> tuple[np.ndarray, fl
     if measurement.wheels is not None:
         return _from_log(robot, measurement.wheels, measurement.recording)
     if entry.wheel_speed_m_s is not None:
-        sign = np.array([-1.0, 1.0]) if entry.experiment == "swivel" else np.ones(2)
+        sign = np.array(measurement.experiment.wheel_signs)
         return np.atleast_2d(sign * entry.wheel_speed_m_s / robot.radius), 1.0, _SETTLING
     if entry.yaw_rate_deg_s is not None:
         return np.atleast_2d(wheel_rates(robot, 0.0, np.deg2rad(entry.yaw_rate_deg_s))), 1.0, _SETTLING

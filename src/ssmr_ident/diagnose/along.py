@@ -71,7 +71,7 @@ class Along:
     def columns(self) -> tuple[int, ...]:
         """Of acceleration and velocity, what the fit may add: a rig that is let go does not tell its mass."""
         known = {unknown.name for unknown in self.fit.model.physics}
-        driven = any(trial.experiment == "forced" for trial in self.fit.trials)
+        driven = any(trial.experiment.driven for trial in self.fit.trials)
         return tuple(k for k in (0, 1) if self.keys[k] in known and (driven or k > 0))
 
     def begun(self, suspect: Suspect) -> tuple[float, Model, Array]:

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ssmr_ident.campaign import Campaign, Measurement
+from ssmr_ident.experiments.campaign import Campaign, Measurement
 
 
 def arranged(campaign: Campaign) -> Campaign:

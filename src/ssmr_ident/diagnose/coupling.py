@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from ssmr_ident.campaign import Measurement
 from ssmr_ident.compare.recorded import follow
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.baseline import LAST, best_baseline, prepared
 from ssmr_ident.diagnose.setup import COUPLING, Setup
 from ssmr_ident.diagnose.weigh import Explanation
+from ssmr_ident.experiments.campaign import Measurement
 from ssmr_ident.identify.body.builder import RobotBuilder
 from ssmr_ident.identify.fitting.descent import descend
 from ssmr_ident.identify.fitting.joint import evaluate
@@ -38,7 +38,7 @@ def coupled(setup: Setup, parameters: ParameterSet, kept: tuple[Trial, ...]) -> 
     logs: dict[str, Measurement] = {m.name: m for m in setup.campaign.measurements}
 
     def widened(trials: tuple[Trial, ...]) -> list[Trial]:
-        free = [t.experiment == "free_response" and t.part is None for t in trials]
+        free = [t.experiment.free and t.part is None for t in trials]
         return [decay_trial(logs[t.name], builder) if wide else t for t, wide in zip(trials, free, strict=True)]
 
     wide = best_baseline(widened(setup.fitted), replace(setup, model=model), parameters)[0]

@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ssmr_ident.campaign import Measurement
 from ssmr_ident.core.recording import Channel
 from ssmr_ident.diagnose.motion import main_channel, motion_of
 from ssmr_ident.diagnose.quantity import prefixed
 from ssmr_ident.diagnose.setup import Setup
+from ssmr_ident.experiments.campaign import Measurement
 from ssmr_ident.identify.body.builder import RobotBuilder
 from ssmr_ident.identify.fitting.joint import JointFit
 from ssmr_ident.identify.trials import trial_of
@@ -135,9 +135,9 @@ def _pulled(
     entry = replace(recorded.entry, speed_mm_s=None if speed is None else speed * share)
     new = make(replace(recorded, entry=entry, recording=recording)).with_noises(trial.noises)
     rate = float(trial.facts["travel_m"]) / float(trial.times[-1] - trial.times[0])
-    what = {"pull": "Pull", "wheel_drag": "Drag", "vertical_compression": "Press"}[trial.experiment]
     how = "as before" if share == 1.0 else f"at {TIMES[share]} the speed"
-    return Experiment(f"{what} {how} ({prefixed(rate * share, 'm/s')})", new, index, 1.0, _change(share))
+    words = f"{trial.experiment.verb} {how} ({prefixed(rate * share, 'm/s')})"
+    return Experiment(words, new, index, 1.0, _change(share))
 
 
 def _scaled(recorded: Measurement, share: float) -> Measurement:

@@ -74,7 +74,7 @@ def windows(fit: JointFit, columns: Sequence[int], halved: bool = False) -> list
         count = len(trial.times) - trial.lost
         since = trial.times[trial.lost :] - trial.times[0]
         state, period = _state(fit, index)
-        motion = (trial.experiment, trial.kind)
+        motion = (trial.experiment.name, trial.kind)
         pieces = min(MOST, int(since[-1] / period), count // FEWEST)
         if pieces < 2:
             continue

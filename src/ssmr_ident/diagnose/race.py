@@ -266,7 +266,7 @@ def _loudest(base: JointFit) -> list[int]:
     """The loudest trial of each kind; of a rig's, which are all of one kind, the quietest as well."""
     kinds: dict[tuple[str, str], list[int]] = {}
     for index, trial in enumerate(base.trials):
-        kinds.setdefault((trial.experiment, trial.kind), []).append(index)
+        kinds.setdefault((trial.experiment.name, trial.kind), []).append(index)
     chosen = set()
     for members in kinds.values():
         ordered = sorted(members, key=lambda k: float(np.ptp(base.trials[k].target)))

@@ -112,11 +112,10 @@ def both_ways(suspect: Suspect) -> list[Suspect]:
 
 def candidates(fit: JointFit, baseline: str) -> tuple[Effect, ...]:
     """Effects that can be seen in the session's experiments, and that its model does not have yet."""
-    experiments = {trial.experiment for trial in fit.trials}
     return tuple(
         effect
         for effect in CATALOGUE.values()
-        if experiments & set(effect.experiments)
+        if any(trial.experiment.shows(effect) for trial in fit.trials)
         and effect.id not in fit.model.held
         # a smooth force beside a listed effect would only mend that effect's formula
         and (effect.id != "unlisted" or not fit.model.free)

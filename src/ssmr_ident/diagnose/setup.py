@@ -6,17 +6,17 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ssmr_ident.campaign import Campaign, Measurement
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.arranged import loudness
+from ssmr_ident.experiments import EXPERIMENTS
+from ssmr_ident.experiments.campaign import Campaign, Measurement
 from ssmr_ident.identify.body.builder import GAINS
 from ssmr_ident.identify.body.unknowns import robot_unknowns
 from ssmr_ident.identify.fitting.coordinates import Model
 from ssmr_ident.identify.fitting.joint import JointFit
 from ssmr_ident.identify.posterior.objective import Unknown
 from ssmr_ident.identify.trials import Trial, trial_of
-from ssmr_ident.identify.trials.make import EXPERIMENTS
 from ssmr_ident.physics.rig import RIG_KEYS
 from ssmr_ident.physics.slots import effect_values
 
@@ -87,11 +87,12 @@ def set_up(campaign: Campaign, parameters: ParameterSet) -> Setup:
     """
     baseline = campaign.session.baseline
     for m in campaign.measurements:
-        if m.entry.experiment not in EXPERIMENTS[baseline]:
+        if not m.experiment.fitted_under(baseline):
+            possible = [name for name, kind in EXPERIMENTS.items() if kind.fitted_under(baseline)]
             raise InputError(
                 f"{campaign.session.folder / 'session.yaml'}: {m.name}",
                 f"a {m.entry.experiment} beside other experiments cannot be diagnosed with baseline {baseline}",
-                f"Make a session of its own of it; here: {', '.join(EXPERIMENTS[baseline])}",
+                f"Make a session of its own of it; here: {', '.join(possible)}",
             )
     calibration = [m for m in campaign.measurements if m.entry.role == "calibration"]
     targets = [m for m in campaign.measurements if m.entry.role == "target"]
@@ -226,9 +227,7 @@ def _gains(campaign: Campaign, parameters: ParameterSet) -> list[Unknown]:
 
     Of a single axis the size of the push cannot be told from it.
     """
-    logged = {
-        name for m in campaign.measurements if m.entry.experiment == "free_response" for name in m.recording.names
-    }
+    logged = {name for m in campaign.measurements if m.experiment.free for name in m.recording.names}
     found = []
     for name in (n for n in GAINS if f"a{n[-1]}" in logged):
         value, std = parameters.number(name, 1.0), parameters[name].std if name in parameters else None

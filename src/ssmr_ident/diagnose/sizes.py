@@ -30,7 +30,7 @@ def sizes_of(fit: JointFit) -> dict[str, float]:
     duration = max(float(trial.times[-1] - trial.times[0]) for trial in fit.trials)
     loads = [(float(np.ptp(trial.target)), trial) for trial in fit.trials if trial.channels == ("force",)]
     load = max((force for force, _ in loads), default=math.nan)
-    rises = [force / t.facts["travel_m"] for force, t in loads if t.experiment != "vertical_compression"]
+    rises = [force / t.facts["travel_m"] for force, t in loads if not t.experiment.vertical]
     stiffness = _stiffness(values)
     if moving:
         largest, omega, far = 0.0, 0.0, []
@@ -48,7 +48,7 @@ def sizes_of(fit: JointFit) -> dict[str, float]:
         reach, slope = min(((d, k or stiffness) for d, k in far), key=lambda one: one[1] / one[0] ** 2)
     else:
         largest = math.nan
-        wheels = 4.0 if any(t.experiment == "pull" for t in fit.trials) else 1.0
+        wheels = 4.0 if any(t.experiment.drags_everything for t in fit.trials) else 1.0
         stiffness = stiffness or load / max(max(t.facts["travel_m"] for t in fit.trials), 1e-12)
         deflection = load / (wheels * stiffness)
         speed = max(t.facts["travel_m"] / float(t.times[-1] - t.times[0]) for t in fit.trials)
@@ -112,7 +112,7 @@ def _gravity(fit: JointFit) -> tuple[float, float]:
 
 def _along(trial: Trial, values: Mapping[str, float]) -> float:
     """Stiffness of what a force log deflects [N/m], 0 where the file does not say."""
-    axis = "z" if trial.experiment == "vertical_compression" else "x" if trial.kind == "longitudinal" else "y"
+    axis = "z" if trial.experiment.vertical else "x" if trial.kind == "longitudinal" else "y"
     return values.get(f"tire.stiffness_{axis}_N_m") or _stiffness(values)
 
 

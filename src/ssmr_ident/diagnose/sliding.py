@@ -7,13 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from ssmr_ident.campaign import Campaign
 from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.diagnose.baseline import LAST, best_baseline, unsteady
 from ssmr_ident.diagnose.polish import calmed
 from ssmr_ident.diagnose.race import Progress
 from ssmr_ident.diagnose.setup import Setup, set_up
 from ssmr_ident.diagnose.weigh import CERTAIN
+from ssmr_ident.experiments.campaign import Campaign
 from ssmr_ident.identify.fitting.descent import LOUD, descend
 from ssmr_ident.identify.fitting.joint import JointFit, differentiate, evaluate
 from ssmr_ident.physics.robot import SLIDING_SPEED
@@ -42,7 +42,7 @@ def with_law_of_sliding(
     """
     relay = set_up(campaign, known)
     one = known.number("tire.mu_static", np.nan) == known.number("tire.mu_kinetic", np.nan)
-    if KEY in known or not one or all(trial.experiment != "pull" for trial in relay.fitted):
+    if KEY in known or not one or not any(trial.experiment.drags_everything for trial in relay.fitted):
         return relay, known
     if progress:
         progress("fitting the baseline", 0, 1)

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ssmr_ident.campaign import Campaign, Measurement
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.setup import Setup
+from ssmr_ident.experiments.campaign import Campaign, Measurement
 from ssmr_ident.identify.body.builder import RobotBuilder
 from ssmr_ident.identify.body.unknowns import match_further, modal_observations, pick_mode, predicted_modes
 from ssmr_ident.identify.decays.fit import fit_decay

@@ -39,13 +39,13 @@ def surfaces(before: JointFit, after: JointFit | None, parameters: ParameterSet)
     groups: dict[tuple[str, str, str], list[tuple[int, int]]] = defaultdict(list)
     for index, trial in enumerate(before.trials):
         if trial.channels == ("force",):
-            groups[trial.experiment, trial.kind, "force"].append((index, 0))
+            groups[trial.experiment.name, trial.kind, "force"].append((index, 0))
         elif is_robot(trial):  # by the motion, not by a channel: a force is sought in all of them
             place = tire_state(before, index, parameters, []).place
-            groups[trial.experiment, trial.kind, place].append((index, main_channel(trial)))
+            groups[trial.experiment.name, trial.kind, place].append((index, main_channel(trial)))
         else:
             channel = max(range(len(trial.channels)), key=lambda c: excess(before, index, c))
-            groups[trial.experiment, trial.kind, trial.channels[channel]].append((index, channel))
+            groups[trial.experiment.name, trial.kind, trial.channels[channel]].append((index, channel))
     ordered = sorted(groups.values(), key=lambda pairs: -sum(_misfit(before, index) for index, _ in pairs))
     return tuple(_surface(before, after, pairs, parameters) for pairs in ordered[:MOST])
 

@@ -59,7 +59,7 @@ class TireState:
 
 def is_robot(trial: Trial) -> bool:
     """A robot's decay, simulated with all six degrees of freedom."""
-    return trial.experiment == "free_response" and len(trial.nuisances) == len(SCALES) and len(trial.channels) > 1
+    return trial.experiment.free and len(trial.nuisances) == len(SCALES) and len(trial.channels) > 1
 
 
 def tire_state(fit: JointFit, index: int, parameters: ParameterSet, simulated: Sequence[Array]) -> TireState:

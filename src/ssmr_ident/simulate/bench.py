@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from ssmr_ident.core.kernel import kernel
+from ssmr_ident.experiments import Experiment
 from ssmr_ident.physics.effect import Site
 from ssmr_ident.physics.effects import CATALOGUE, stribeck, unlisted
 from ssmr_ident.physics.element import STATES, element_advance, element_force
@@ -69,6 +70,21 @@ def drag_wheel(
     tire = (robot.stiffness[1], robot.damping[1], robot.effective_mass)
     _drag(*tire, *grip, load, cable, e, head - head[0], step, substeps, force)
     return _read(force, step, active)
+
+
+def load_wheel(
+    robot: Robot,
+    experiment: Experiment,
+    head: np.ndarray,
+    step: float,
+    free_normal: bool = True,
+    effects: Effects | None = None,
+    longest: float | None = None,
+) -> np.ndarray:
+    """What the load cell reads of an experiment on one wheel: ``compress_wheel`` along z, else ``drag_wheel``."""
+    if experiment.vertical:
+        return compress_wheel(robot, head, step, effects=effects)
+    return drag_wheel(robot, head, step, free_normal, effects, longest)
 
 
 def compress_wheel(

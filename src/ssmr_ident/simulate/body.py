@@ -10,6 +10,7 @@ import numpy as np
 
 from ssmr_ident.core.kernel import kernel
 from ssmr_ident.core.recent import Recent
+from ssmr_ident.experiments.scenario import Scenario
 from ssmr_ident.physics import slots
 from ssmr_ident.physics.effect import Site
 from ssmr_ident.physics.effects import CATALOGUE, ground_roughness, unlisted
@@ -28,7 +29,6 @@ from ssmr_ident.physics.slots import (
 from ssmr_ident.physics.statics import rest_pose
 from ssmr_ident.simulate import layout as k
 from ssmr_ident.simulate.mast import inverse_mass_matrix
-from ssmr_ident.simulate.scenarios import Scenario
 
 LOADED, POINTS, UNSEEN = k.LOADED, k.POINTS, k.UNSEEN
 FLAT = np.zeros((1, 1))

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ssmr_ident.core.errors import Impossible
+from ssmr_ident.experiments.scenario import Scenario
 from ssmr_ident.physics.robot import Robot
 from ssmr_ident.physics.slots import Effects
 from ssmr_ident.simulate import layout
 from ssmr_ident.simulate.body import Body, body_of, let_all_go
-from ssmr_ident.simulate.scenarios import Scenario
 from ssmr_ident.simulate.sensed import sensed
 from ssmr_ident.simulate.simulation import grid, prepared
 from ssmr_ident.simulate.together import STILL, Run, run_together

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ssmr_ident.core.recording import Channel, Provenance, Recording
+from ssmr_ident.experiments import PULL
 from ssmr_ident.physics.sensor import Accelerometer, Noise, quantise
 from ssmr_ident.simulate.simulation import Simulation
 
@@ -88,7 +89,7 @@ def load_cell_log(
     force: np.ndarray,
     noise: Noise,
     random: np.random.Generator,
-    experiment: str = "pull",
+    experiment: str = PULL.name,
 ) -> Recording:
     """A testing machine's log: travel of its head and load.
 

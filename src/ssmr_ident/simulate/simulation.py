@@ -10,6 +10,7 @@ import numpy as np
 from ssmr_ident.core.errors import SimulationError
 from ssmr_ident.core.recording import Channel, Provenance, Recording
 from ssmr_ident.core.shown import Shown
+from ssmr_ident.experiments.scenario import Scenario
 from ssmr_ident.physics.effect import Site
 from ssmr_ident.physics.effects import CATALOGUE
 from ssmr_ident.physics.robot import Robot
@@ -31,7 +32,6 @@ from ssmr_ident.simulate.pulling import (
     PULLING,
 )
 from ssmr_ident.simulate.robot_kernel import run
-from ssmr_ident.simulate.scenarios import Scenario
 from ssmr_ident.simulate.sensed import sensed
 from ssmr_ident.simulate.step import choose_step
 from ssmr_ident.simulate.together import Run
@@ -173,7 +173,7 @@ def prepared(robot: Robot, scenario: Scenario, effects: Effects, release_drag: f
 
 def _pulling(robot: Robot, scenario: Scenario, active: Effects) -> np.ndarray:
     q = np.zeros(PULLING)
-    if scenario.experiment != "pull":
+    if not scenario.pulled:
         return q
     stiffness = scenario.cable_stiffness or robot.cable_stiffness
     damping = scenario.cable_damping

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ssmr_ident.core.shown import Shown
+from ssmr_ident.experiments.scenario import Scenario
 from ssmr_ident.physics.linear import linear_robot
 from ssmr_ident.physics.robot import Robot
 from ssmr_ident.physics.slots import MAST_HZ
-from ssmr_ident.simulate.scenarios import Scenario
 
 FREQUENCY_ERROR = 1e-5
 """Relative error of the fastest vibration's frequency that a step may make; decays are identified to 1e-4."""
@@ -63,7 +63,7 @@ def choose_step(robot: Robot, scenario: Scenario, e: np.ndarray) -> StepChoice:
     decay_rates = [float(np.abs(values.real).max())]
     if math.isfinite(e[MAST_HZ]):
         fastest = max(fastest, 2.0 * math.pi * float(e[MAST_HZ]))
-    if scenario.experiment == "pull":
+    if scenario.pulled:
         stiffness = scenario.cable_stiffness or robot.cable_stiffness
         damping = robot.cable_damping if scenario.cable_damping is None else scenario.cable_damping
         fastest = max(fastest, math.sqrt(stiffness / robot.mass))

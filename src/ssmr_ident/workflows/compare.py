@@ -8,9 +8,9 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
-from ssmr_ident.campaign import load
 from ssmr_ident.compare import Comparison, compare
 from ssmr_ident.core.atomic import write_text
+from ssmr_ident.experiments.campaign import load
 from ssmr_ident.report.comparison_page import comparison_page
 from ssmr_ident.report.html import file_hashes, write_page
 from ssmr_ident.report.overlay import overlay_figure

@@ -9,14 +9,12 @@ from pathlib import Path
 import yaml
 from threadpoolctl import threadpool_limits
 
-from ssmr_ident.campaign import Campaign, load
 from ssmr_ident.core.atomic import write_text
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.diagnosis import Diagnosis
+from ssmr_ident.experiments.campaign import Campaign, load
 from ssmr_ident.session import write_parameters
 from ssmr_ident.workflows.files_read import files_read
-
-TURNING = ("swivel", "straight")
 
 Progress = Callable[[str, int, int], None]
 
@@ -51,8 +49,7 @@ def diagnose(
 
 
 def _diagnosed(campaign: Campaign, known: ParameterSet, seed: int, progress: Progress | None) -> Diagnosis:
-    experiments = {m.entry.experiment for m in campaign.measurements}
-    if experiments & set(TURNING):
+    if not all(m.experiment.repeats for m in campaign.measurements):
         from ssmr_ident.diagnose.turning import diagnose_turning
 
         return diagnose_turning(campaign, known, seed, progress)

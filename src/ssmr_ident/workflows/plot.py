@@ -7,12 +7,13 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from ssmr_ident.campaign import Measurement
 from ssmr_ident.compare.comparison import Comparison, RecordingComparison
 from ssmr_ident.compare.outcome import Prediction
 from ssmr_ident.core.errors import InputError, did_you_mean
 from ssmr_ident.core.recording import Recording
 from ssmr_ident.diagnose import Diagnosis
+from ssmr_ident.experiments.campaign import Measurement
+from ssmr_ident.experiments.experiment import ACCELERATIONS
 from ssmr_ident.physics.effect import Effect
 from ssmr_ident.report.courses import courses_figure
 from ssmr_ident.report.diagnosis_pictures import after_name
@@ -56,14 +57,12 @@ def _(thing: Recording, name: str = "") -> Figure:
 
 @plot.register
 def _(thing: Measurement, name: str = "") -> Figure:
-    return courses_figure(thing.recording, f"{thing.name}: {thing.entry.experiment.replace('_', ' ')}")
+    return courses_figure(thing.recording, f"{thing.name}: {thing.experiment.words}")
 
 
 @plot.register
 def _(thing: Simulation, name: str = "") -> Figure:
-    force = thing.scenario.experiment == "pull"
-    recording = thing.recording(*(("force",) if force else ("ax", "ay", "az")))
-    return courses_figure(recording)
+    return courses_figure(thing.recording(*(("force",) if thing.scenario.pulled else ACCELERATIONS)))
 
 
 @plot.register

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -10,39 +10,42 @@ import numpy as np
 from ssmr_ident.core.errors import InputError, did_you_mean
 from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.core.recording import Channel, Provenance, Recording
-from ssmr_ident.physics.motor import wheel_rates
+from ssmr_ident.experiments import EXPERIMENTS, Conditions, Experiment
+from ssmr_ident.experiments.experiment import ACCELERATIONS
 from ssmr_ident.physics.rig import rig_from_parameters
 from ssmr_ident.physics.robot import accelerometer_from_parameters, robot_from_parameters
 from ssmr_ident.physics.sensor import Noise
 from ssmr_ident.physics.slots import effect_values
 from ssmr_ident.readers import ReadOptions, read_one, writers
 from ssmr_ident.session import read_parameters
-from ssmr_ident.simulate import bench, scenarios
+from ssmr_ident.simulate.bench import load_wheel
 from ssmr_ident.simulate.rig import simulate_rig
 from ssmr_ident.simulate.simulation import simulate
 
-EXPERIMENTS = ("free_response", "pull", "swivel", "straight", "wheel_drag", "vertical_compression", "forced")
-_CHOICES = {"motion": ("roll", "pitch", "yaw"), "direction": ("lateral", "longitudinal"), "cable": ("steel", "rope")}
-_DURATION = {"free_response": 4.096, "swivel": 20.0, "straight": 10.0, "pull": 16.0, "wheel_drag": 16.0}
+CHOICES = {"motion": ("roll", "pitch", "yaw"), "direction": ("lateral", "longitudinal"), "cable": ("steel", "rope")}
 
 
 @dataclass(frozen=True)
 class Request:
-    """What to simulate, as the command line asks for it (units are in the names)."""
+    """What to simulate, as the command line asks for it (units are in the names).
 
-    experiment: str
-    motion: str = "roll"
-    amplitude_mm: float = 0.3
-    push_N: float = 0.0
-    direction: str = "lateral"
-    speed_mm_s: float = 1.0
-    height_m: float = 0.05
-    wheels_gripping: str = "1,2,3,4"
-    cable: str = "steel"
-    wheel_rate_rad_s: float = 0.0
-    free_normal: bool = True
-    yaw_rate_deg_s: float = 45.0
-    speed_m_s: float = 0.3
+    Parameters
+    ----------
+    experiment : Experiment
+    conditions : Conditions
+    force : str
+        Log with the force of a driven rig.
+    duration_s, rate_hz : float or None
+        None takes the experiment's own.
+    noise : bool
+        That of the parameter file.
+    seed : int
+    effects : tuple of str
+        ``ID`` or ``ID:KEY=VALUE,…``, beside those of the file.
+    """
+
+    experiment: Experiment
+    conditions: Conditions = field(default_factory=Conditions)
     force: str = ""
     duration_s: float | None = None
     rate_hz: float | None = None
@@ -53,13 +56,12 @@ class Request:
     @property
     def duration(self) -> float:
         """Of the recording [s]."""
-        return _DURATION.get(self.experiment, 4.0) if self.duration_s is None else self.duration_s
+        return self.experiment.duration if self.duration_s is None else self.duration_s
 
     @property
     def rate(self) -> float:
-        """Samples per second [Hz]: the accelerometers' 1 kHz, the testing machine's 100 Hz."""
-        slow = self.experiment in ("pull", "wheel_drag", "vertical_compression")
-        return (100.0 if slow else 1000.0) if self.rate_hz is None else self.rate_hz
+        """Samples per second [Hz]."""
+        return self.experiment.sample_rate if self.rate_hz is None else self.rate_hz
 
 
 def simulate_to_file(params: str, request: Request, output: Path) -> Recording:
@@ -68,16 +70,15 @@ def simulate_to_file(params: str, request: Request, output: Path) -> Recording:
     Raises
     ------
     InputError
-        An unknown experiment, a missing parameter, an ending without a writer.
+        A missing parameter, an ending without a writer.
     """
-    if request.experiment not in EXPERIMENTS:
-        raise InputError("--experiment", f"is {request.experiment!r}", did_you_mean(request.experiment, EXPERIMENTS))
-    for option, known in _CHOICES.items():
-        value = getattr(request, option)
+    duration, rate = request.duration, request.rate
+    for option, known in CHOICES.items():
+        value = getattr(request.conditions, option)
         if value not in known:
             raise InputError(f"--{option}", f"is {value!r}", did_you_mean(value, known))
-    if request.duration <= 0 or request.rate <= 0 or request.duration * request.rate > 5e7:
-        raise InputError("--duration-s, --rate-hz", f"ask for {request.duration * request.rate:g} samples")
+    if duration <= 0 or rate <= 0 or duration * rate > 5e7:
+        raise InputError("--duration-s, --rate-hz", f"ask for {duration * rate:g} samples")
     parameters = _with_effects(read_parameters(params), request.effects)
     recording = _run(parameters, request)
     if request.noise:
@@ -126,41 +127,20 @@ def _write(output: Path, recording: Recording, parameters: ParameterSet) -> None
 
 
 def _run(parameters: ParameterSet, request: Request) -> Recording:
-    if request.experiment == "forced":
+    experiment, conditions = request.experiment, request.conditions
+    if experiment.driven:
         return _forced(parameters, request)
     robot, effects = robot_from_parameters(parameters), effect_values(parameters)
-    if request.experiment in ("wheel_drag", "vertical_compression"):
+    if experiment.scenario is None:
         time = np.arange(round(request.duration * request.rate)) / request.rate
-        head = request.speed_mm_s * 1e-3 * time
-        if request.experiment == "wheel_drag":
-            force = bench.drag_wheel(robot, head, 1.0 / request.rate, request.free_normal, effects)
-        else:
-            force = bench.compress_wheel(robot, head, 1.0 / request.rate, effects=effects)
-        return _recording(time, request.experiment, position=(head, "m"), force=(force, "N"))
-    if request.experiment == "pull":
-        scenario = scenarios.pull(
-            request.direction,
-            request.speed_mm_s,
-            request.duration,
-            request.cable,
-            height=request.height_m,
-            wheels_gripping=_wheels(request.wheels_gripping),
-            wheel_rates=np.full((1, 2), request.wheel_rate_rad_s),
-            held=scenarios.fixture_needed(_wheels(request.wheels_gripping), request.wheel_rate_rad_s),
-        )
-        result = simulate(robot, scenario, request.rate, effects=effects)
-        return _recording(result.time, "pull", position=(result["head"], "m"), force=(result["force"], "N"))
-    if request.experiment == "free_response":
-        if request.push_N:
-            scenario = scenarios.released(robot, request.motion, request.push_N, request.duration)
-        else:
-            scenario = scenarios.free_response(request.motion, request.amplitude_mm * 1e-3, request.duration)
-    elif request.experiment == "swivel":
-        rates = wheel_rates(robot, 0.0, float(np.deg2rad(request.yaw_rate_deg_s)))
-        scenario = scenarios.swivel(rates, request.duration)
-    else:
-        scenario = scenarios.straight(wheel_rates(robot, request.speed_m_s, 0.0), request.duration)
-    return simulate(robot, scenario, request.rate, effects=effects).recording("ax", "ay", "az")
+        head = conditions.speed_mm_s * 1e-3 * time
+        force = load_wheel(robot, experiment, head, 1.0 / request.rate, conditions.free_normal, effects)
+        return _recording(time, experiment.name, position=(head, "m"), force=(force, "N"))
+    scenario = experiment.scenario(robot, conditions, request.duration)
+    result = simulate(robot, scenario, request.rate, effects=effects)
+    if scenario.pulled:
+        return _recording(result.time, experiment.name, position=(result["head"], "m"), force=(result["force"], "N"))
+    return result.recording(*ACCELERATIONS)
 
 
 def _forced(parameters: ParameterSet, request: Request) -> Recording:
@@ -175,7 +155,7 @@ def _forced(parameters: ParameterSet, request: Request) -> Recording:
     position, velocity, acceleration = motion.T
     return _recording(
         log.time,
-        "forced",
+        request.experiment.name,
         force=(log["force"], "N"),
         position=(position, "m"),
         velocity=(velocity, "m/s"),
@@ -203,7 +183,19 @@ def _noisy(recording: Recording, parameters: ParameterSet, seed: int) -> Recordi
     return recording.with_channels(channels)
 
 
-def _wheels(text: str) -> tuple[int, ...]:
+def experiment_of(name: str) -> Experiment:
+    """The experiment that the command line names."""
+    if name not in EXPERIMENTS:
+        raise InputError("--experiment", f"is {name!r}", did_you_mean(name, EXPERIMENTS))
+    return EXPERIMENTS[name]
+
+
+def wheels_of(text: str) -> tuple[int, ...]:
+    """Wheels as the command line names them.
+
+    >>> wheels_of("2, 1")
+    (1, 2)
+    """
     try:
         wheels = tuple(sorted({int(part) for part in text.split(",") if part.strip()}))
     except ValueError:

@@ -13,6 +13,7 @@ import yaml
 
 from ssmr_ident.core.atomic import write_text
 from ssmr_ident.core.parameter import ParameterSet
+from ssmr_ident.experiments import EXPERIMENTS
 from ssmr_ident.readers.writers import write_csv, write_labview_xlsx, write_lvm, write_mtestquattro
 from ssmr_ident.session import write_parameters
 from ssmr_proof.drawn.cases import Case
@@ -122,11 +123,11 @@ def write_session(recorded: Recorded, folder: Path, heldout: bool) -> None:
 
 
 def _write_log(log: Log, folder: Path, plain: bool) -> str:
-    experiment = log.entry["experiment"]
-    if experiment == "forced":
+    experiment = EXPERIMENTS[log.entry["experiment"]]
+    if experiment.driven:
         file = f"{log.stem}.csv"
         write_csv(folder / file, log.recording, decimals=8 if "position" in log.names else 4)
-    elif experiment == "pull":
+    elif experiment.on_a_testing_machine:
         file = f"{log.stem}.{'txt' if plain else 'csv'}"
         facts = {} if plain else {"Sample": "1", "Procedure": "Pull", "Operator": "lab"}
         write_mtestquattro(folder / file, log.recording, style="tab" if plain else "csv", facts=facts)

@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 
-from ssmr_ident.campaign import load
 from ssmr_ident.compare import compare
 from ssmr_ident.compare.outcome import Prediction
+from ssmr_ident.experiments.campaign import load
 from ssmr_ident.report.html import Picture, picture
 from ssmr_ident.report.style import BLUE, INK, ORANGE, axis_text, house, new_figure
 from ssmr_ident.session import read_parameters

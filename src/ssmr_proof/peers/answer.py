@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from ssmr_ident.campaign import Campaign
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.shown import Shown
+from ssmr_ident.experiments.campaign import Campaign
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ def drive_and_motion(campaign: Campaign) -> tuple[str, list[Any]]:
     InputError
         The session is no rig that a measured force drives.
     """
-    targets = [m for m in campaign.measurements if m.entry.role != "heldout" and m.entry.experiment == "forced"]
+    targets = [m for m in campaign.measurements if m.entry.role != "heldout" and m.experiment.driven]
     if campaign.session.baseline != "sdof" or not targets or "force" not in targets[0].recording:
         raise InputError(campaign.session.name, "is not a rig driven by a measured force", "Peers run on those only")
     for quantity in ("acceleration", "velocity", "position"):

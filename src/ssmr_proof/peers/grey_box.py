@@ -8,7 +8,7 @@ import numpy as np
 from scipy.optimize import least_squares
 from scipy.stats import chi2
 
-from ssmr_ident.campaign import Campaign
+from ssmr_ident.experiments.campaign import Campaign
 from ssmr_ident.physics.rig import Rig, rig_from_parameters
 from ssmr_ident.simulate.rig import simulate_rig
 from ssmr_proof.peers.answer import PeerAnswer, drive_and_motion

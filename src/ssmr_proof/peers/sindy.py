@@ -8,8 +8,8 @@ import warnings
 import numpy as np
 from scipy.integrate import cumulative_trapezoid
 
-from ssmr_ident.campaign import Campaign
 from ssmr_ident.core.errors import InputError
+from ssmr_ident.experiments.campaign import Campaign
 from ssmr_ident.signals.filters import low_pass
 from ssmr_proof.peers.answer import PeerAnswer, drive_and_motion
 

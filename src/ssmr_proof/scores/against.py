@@ -8,7 +8,7 @@ from concurrent.futures import as_completed
 from dataclasses import dataclass
 from pathlib import Path
 
-from ssmr_ident.campaign import load
+from ssmr_ident.experiments.campaign import load
 from ssmr_ident.report.html import Section, Table
 from ssmr_proof.peers import PEERS, PeerAnswer
 from ssmr_proof.run import processes

@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from ssmr_ident.campaign import load
 from ssmr_ident.compare import compare
 from ssmr_ident.core.errors import InputError, SimulationError
 from ssmr_ident.core.parameter import ParameterSet
+from ssmr_ident.experiments.campaign import load
 from ssmr_ident.session import read_parameters
 
 SHOWN = 1  # shifts named in a table

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from ssmr_ident.campaign import Campaign
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.diagnosis import Diagnosis
 from ssmr_ident.diagnose.turning.assemble import diagnosis_of
 from ssmr_ident.diagnose.turning.engine import examine
+from ssmr_ident.experiments.campaign import Campaign
 
 __all__ = ["diagnose_turning"]
 

@@ -12,9 +12,9 @@ from ssmr_ident.core.errors import Impossible, SimulationError
 from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.diagnose.turning.conditions import Condition
 from ssmr_ident.diagnose.turning.spectra import Look, average, levels_of, look
+from ssmr_ident.experiments.scenario import Scenario
 from ssmr_ident.identify.fitting.parallel import side_by_side
 from ssmr_ident.physics.slots import Effects
-from ssmr_ident.simulate.scenarios import Scenario
 from ssmr_ident.simulate.simulation import simulate
 
 RATE = 500.0  # Hz; what folds back from above 450 Hz has passed a sensor of 80 Hz
@@ -121,7 +121,7 @@ def simulated(
     if "seed" not in effects.get("ground_roughness", {}):
         active["ground_roughness"]["seed"] = float(seed)
     scenario = Scenario(
-        condition.experiment,
+        condition.experiment.name,
         condition.settling + condition.duration,
         offset={"y": 1e-7 * seed},
         wheel_rates=condition.rates,

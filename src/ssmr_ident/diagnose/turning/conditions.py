@@ -7,13 +7,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ssmr_ident.campaign import Campaign, Measurement
 from ssmr_ident.compare.turning import AXES, wanted_rates
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.core.recording import Recording
 from ssmr_ident.diagnose.turning.likelihood import NEPER_DB, log_variance
 from ssmr_ident.diagnose.turning.spectra import Look, average, look
+from ssmr_ident.experiments import Experiment
+from ssmr_ident.experiments.campaign import Campaign, Measurement
 from ssmr_ident.physics.robot import Robot, robot_from_parameters
 from ssmr_ident.signals.grid import even_samples
 from ssmr_ident.signals.noise import line_power, quietest_density
@@ -34,7 +35,7 @@ class Condition:
     ----------
     role : str
         ``calibration``, ``target`` or ``heldout``.
-    experiment : str
+    experiment : Experiment
     recordings : tuple of str
     looks : tuple of Look
         One per recording.
@@ -59,7 +60,7 @@ class Condition:
     """
 
     role: str
-    experiment: str
+    experiment: Experiment
     recordings: tuple[str, ...]
     looks: tuple[Look, ...]
     mean: Look
@@ -96,7 +97,7 @@ def held_back(campaign: Campaign) -> tuple[tuple[Measurement, ...], tuple[str, .
 
     With three or more target speeds the middle one is kept back; with fewer, the end of every target record.
     """
-    turning = [m for m in campaign.measurements if m.entry.experiment in ("swivel", "straight")]
+    turning = [m for m in campaign.measurements if not m.experiment.repeats]
     targets = [m for m in turning if m.entry.role == "target" and m.recording.duration >= SHORTEST]
     if any(m.entry.role == "heldout" and m.recording.duration >= SHORTEST for m in turning) or not targets:
         return tuple(turning), ()
@@ -151,14 +152,14 @@ def conditions_of(
     kinds: dict[tuple, list[Measurement]] = defaultdict(list)
     notes = []
     for m in campaign.measurements if measurements is None else measurements:
-        if m.entry.experiment not in ("swivel", "straight"):
+        if m.experiment.repeats:
             continue
         if m.recording.duration < SHORTEST:
             notes.append(f"{m.name} lasts {m.recording.duration:.1f} s: too short for a spectrum, passed over")
             continue
         rates, step, _ = wanted_rates(robot, m)
         channels = tuple(name for name in AXES if name in m.recording)
-        kinds[m.entry.role, m.entry.experiment, rates.tobytes(), step, channels].append(m)
+        kinds[m.entry.role, m.experiment, rates.tobytes(), step, channels].append(m)
     if not kinds:
         raise InputError(
             str(campaign.session.folder),
@@ -186,7 +187,7 @@ def _condition(robot: Robot, group: list[Measurement]) -> Condition:
     duration = STEADY if settling else min(LONGEST, max(m.recording.duration for m in group))
     return Condition(
         role=first.entry.role,
-        experiment=first.entry.experiment,
+        experiment=first.experiment,
         recordings=tuple(m.name for m in group),
         looks=tuple(looks),
         mean=average(looks),

@@ -7,7 +7,6 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ssmr_ident.campaign import Campaign
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.turning.alone import searched_again, without
@@ -28,6 +27,7 @@ from ssmr_ident.diagnose.turning.regimes import widened
 from ssmr_ident.diagnose.turning.search import Explained, explained, freed, polished, refined, screened
 from ssmr_ident.diagnose.turning.starts import ceilings, pitches
 from ssmr_ident.diagnose.turning.wider import wider
+from ssmr_ident.experiments.campaign import Campaign
 
 REFINED = 5  # explanations whose own parameters are searched first, with calibration
 FREED, FREED_LOOSE, FREED_STRAIGHT = 5, 3, 3

@@ -19,7 +19,7 @@ def pitches(anchor: Anchor, targets: tuple[Condition, ...]) -> tuple[float, ...]
             continue
         channels = blocks[0].residual.reshape(len(c.mean.frequency), -1)[:, : len(c.names)]
         excess.append(channels.mean(axis=1))
-        speeds.append(abs(run.yaw_rate) * lever(anchor) if c.experiment == "swivel" else _forward(c, anchor))
+        speeds.append(abs(run.yaw_rate) * lever(anchor) if c.experiment.turns else _forward(c, anchor))
     frequency = min((c.mean.frequency for c in targets), key=len)
     return pitches_heard(frequency, [course[: len(frequency)] for course in excess], speeds)
 

@@ -10,12 +10,12 @@ from __future__ import annotations
 import numpy as np
 from scipy.signal import lfilter, lfilter_zi
 
+from ssmr_ident.experiments import FREE_RESPONSE, Scenario
 from ssmr_ident.identify.body.free_decays import BodyDecay
 from ssmr_ident.physics.linear import COORDINATES, accelerometer_rows, linear_robot, responses
 from ssmr_ident.physics.robot import GRAVITY, Robot
 from ssmr_ident.physics.sensor import low_pass_coefficients
 from ssmr_ident.physics.slots import Effects
-from ssmr_ident.simulate.scenarios import Scenario
 from ssmr_ident.simulate.simulation import simulate
 
 Array = np.ndarray
@@ -38,7 +38,7 @@ def defect(decay: BodyDecay, robot: Robot, start: Array, effects: Effects | None
     """
     samples, step = len(decay.record.samples), decay.record.step
     scenario = Scenario(
-        "free_response",
+        FREE_RESPONSE.name,
         samples * step,
         offset=dict(zip(COORDINATES, map(float, start[:6]), strict=True)),
         velocity=dict(zip(COORDINATES, map(float, start[6:]), strict=True)),

@@ -52,7 +52,7 @@ def horizons(trials: Sequence[Trial], time: float) -> list[float]:
     if not any(trial.shorten for trial in trials):
         return [np.inf]
     longest = max(float(t.times[-1] - t.times[0]) for t in trials)
-    if any(trial.experiment == "forced" for trial in trials):
+    if any(trial.experiment.driven for trial in trials):
         # the force keeps the phase: a part is only a shorter recording
         return [max(DRIVEN * time, longest / 8.0), np.inf] if longest > 4.0 * DRIVEN * time else [np.inf]
     found, length = [], FIRST * time

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from ssmr_ident.experiments.pull import FIXTURE, fixture_needed
 from ssmr_ident.physics.linear import linear_robot
 from ssmr_ident.physics.robot import Robot
-from ssmr_ident.simulate.scenarios import FIXTURE, fixture_needed
 
 
 def pull_stiffness(

@@ -8,8 +8,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ssmr_ident.campaign import Measurement
 from ssmr_ident.core.errors import InputError
+from ssmr_ident.experiments import FREE_RESPONSE
+from ssmr_ident.experiments.campaign import Measurement
 from ssmr_ident.identify.body.builder import RobotBuilder
 from ssmr_ident.identify.body.free_decays import BodyDecay, body_decay
 from ssmr_ident.identify.body.output_error import START_SCALES
@@ -200,7 +201,7 @@ def _trial(whole: BodyDecay, kept: int, facts: _Facts) -> Trial:
 
     trial = Trial(
         facts.name,
-        "free_response",
+        FREE_RESPONSE,
         facts.kind,
         facts.channels,
         decay.record.start_s + decay.first + decay.step * np.arange(kept),

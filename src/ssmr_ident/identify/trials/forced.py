@@ -11,9 +11,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ssmr_ident.campaign import MOTIONS, UNITS, Measurement
 from ssmr_ident.core.errors import InputError, SimulationError
 from ssmr_ident.core.parameter import ParameterSet
+from ssmr_ident.experiments.campaign import Measurement
+from ssmr_ident.experiments.experiment import MOTIONS
+from ssmr_ident.experiments.quantities import UNITS
 from ssmr_ident.identify.trials.trial import Array, Course, Trial, Values
 from ssmr_ident.physics.rig import RIG_KEYS, Rig, rig_from_parameters
 from ssmr_ident.physics.slots import Effects
@@ -148,7 +150,7 @@ def forced_trial(measurement: Measurement, parameters: ParameterSet) -> Trial:
         target = averaged(measured)
         trial = Trial(
             measurement.name,
-            measurement.entry.experiment,
+            measurement.experiment,
             "",
             outputs,
             even.start + (np.arange(count) + 0.5 * (block - 1) / block) * block / rate,

@@ -8,15 +8,17 @@ import numpy as np
 
 from ssmr_ident.core.errors import SimulationError
 from ssmr_ident.core.parameter import ParameterSet
+from ssmr_ident.experiments import PULL, Scenario
+from ssmr_ident.experiments.campaign import Measurement
+from ssmr_ident.experiments.pull import cable_properties, fixture_needed
 from ssmr_ident.identify.body.builder import RobotBuilder
 from ssmr_ident.identify.trials.trial import Array, Values
 from ssmr_ident.physics.rig import Block, block_from_parameters
 from ssmr_ident.physics.robot import Robot
 from ssmr_ident.physics.slots import Effects
 from ssmr_ident.session import Entry
-from ssmr_ident.simulate.bench import compress_wheel, drag_wheel, pull_block
+from ssmr_ident.simulate.bench import load_wheel, pull_block
 from ssmr_ident.simulate.many import simulate_pulls
-from ssmr_ident.simulate.scenarios import Scenario, cable_properties, fixture_needed
 from ssmr_ident.simulate.simulation import simulate
 
 Head = tuple[Values, Effects, Array]
@@ -34,21 +36,22 @@ SPINNING_STEP = 5e-4
 2 N, this leaves less than 0.1 N."""
 
 
-def force_model(entry: Entry, parameters: ParameterSet, held: bool = False, unseen: tuple[str, ...] = ()) -> Forces:
-    """The simulator of an entry's experiment; ``held`` says that a dragged wheel does not let go, and ``unseen`` which
-    parameters a pull stays as the file has them in."""
+def force_model(
+    measurement: Measurement, parameters: ParameterSet, held: bool = False, unseen: tuple[str, ...] = ()
+) -> Forces:
+    """The simulator of a recording's experiment; ``held`` says that a dragged wheel does not let go, and ``unseen``
+    which parameters a pull stays as the file has them in."""
     if "tire.stiffness_y_N_m" not in parameters:
         block = block_from_parameters(parameters)
         return _each(lambda values, effects, head, step, inner: pull_block(_block(block, values), head, step, effects))
     builder = RobotBuilder.of(parameters)
-    if entry.experiment == "vertical_compression":
-        return _each(
-            lambda values, effects, head, step, inner: compress_wheel(builder(values), head, step, effects=effects)
-        )
-    if entry.experiment == "wheel_drag":
+    experiment, entry = measurement.experiment, measurement.entry
+    if experiment.of_one_wheel:
         free = entry.free_normal and not held
         return _each(
-            lambda values, effects, head, step, inner: drag_wheel(builder(values), head, step, free, effects, inner)
+            lambda values, effects, head, step, inner: load_wheel(
+                builder(values), experiment, head, step, free, effects, inner
+            )
         )
 
     def pulled(asked: Sequence[Head], step: float, inner: float | None) -> Array:
@@ -95,7 +98,7 @@ def _scenario(entry: Entry, head: Array, step: float) -> Scenario:
     stiffness, damping = cable_properties(entry.cable)
     rate = entry.wheel_rate_rad_s or 0.0
     return Scenario(
-        "pull",
+        PULL.name,
         len(head) * step,
         head=head,
         head_step=step,

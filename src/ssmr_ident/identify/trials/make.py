@@ -2,22 +2,15 @@
 
 from __future__ import annotations
 
-from ssmr_ident.campaign import Measurement
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import ParameterSet
+from ssmr_ident.experiments import Likelihood
+from ssmr_ident.experiments.campaign import Measurement
 from ssmr_ident.identify.body.builder import RobotBuilder
 from ssmr_ident.identify.trials.decay import decay_trial
 from ssmr_ident.identify.trials.forced import forced_trial
 from ssmr_ident.identify.trials.pull import pull_trial
 from ssmr_ident.identify.trials.trial import Trial
-
-EXPERIMENTS = {
-    "rigid6": ("free_response", "pull", "wheel_drag", "vertical_compression"),
-    "decoupled": ("free_response", "pull", "wheel_drag", "vertical_compression"),
-    "sdof": ("forced", "free_response"),
-    "drag": ("wheel_drag", "pull"),
-}
-"""Experiments whose waveforms a baseline predicts; a swivel's do not repeat."""
 
 
 def trial_of(baseline: str, measurement: Measurement, parameters: ParameterSet) -> Trial:
@@ -35,15 +28,15 @@ def trial_of(baseline: str, measurement: Measurement, parameters: ParameterSet) 
     InputError
         The model and the experiment do not go together, or a parameter or channel is missing.
     """
-    experiment = measurement.entry.experiment
-    if experiment not in EXPERIMENTS[baseline]:
+    experiment = measurement.experiment
+    if not experiment.fitted_under(baseline):
         raise InputError(
             f"session.yaml: {measurement.name}",
-            f"baseline {baseline} has no model of {experiment}",
+            f"baseline {baseline} has no model of {experiment.name}",
             "A robot is rigid6 or decoupled, a rig is sdof, a dragged block is drag",
         )
     if baseline == "sdof":
         return forced_trial(measurement, parameters)
-    if experiment == "free_response":
-        return decay_trial(measurement, RobotBuilder.of(parameters), baseline == "decoupled")
-    return pull_trial(measurement, parameters)
+    if experiment.likelihood is Likelihood.FORCE:
+        return pull_trial(measurement, parameters)
+    return decay_trial(measurement, RobotBuilder.of(parameters), baseline == "decoupled")

@@ -8,9 +8,10 @@ from dataclasses import replace
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from ssmr_ident.campaign import Measurement
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import ParameterSet
+from ssmr_ident.experiments import Experiment
+from ssmr_ident.experiments.campaign import Measurement
 from ssmr_ident.identify.body.builder import RobotBuilder
 from ssmr_ident.identify.trials.machine import QUICK, force_model
 from ssmr_ident.identify.trials.moments import lets_go, tightening
@@ -45,11 +46,9 @@ SMOOTH, COARSE = 2.0, 10.0
 """On the steps of differences. Where teeth come at other times after every step, as they do where friction falls when a
 contact lets go, slopes want a wide one: a percent of a stiffness, and a thousandth of the travel."""
 
-BLIND = {
-    "pull": ("accelerometer.",),
-    "teeth": ("inertia_", "accelerometer.", "tire.damping_"),
-    "wheel": ("inertia_", "accelerometer.", "contact_shift", "height", "tire.damping_"),
-}
+BLIND = ("accelerometer.",)
+BLIND_TEETH = ("inertia_", "accelerometer.", "tire.damping_")
+BLIND_WHEEL = ("inertia_", "accelerometer.", "contact_shift", "height", "tire.damping_")
 """What no recording depends on. A pull depends on the body's inertia and on the tires' damping as well: a robot that
 slides swings on its tires, and one deviation of either changes what a load cell reads by 0.3 to 1.5 of its noise. Held
 at the file's values they left up to 7 times the noise's variance of a robot that nothing was missing from. Of teeth,
@@ -81,9 +80,9 @@ def pull_trial(measurement: Measurement, parameters: ParameterSet) -> Trial:
     InputError
         Neither a position nor a speed.
     """
-    as_it_is, entry = _trial(measurement, parameters, ()), measurement.entry
-    robot = entry.experiment == "pull" and "tire.stiffness_y_N_m" in parameters
-    if not robot or entry.direction != "longitudinal":
+    as_it_is = _trial(measurement, parameters, ())
+    robot = measurement.experiment.drags_everything and "tire.stiffness_y_N_m" in parameters
+    if not robot or measurement.entry.direction != "longitudinal":
         return as_it_is
     return replace(_trial(measurement, parameters, SIDEWAYS), uneven=as_it_is)
 
@@ -91,7 +90,7 @@ def pull_trial(measurement: Measurement, parameters: ParameterSet) -> Trial:
 def _trial(measurement: Measurement, parameters: ParameterSet, unseen: tuple[str, ...]) -> Trial:
     """A recording that does not depend on some parameters, whatever their values."""
     measured, travel, step, start = travelled(measurement)
-    forces = force_model(measurement.entry, parameters, holds(measured, travel), unseen)
+    forces = force_model(measurement, parameters, holds(measured, travel), unseen)
     elapsed = step * np.arange(len(travel))
     speed = float(np.polyfit(elapsed, travel, 1)[0])
     size = float(travel.max())
@@ -144,12 +143,12 @@ def _trial(measurement: Measurement, parameters: ParameterSet, unseen: tuple[str
 
     # a block alone has nothing to swing on
     robot = RobotBuilder.of(parameters).facts if "tire.stiffness_y_N_m" in parameters else {}
-    swings = measurement.entry.experiment == "pull" and bool(robot)
+    swings = measurement.experiment.drags_everything and bool(robot)
     noise = white_std(averaged(measured)[:, 0] / share[:, 0]) if teeth is None else teeth.noise
     target = averaged(measured)
     trial = Trial(
         measurement.name,
-        measurement.entry.experiment,
+        measurement.experiment,
         measurement.entry.direction or "",
         ("force",),
         times,
@@ -163,7 +162,7 @@ def _trial(measurement: Measurement, parameters: ParameterSet, unseen: tuple[str
         Course(start + elapsed, measured[:, None], whole, ("N",), None),
         counts,
         {"travel_m": size, "teeth": 0.0 if teeth is None else float(teeth.count), **robot},
-        (*BLIND[_kind(measurement.entry.experiment, teeth is not None)], *unseen),
+        (*_blind(measurement.experiment, teeth is not None), *unseen),
         SMOOTH if teeth is None and _steady(parameters) else COARSE,
         searched=True,
         quiet=teeth is not None,
@@ -197,11 +196,10 @@ def _steady(parameters: ParameterSet) -> bool:
     return static == kinetic or parameters.number("tire.sliding_speed_m_s", 0.0) > 0.0
 
 
-def _kind(experiment: str, toothed: bool) -> str:
-    """The key of ``BLIND``."""
-    if experiment != "pull":
-        return "wheel"
-    return "teeth" if toothed else "pull"
+def _blind(experiment: Experiment, toothed: bool) -> tuple[str, ...]:
+    if experiment.of_one_wheel:
+        return BLIND_WHEEL
+    return BLIND_TEETH if toothed else BLIND
 
 
 def holds(force: Array, travel: Array) -> bool:

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.signal import lfilter, lfilter_zi
 
-from ssmr_ident.campaign import Measurement
 from ssmr_ident.core.errors import InputError
+from ssmr_ident.experiments.campaign import Measurement
 from ssmr_ident.identify.body.output_error import START_SCALES
 from ssmr_ident.physics.linear import accelerometer_rows, pure_rotations, responses
 from ssmr_ident.physics.robot import GRAVITY, Robot

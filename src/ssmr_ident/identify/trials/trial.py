@@ -8,6 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
+from ssmr_ident.experiments import Experiment
 from ssmr_ident.physics.slots import Effects
 from ssmr_ident.signals.noise import AutoregressiveNoise, Blocks, any_mains_lines, nuisance_columns, white_noise
 
@@ -46,7 +47,8 @@ class Trial:
 
     Parameters
     ----------
-    name, experiment : str
+    name : str
+    experiment : Experiment
     kind : str
         Motion of a decay, direction of a pull: recordings of one kind show the same.
     channels : tuple of str
@@ -106,7 +108,7 @@ class Trial:
     """
 
     name: str
-    experiment: str
+    experiment: Experiment
     kind: str
     channels: tuple[str, ...]
     times: Array

@@ -10,11 +10,10 @@ from ssmr_ident.workflows.demo.run import COMPARED, SWIVELS, Demo
 from ssmr_ident.workflows.files_read import files_read
 from ssmr_ident.workflows.spectrum.page import speed_section
 
-_SHOWN = {
-    "free_response": ("roll-1.xlsx", "pitch-1.xlsx", "yaw-1.xlsx"),
-    "pulls": ("concrete-lateral-steel-1.txt", "concrete-longitudinal-steel-1.txt", "concrete-wheel-compression-1.txt"),
-    "swivel": ("v0-w30-t20-frame-concrete.xlsx", "v0-w60-t20-frame-concrete.xlsx"),
-}
+# recordings that are drawn
+_DECAYS = ("roll-1.xlsx", "pitch-1.xlsx", "yaw-1.xlsx")
+_PULLS = ("concrete-lateral-steel-1.txt", "concrete-longitudinal-steel-1.txt", "concrete-wheel-compression-1.txt")
+_SWIVELS = ("v0-w30-t20-frame-concrete.xlsx", "v0-w60-t20-frame-concrete.xlsx")
 
 
 def write_demo_report(demo: Demo, command: str) -> Path:
@@ -52,18 +51,18 @@ def write_demo_report(demo: Demo, command: str) -> Path:
             (Table("", ("quantity", "thesis", "identified", "simulated"), demo.table.cells()),),
         ),
         _spectra(demo),
-        comparison_section("Free responses: simulation over recordings", decays, _SHOWN["free_response"]),
+        comparison_section("Free responses: simulation over recordings", decays, _DECAYS),
         comparison_section(
             "Pulls and bench tests",
             pulls,
-            _SHOWN["pulls"],
+            _PULLS,
             "Slopes and levels compare. Once contacts slide, the moment at which a single wheel lets go is chaotic: it "
             "does not repeat, so single teeth do not lie on each other even for the right parameters.",
         ),
         comparison_section(
             "Swivels",
             swivels,
-            _SHOWN["swivel"],
+            _SWIVELS,
             "Stick-slip does not repeat its course, so power spectra are compared, not samples. No experiment "
             "fitted here informs lambda_max, the slip at which grip is used up; it keeps the value of robot.yaml, and "
             "these logs were made with another. That is what the distance shows.",

@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
-from ssmr_ident.campaign import load
 from ssmr_ident.compare import Comparison, compare
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import ParameterSet
+from ssmr_ident.experiments.campaign import load
 from ssmr_ident.session import write_parameters
 from ssmr_ident.workflows.demo.simulated import write_simulated_session
 from ssmr_ident.workflows.demo.table import DemoTable, demo_table

@@ -7,27 +7,32 @@ from pathlib import Path
 
 from ssmr_ident.core.atomic import write_text
 from ssmr_ident.core.parameter import Estimate, ParameterSet
+from ssmr_ident.experiments import FREE_RESPONSE, PULL, VERTICAL_COMPRESSION, WHEEL_DRAG, Conditions
 from ssmr_ident.session import write_parameters
 from ssmr_ident.workflows.simulate import Request, simulate_to_file
 
 _LOGS: tuple[tuple[str, Request, str], ...] = (
-    ("roll.lvm", Request("free_response", motion="roll", push_N=20.0), "motion: roll"),
-    ("pitch.lvm", Request("free_response", motion="pitch", push_N=20.0), "motion: pitch"),
-    ("yaw.lvm", Request("free_response", motion="yaw", push_N=20.0), "motion: yaw"),
+    ("roll.lvm", Request(FREE_RESPONSE, Conditions(motion="roll", push_N=20.0)), "motion: roll"),
+    ("pitch.lvm", Request(FREE_RESPONSE, Conditions(motion="pitch", push_N=20.0)), "motion: pitch"),
+    ("yaw.lvm", Request(FREE_RESPONSE, Conditions(motion="yaw", push_N=20.0)), "motion: yaw"),
     (
         "pull-lateral.txt",
-        Request("pull", direction="lateral", duration_s=16.0),
+        Request(PULL, Conditions(direction="lateral"), duration_s=16.0),
         "direction: lateral, speed_mm_s: 1.0, height_m: 0.05, cable: steel",
     ),
     (
         "pull-longitudinal.txt",
-        Request("pull", direction="longitudinal", duration_s=32.0),
+        Request(PULL, Conditions(direction="longitudinal"), duration_s=32.0),
         "direction: longitudinal, speed_mm_s: 1.0, height_m: 0.05, cable: steel",
     ),
-    ("drag.txt", Request("wheel_drag", free_normal=False, duration_s=8.0), "speed_mm_s: 1.0, free_normal: false"),
+    (
+        "drag.txt",
+        Request(WHEEL_DRAG, Conditions(free_normal=False), duration_s=8.0),
+        "speed_mm_s: 1.0, free_normal: false",
+    ),
     (
         "compression.txt",
-        Request("vertical_compression", speed_mm_s=0.1, duration_s=25.0),
+        Request(VERTICAL_COMPRESSION, Conditions(speed_mm_s=0.1), duration_s=25.0),
         "speed_mm_s: 0.1",
     ),
 )
@@ -41,5 +46,5 @@ def write_simulated_session(parameters: ParameterSet, folder: Path) -> None:
     lines += ["name: simulated", "robot: robot.yaml", "recordings:"]
     for name, request, facts in _LOGS:
         simulate_to_file(str(folder / "robot.yaml"), replace(request, noise=True), folder / name)
-        lines.append(f"  - {{file: {name}, experiment: {request.experiment}, {facts}}}")
+        lines.append(f"  - {{file: {name}, experiment: {request.experiment.name}, {facts}}}")
     write_text(folder / "session.yaml", "\n".join(lines) + "\n")

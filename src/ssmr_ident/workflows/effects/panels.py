@@ -10,6 +10,12 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
+from ssmr_ident.experiments import EXPERIMENTS, FREE_RESPONSE, PULL, STRAIGHT, SWIVEL, Experiment, Scenario
+from ssmr_ident.experiments.experiment import ACCELERATIONS
+from ssmr_ident.experiments.free_response import free_response
+from ssmr_ident.experiments.pull import pull
+from ssmr_ident.experiments.straight import straight
+from ssmr_ident.experiments.swivel import swivel
 from ssmr_ident.physics.effect import Effect, Site
 from ssmr_ident.physics.element import STATES, element_advance, element_force
 from ssmr_ident.physics.linear import LinearRobot, accelerometer_rows, linear_robot, responses
@@ -21,12 +27,10 @@ from ssmr_ident.report import style
 from ssmr_ident.report.effect_figure import Curve, Panel
 from ssmr_ident.session import read_parameters
 from ssmr_ident.signals.spectra import amplitude_spectrum, power_density
-from ssmr_ident.simulate import Scenario, Simulation, simulate
+from ssmr_ident.simulate import Simulation, simulate
 from ssmr_ident.simulate.rig import simulate_rig
-from ssmr_ident.simulate.scenarios import free_response, pull, straight, swivel
 
 RATE = 1000.0
-ACCELERATIONS = ("ax", "ay", "az")
 MOTIONS = ("roll", "pitch", "yaw")
 AMPLITUDES = (0.3e-3, 1e-3, 4e-3)  # m at the wheels: gentle, usual, large enough to slide and to lift wheels
 CLEAR = 0.15  # share of the motion that a difference must have to be seen by eye
@@ -53,9 +57,9 @@ def panels(effect: Effect, values: Values) -> tuple[Panel, ...]:
     if effect.id == "slip_coupling":
         robot = robot.with_changes(slip_coupling=0.0)
     found: list[Panel] = []
-    for experiment in effect.experiments:
-        if experiment in _BUILDERS and len(found) < 4:
-            found += _BUILDERS[experiment](robot, effect, values)
+    for name in effect.experiments:
+        if len(found) < 4:
+            found += _PANELS.get(EXPERIMENTS[name], _none)(robot, effect, values)
     if Site.ELEMENT in effect.acts:  # decay, what drifts along it, and the law itself
         return (*found[:3], _loop_panel(robot, effect, values))
     return tuple(found[:4])
@@ -274,9 +278,14 @@ def _coupling_panels(robot: Robot) -> tuple[Panel, ...]:
     return tuple(found)
 
 
-_BUILDERS: dict[str, Callable[[Robot, Effect, Values], list[Panel]]] = {
-    "free_response": _decay_panels,
-    "pull": _pull_panels,
-    "swivel": _swivel_panels,
-    "straight": _straight_panels,
+def _none(robot: Robot, effect: Effect, values: Values) -> list[Panel]:
+    """Of a bench or a rig nothing is drawn: what is shown is the robot."""
+    return []
+
+
+_PANELS: dict[Experiment, Callable[[Robot, Effect, Values], list[Panel]]] = {
+    FREE_RESPONSE: _decay_panels,
+    PULL: _pull_panels,
+    SWIVEL: _swivel_panels,
+    STRAIGHT: _straight_panels,
 }

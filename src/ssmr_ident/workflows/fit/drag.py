@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from ssmr_ident.campaign import Campaign, Measurement
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import Estimate
+from ssmr_ident.experiments.campaign import Campaign, Measurement
 from ssmr_ident.identify.forces.curves import block_pull
 from ssmr_ident.identify.forces.sawtooth import take_apart
 from ssmr_ident.identify.posterior.findings import conflicts, posterior_findings

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from ssmr_ident.campaign import Campaign, Measurement
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import Estimate, ParameterSet
+from ssmr_ident.experiments.campaign import Campaign, Measurement
 from ssmr_ident.identify.posterior.findings import conflicts, posterior_findings
 from ssmr_ident.identify.posterior.most_probable import Observation, Posterior, Unknown, most_probable
 from ssmr_ident.identify.rigs.frequency_domain import DERIVATIVES, ForcedRecord, RigFit, fit_rig
@@ -40,8 +40,8 @@ def fit_rig_session(campaign: Campaign, chosen: tuple[Measurement, ...], coulomb
     findings: list[str] = []
     backbones: list[NamedBackbone] = []
     observations: list[Observation] = []
-    forced = [m for m in chosen if m.entry.experiment == "forced"]
-    free = [m for m in chosen if m.entry.experiment == "free_response"]
+    forced = [m for m in chosen if m.experiment.driven]
+    free = [m for m in chosen if m.experiment.free]
     others = [m for m in chosen if m not in forced and m not in free]
     lines |= {m.name: (f"{m.entry.experiment}: not fitted on a rig",) for m in others}
     if forced:
@@ -140,7 +140,7 @@ def _forced_result(
             for name, value in fit.unexplained_percent.items()
             if name.startswith(f"record {number + 1} ") or name == "force"
         }
-        results[measurement.name] = {"experiment": "forced", "unexplained_percent": share}
+        results[measurement.name] = {"experiment": measurement.entry.experiment, "unexplained_percent": share}
     results["all forced"] = {
         "method": fit.method,
         **{key: value for key, value in zip(keys, (fit.mass, fit.damping, fit.stiffness), strict=True)},

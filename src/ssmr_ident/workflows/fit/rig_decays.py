@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from ssmr_ident.campaign import Measurement
 from ssmr_ident.core.errors import InputError
+from ssmr_ident.experiments.campaign import Measurement
 from ssmr_ident.identify.decays.backbone import backbone
 from ssmr_ident.identify.decays.fit import fit_decay
 from ssmr_ident.identify.decays.result import DecayFit
@@ -104,7 +104,7 @@ def free_decay(
             covariance[0, 0] += float(np.var(trend.omega_n))
             covariance[1, 1] += float(np.var(trend.xi))
     lines[measurement.name] = tuple(text)
-    results[measurement.name] = {"experiment": "free_response", **result}
+    results[measurement.name] = {"experiment": measurement.entry.experiment, **result}
 
     def predict(now: Mapping[str, float]) -> np.ndarray:
         values = {**fixed, **now}

@@ -7,8 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from ssmr_ident.campaign import Campaign, Measurement
 from ssmr_ident.core.errors import InputError
+from ssmr_ident.experiments.campaign import Campaign, Measurement
+from ssmr_ident.experiments.pull import ROPE_STIFFNESS
 from ssmr_ident.identify.body.builder import RobotBuilder
 from ssmr_ident.identify.body.unknowns import (
     match_further,
@@ -24,7 +25,6 @@ from ssmr_ident.identify.forces.observations import SHARES, with_shifts_unknown
 from ssmr_ident.identify.posterior.findings import amplitude_findings, conflicts, posterior_findings
 from ssmr_ident.identify.posterior.most_probable import Unknown, most_probable
 from ssmr_ident.report.figures_fit import NamedBackbone
-from ssmr_ident.simulate.scenarios import ROPE_STIFFNESS
 from ssmr_ident.workflows.fit.result import SessionFit
 from ssmr_ident.workflows.fit.robot_decays import body_statistics, fit_samples
 from ssmr_ident.workflows.fit.robot_forces import (
@@ -90,18 +90,18 @@ def fit_robot_session(
     gathered = Gathered(shift_std=0.0 if contacts.fixed else contacts.std or 0.0)
     for index, measurement in enumerate(chosen):
         step("each recording by itself", index, len(chosen))
-        experiment = measurement.entry.experiment
-        if experiment == "free_response":
+        experiment = measurement.experiment
+        if experiment.free:
             _decay(measurement, expected, gathered)
-        elif experiment == "pull" and measurement.entry.wheel_rate_rad_s:
-            gather_spinning(measurement, builder, gathered)
-        elif experiment == "pull":
-            gather_pull(measurement, builder, gathered)
-        elif experiment in ("vertical_compression", "wheel_drag"):
+        elif experiment.of_one_wheel:
             gather_wheel(measurement, gathered)
+        elif experiment.drags_everything and measurement.entry.wheel_rate_rad_s:
+            gather_spinning(measurement, builder, gathered)
+        elif experiment.drags_everything:
+            gather_pull(measurement, builder, gathered)
         else:
-            gathered.lines[measurement.name] = (f"{experiment}: not fitted here, its parameters keep their prior",)
-            gathered.results[measurement.name] = {"experiment": experiment, "fitted": False}
+            gathered.lines[measurement.name] = (f"{experiment.name}: not fitted here, its parameters keep their prior",)
+            gathered.results[measurement.name] = {"experiment": experiment.name, "fitted": False}
     step("each recording by itself", len(chosen), len(chosen))
     step("all recordings together", 0, 1)
     gathered.findings += _structure_left(gathered.results)

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ssmr_ident.campaign import Campaign, Measurement
+from ssmr_ident.experiments.campaign import Campaign, Measurement
 from ssmr_ident.identify.body.builder import RobotBuilder
 from ssmr_ident.identify.body.fit import BodyFit, fit_body
 from ssmr_ident.identify.body.free_decays import BodyDecay, body_decay
@@ -49,7 +49,7 @@ def fit_samples(
     decays = [
         decay
         for measurement in chosen
-        if measurement.entry.experiment == "free_response"
+        if measurement.experiment.free
         for decay in [_prepared(measurement, builder, gathered)]
         if decay is not None
     ]

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from ssmr_ident.campaign import Measurement
 from ssmr_ident.core.errors import InputError
+from ssmr_ident.experiments.campaign import Measurement
 from ssmr_ident.identify.body.builder import SHIFTS, RobotBuilder
 from ssmr_ident.identify.decays.result import Mode
 from ssmr_ident.identify.forces.curves import load_curve
@@ -216,7 +216,7 @@ def gather_wheel(measurement: Measurement, gathered: Gathered) -> None:
         raise InputError(
             recording.provenance.file, f"no stiffness in it: {error}", "Look at the log with ident inspect"
         ) from None
-    vertical = entry.experiment == "vertical_compression"
+    vertical = measurement.experiment.vertical
     key = "tire.stiffness_z_N_m" if vertical else "tire.stiffness_y_N_m"
     gathered.observations.append(single_wheel_observation(measurement.name, key, curve.stiffness, curve.stiffness_std))
     line = next(law for law in curve.choice.laws if law.name == "linear")

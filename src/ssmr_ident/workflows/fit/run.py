@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from ssmr_ident import __version__
-from ssmr_ident.campaign import Campaign, Measurement, load
 from ssmr_ident.core.errors import InputError, did_you_mean
 from ssmr_ident.core.parameter import ParameterSet
+from ssmr_ident.experiments.campaign import Campaign, Measurement, load
 from ssmr_ident.workflows.fit.drag import fit_drag_session
 from ssmr_ident.workflows.fit.result import SessionFit
 from ssmr_ident.workflows.fit.rig import fit_rig_session

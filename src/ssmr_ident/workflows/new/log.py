@@ -15,12 +15,12 @@ import numpy as np
 
 from ssmr_ident.core.recording import Recording
 from ssmr_ident.core.units import QUANTITY_OF_UNIT
+from ssmr_ident.experiments import EXPERIMENTS, FORCED, FREE_RESPONSE, PULL, SWIVEL, VERTICAL_COMPRESSION, Experiment
 from ssmr_ident.session.session_file import QUANTITIES
 from ssmr_ident.signals.filters import low_pass
 from ssmr_ident.workflows.new.names import NameHints, hints_of
 
 TODO = "TODO"
-ON_A_MACHINE = ("pull", "wheel_drag", "vertical_compression")
 AXES = ("ax", "ay", "az")
 RATES = {"wx": "roll", "wy": "pitch", "wz": "yaw"}
 FORCES = ("force", "torque")
@@ -70,6 +70,11 @@ class LogGuess:
     recording: Recording
     rotary: bool = False
 
+    @property
+    def experiment(self) -> Experiment | None:
+        """What it is taken for; None where that is asked for."""
+        return EXPERIMENTS.get(self.fields["experiment"])
+
 
 @dataclass
 class _Entry:
@@ -110,7 +115,7 @@ def guess_log(name: str, recording: Recording, sample: int | None = None) -> Log
         kind, what = "machine", _on_machine(recording, named, hints, entry)
     elif set(FORCES) & set(named) and set(MOTIONS) & set(named):
         kind, what = "rig", "measured force and motion"
-        entry.fields["experiment"] = "forced"
+        entry.fields["experiment"] = FORCED.name
     elif set(MOTIONS) & set(named):
         kind, what = "rig", _free_rig(recording, named, entry)
     elif set(FORCES) & set(named):
@@ -156,15 +161,16 @@ def _on_robot(recording: Recording, named: Mapping[str, np.ndarray], hints: Name
     share = _energy_share(total)
     text = f"90 % of the motion within {100 * share:.0f} % of the record"
     if share < DIES_AWAY:
-        entry.fields["experiment"] = "free_response"
+        entry.fields["experiment"] = FREE_RESPONSE.name
         entry.say("motion", *_motion(recording, named, energy, hints))
         return f"{text}: it dies away"
-    if hints.experiment in ("straight", "free_response"):
-        entry.say("experiment", hints.experiment, f"from the name; {text}?")
-        if hints.experiment == "free_response":
+    named_so = hints.experiment
+    if named_so and (named_so.free or (named_so.on_wheels and not named_so.turns)):
+        entry.say("experiment", named_so.name, f"from the name; {text}?")
+        if named_so.free:
             entry.say("motion", *_motion(recording, named, energy, hints))
         return f"{text}: it goes on"
-    entry.fields["experiment"] = "swivel"
+    entry.fields["experiment"] = SWIVEL.name
     if hints.yaw_rate_deg_s is not None:
         entry.say("yaw_rate_deg_s", hints.yaw_rate_deg_s, "from the name")
     elif "wz" in named and abs(np.median(named["wz"])) > 3.0 * np.std(named["wz"]) / math.sqrt(len(named["wz"])):
@@ -199,11 +205,11 @@ def _on_machine(recording: Recording, named: Mapping[str, np.ndarray], hints: Na
     high = int(np.nanargmax(np.abs(force)))
     rises = high > 0.97 * len(force)
     experiment, reason = hints.experiment, "from the name"
-    if experiment not in ON_A_MACHINE:
-        experiment = "vertical_compression" if rises else "pull"
+    if experiment is None or not experiment.on_a_testing_machine:
+        experiment = VERTICAL_COMPRESSION if rises else PULL
         reason = "the force rises to the end: a press? or a pull, a wheel_drag" if rises else "or a wheel_drag?"
-    entry.say("experiment", experiment, reason)
-    if experiment == "pull":
+    entry.say("experiment", experiment.name, reason)
+    if experiment.drags_everything:
         entry.say(
             "direction",
             *((hints.direction, "from the name") if hints.direction else (TODO, "lateral or longitudinal?")),
@@ -215,7 +221,7 @@ def _on_machine(recording: Recording, named: Mapping[str, np.ndarray], hints: Na
         entry.say("speed_mm_s", float(f"{1e3 * speed:.3g}"), "while the head moves, for it did not run evenly")
     else:
         entry.say("speed_mm_s", TODO, "speed of the head: the log has no position")
-    if experiment == "pull":
+    if experiment.drags_everything:
         entry.say("height_m", TODO, "of the cable above the floor")
         if hints.wheels:
             entry.say("wheels_gripping", TODO, "such as [1, 2]: rear left 1, front left 2, front right 3, rear right 4")
@@ -224,7 +230,7 @@ def _on_machine(recording: Recording, named: Mapping[str, np.ndarray], hints: Na
         if hints.spinning:
             entry.say("wheel_rate_rad_s", TODO, "at which rate do the wheels spin?")
         entry.say("cable", hints.cable or "steel", "from the name" if hints.cable else "or rope?")
-    if experiment == "wheel_drag":
+    if experiment.of_one_wheel and not experiment.vertical:
         entry.say("free_normal", True, "can the wheel move off the surface?")
     moves = "" if speed is None else f" at {1e3 * abs(speed):.3g} mm/s"
     return f"a head moves{moves}, {np.nanmax(np.abs(force)):.4g} N at most"
@@ -235,9 +241,9 @@ def _free_rig(recording: Recording, named: Mapping[str, np.ndarray], entry: _Ent
     share = _energy_share(_course(named[name], recording))
     text = f"90 % of the motion in {name} within {100 * share:.0f} % of the record"
     if share < DIES_AWAY:
-        entry.fields["experiment"] = "free_response"
+        entry.fields["experiment"] = FREE_RESPONSE.name
         return f"{text}: it dies away"
-    entry.say("experiment", "free_response", "it goes on, and no force was logged: a free response?")
+    entry.say("experiment", FREE_RESPONSE.name, "it goes on, and no force was logged: a free response?")
     return f"{text}: it goes on"
 
 
@@ -276,7 +282,9 @@ def _by_machine(recording: Recording, named: Mapping[str, np.ndarray], hints: Na
     position = np.asarray(named["position"], float)
     piece = max(1, len(position) // 20)
     way = abs(float(np.nanmedian(position[-piece:]) - np.nanmedian(position[:piece])))
-    return way > ONE_WAY * float(np.nanmax(position) - np.nanmin(position)) or hints.experiment in ON_A_MACHINE
+    return way > ONE_WAY * float(np.nanmax(position) - np.nanmin(position)) or (
+        hints.experiment is not None and hints.experiment.on_a_testing_machine
+    )
 
 
 def _moving_speed(position: np.ndarray, time: np.ndarray) -> float:

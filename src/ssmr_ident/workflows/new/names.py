@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TypeVar
+
+from ssmr_ident.experiments import EXPERIMENTS, FREE_RESPONSE, PULL, STRAIGHT, SWIVEL, Experiment
+
+Named = TypeVar("Named")
 
 FLOORS = ("carpet", "concrete", "tile", "tiles", "wood", "parquet", "asphalt", "gravel", "grass", "vinyl", "rubber")
-_EXPERIMENT = {
-    "free_response": "free release decay ring ringdown hammer tap",
-    "swivel": "swivel turn spin rotate",
-    "straight": "straight",
-    "pull": "pull tug tow",
-    "wheel_drag": "drag",
-    "vertical_compression": "compress compression press vertical",
-    "forced": "forced shaker sweep chirp noise sine prbs",
-}
-_OF_WORD = {word: experiment for experiment, words in _EXPERIMENT.items() for word in words.split()}
+_OF_WORD = {word: experiment for experiment in EXPERIMENTS.values() for word in experiment.file_words}
 _MOTION = {"roll": "roll", "pitch": "pitch", "yaw": "yaw"}
 _DIRECTION = {"lateral": "lateral", "lat": "lateral", "sideways": "lateral", "longitudinal": "longitudinal"}
 _DIRECTION |= {"long": "longitudinal", "lengthwise": "longitudinal", "forward": "longitudinal"}
@@ -25,7 +22,7 @@ _DIRECTION |= {"long": "longitudinal", "lengthwise": "longitudinal", "forward": 
 class NameHints:
     """What words and numbers in a name say; None or empty for what they do not."""
 
-    experiment: str | None = None
+    experiment: Experiment | None = None
     motion: str | None = None
     direction: str | None = None
     floor: str | None = None
@@ -52,9 +49,9 @@ def hints_of(stem: str) -> NameHints:
     last = words[-1] if words else ""
     rate, speed = (re.search(rf"(?:^|[-_ ]){letter}(-?\d+(?:\.\d+)?)(?=[-_ ]|$)", stem) for letter in "wv")
     motion, direction = _first(words, _MOTION), _first(words, _DIRECTION)
-    experiment = _first(words, _OF_WORD) or ("free_response" if motion else "pull" if direction else None)
+    experiment = _first(words, _OF_WORD) or (FREE_RESPONSE if motion else PULL if direction else None)
     if experiment is None and rate is not None:
-        experiment = "swivel" if float(rate[1]) else "straight"
+        experiment = SWIVEL if float(rate[1]) else STRAIGHT
     role = "calibration" if any(word.startswith("calib") for word in words) else None
     if any(word.startswith(("heldout", "holdout")) for word in words):
         role = "heldout"
@@ -74,5 +71,5 @@ def hints_of(stem: str) -> NameHints:
     )
 
 
-def _first(words: list[str], known: dict[str, str]) -> str | None:
+def _first(words: list[str], known: Mapping[str, Named]) -> Named | None:
     return next((known[word] for word in words if word in known), None)

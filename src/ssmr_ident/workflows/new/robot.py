@@ -84,7 +84,7 @@ def rig_text(name: str, guesses: Sequence[LogGuess], mass: float | None) -> str:
     """robot.yaml of a rig with one mass: mass, damper and spring at first sight."""
     rotary = any(guess.rotary for guess in guesses)
     keys = RIG_KEYS[rotary]
-    forced = [guess for guess in guesses if guess.fields["experiment"] == "forced"]
+    forced = [guess for guess in guesses if guess.experiment and guess.experiment.driven]
     seen = _forced(forced, rotary) if forced else None
     note = ""
     if seen is not None:
@@ -194,7 +194,7 @@ def _free(guesses: Sequence[LogGuess]) -> tuple[float, float]:
     for guess in guesses:
         recording = guess.recording
         name = next((name for name in MOTIONS if name in recording), None)
-        if guess.fields["experiment"] == "free_response" and name is not None:
+        if guess.experiment and guess.experiment.free and name is not None:
             try:
                 omega, xi = half_power(recording[name], 1.0 / recording.sample_rate)
             except (ValueError, InputError):

@@ -228,9 +228,10 @@ def _session_text(
         lines.append(f"  # {guess.seen}")
         fields = dict(guess.fields)
         reasons = dict(guess.reasons)
-        if baseline == "drag" and fields["experiment"] == "pull":
+        experiment = guess.experiment
+        if baseline == "drag" and experiment and experiment.drags_everything:
             fields = {key: value for key, value in fields.items() if key not in _OF_ROBOTS}
-        if guess.fields["experiment"] == "swivel" and wheels:
+        if experiment and experiment.turns and wheels:
             partner = max(wheels, key=lambda log: _shared_start(log.file, guess.file))
             fields["wheel_log"], reasons["wheel_log"] = partner.file, "same start of the name?"
             if fields.get("yaw_rate_deg_s") == TODO:

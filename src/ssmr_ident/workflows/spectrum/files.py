@@ -83,7 +83,7 @@ def recording_of_rows(rows: Sequence[SpectrumRow]) -> Figure:
 
 def _title(row: SpectrumRow) -> str:
     label, analysis = row.label, row.analysis
-    words = [label.file, label.experiment.replace("_", " "), label.motion, label.floor, label.frame]
+    words = [label.file, *label.made]
     if label.yaw_rate_deg_s == label.yaw_rate_deg_s:
         words.append(f"{label.yaw_rate_deg_s:g} deg/s")
     if label.wheel_speed_m_s == label.wheel_speed_m_s:

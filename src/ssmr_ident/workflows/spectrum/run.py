@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from ssmr_ident.campaign import load
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.recording import Channel, Note, Recording
 from ssmr_ident.core.shown import Shown
+from ssmr_ident.experiments.campaign import load
 from ssmr_ident.readers import ReadOptions, read_one
 from ssmr_ident.report.figures_speed import SpeedAverage
 from ssmr_ident.signals.analysis import AnalysisOptions, analyse
@@ -26,7 +26,7 @@ from ssmr_ident.workflows.spectrum.table import (
     SpectrumRow,
     average_row,
     average_swivels,
-    label_of_entry,
+    label_of,
     label_of_file,
     speed_label,
 )
@@ -58,7 +58,7 @@ class SpectrumChoices:
     band_hz: tuple[float, float] = BAND_HZ
 
     def options(self, label: RecordingLabel) -> AnalysisOptions:
-        free = label.experiment == "free_response"
+        free = label.experiment is not None and label.experiment.free
         # The 20 Hz are the robot's: its frame's free responses lie below 8 Hz. A rig's need not.
         usual_hz = FREE_RESPONSE_LOW_PASS_HZ if free and label.motion else SWIVEL_LOW_PASS_HZ
         return AnalysisOptions(
@@ -146,7 +146,7 @@ def _logs(
                 "Say reader, sample, sample_rate_hz or units in session.yaml.",
             )
         campaign = load(paths[0])
-        logs = [(label_of_entry(m.name, m.entry), m.recording) for m in campaign.measurements]
+        logs = [(label_of(m), m.recording) for m in campaign.measurements]
         return logs, [(m.name, note) for m in campaign.measurements for note in m.recording.warnings]
     logs, notes = [], []
     names = [path.name for path in paths]

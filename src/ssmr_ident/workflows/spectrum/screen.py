@@ -67,8 +67,7 @@ def _made(row: SpectrumRow) -> str:
         speed = f"{label.yaw_rate_deg_s:g} deg/s"
     elif label.wheel_speed_m_s == label.wheel_speed_m_s:
         speed = f"{label.wheel_speed_m_s:g} m/s"
-    words = [label.experiment.replace("_", " "), label.motion, label.floor, label.frame, speed]
-    return ", ".join(word for word in words if word) or "–"
+    return ", ".join([*label.made, *([speed] if speed else [])]) or "–"
 
 
 def _averages(report: SpectrumReport) -> list[list[str]]:

@@ -14,8 +14,9 @@ from typing import Any
 import numpy as np
 
 from ssmr_ident.core.atomic import write_text
+from ssmr_ident.experiments import SWIVEL, Experiment
+from ssmr_ident.experiments.campaign import Measurement
 from ssmr_ident.report.figures_speed import SpeedAverage, mean_and_spread
-from ssmr_ident.session import Entry
 from ssmr_ident.signals.analysis import ChannelAnalysis
 from ssmr_ident.signals.peaks import COUNT
 
@@ -32,7 +33,7 @@ class RecordingLabel:
     """What the table says of a recording beside its numbers; nothing is computed from it."""
 
     file: str
-    experiment: str = ""
+    experiment: Experiment | None = None
     motion: str = ""
     floor: str = ""
     frame: str = ""
@@ -41,16 +42,28 @@ class RecordingLabel:
     wheel_speed_m_s: float = math.nan
 
     @property
+    def turns(self) -> bool:
+        """Whether the robot turned on the spot."""
+        return self.experiment is not None and self.experiment.turns
+
+    @property
+    def made(self) -> tuple[str, ...]:
+        """What was done and where, as printed."""
+        words = (self.experiment.words if self.experiment else "", self.motion, self.floor, self.frame)
+        return tuple(word for word in words if word)
+
+    @property
     def configuration(self) -> str:
         """Floor and frame, as printed."""
         return ", ".join(word for word in (self.floor, self.frame) if word) or "all swivels"
 
 
-def label_of_entry(name: str, entry: Entry) -> RecordingLabel:
+def label_of(measurement: Measurement) -> RecordingLabel:
     """From session.yaml."""
+    entry = measurement.entry
     return RecordingLabel(
-        file=name,
-        experiment=entry.experiment,
+        file=measurement.name,
+        experiment=measurement.experiment,
         motion=entry.motion or "",
         floor=entry.floor or "",
         frame=entry.frame or "",
@@ -75,7 +88,7 @@ def label_of_file(path: Path) -> RecordingLabel:
     rest = [word for word in words if word not in floor]
     return RecordingLabel(
         path.name,
-        experiment="swivel",
+        experiment=SWIVEL,
         floor=" ".join(floor),
         frame=" ".join(rest),
         yaw_rate_deg_s=float(match["rate"]),
@@ -96,7 +109,7 @@ class SpectrumRow:
         analysis, label = self.analysis, self.label
         row: dict[str, Any] = {
             "file": label.file,
-            "experiment": label.experiment,
+            "experiment": label.experiment.name if label.experiment else "",
             "motion": label.motion,
             "floor": label.floor,
             "frame": label.frame,
@@ -145,7 +158,7 @@ def write_rows(path: Path, rows: Iterable[dict[str, Any]]) -> Path:
 
 def speed_label(rows: Sequence[SpectrumRow]) -> str:
     """The axis that all swivels share: yaw rate, or else wheel speed; empty when neither is known of all."""
-    swivels = [row.label for row in rows if row.label.experiment == "swivel"]
+    swivels = [row.label for row in rows if row.label.turns]
     if swivels and all(math.isfinite(label.yaw_rate_deg_s) for label in swivels):
         return RATE_LABEL
     if swivels and all(math.isfinite(label.wheel_speed_m_s) for label in swivels):
@@ -163,7 +176,7 @@ def average_swivels(rows: Sequence[SpectrumRow]) -> list[SpeedAverage]:
     axis = speed_label(rows)
     groups: dict[tuple[str, str], list[tuple[float, SpectrumRow]]] = {}
     for row in rows:
-        if axis and row.label.experiment == "swivel" and row.unit == "m/s^2":
+        if axis and row.label.turns and row.unit == "m/s^2":
             speed = row.label.yaw_rate_deg_s if axis == RATE_LABEL else row.label.wheel_speed_m_s
             groups.setdefault((row.label.configuration, row.channel), []).append((abs(speed), row))
     tolerance = 0.0 if axis == RATE_LABEL else SAME_SPEED

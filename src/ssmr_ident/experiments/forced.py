@@ -1,0 +1,15 @@
+"""Forced: a shaker, a motor or a hand drives a rig; its force or torque is logged beside the motion."""
+
+from ssmr_ident.experiments.experiment import MOTIONS, Drive, Experiment, Likelihood
+
+FORCED = Experiment(
+    name="forced",
+    sentence="A rig driven by a measured force or torque.",
+    verb="Shake",
+    drive=Drive.FORCE,
+    channels=(("force", "torque"), MOTIONS),
+    likelihood=Likelihood.WAVEFORM,
+    baselines=("sdof",),
+    nuisances=("the state at the start", "zeros of force and sensors", "gain of a second accelerometer"),
+    file_words=("forced", "shaker", "sweep", "chirp", "noise", "sine", "prbs"),
+)
