@@ -13,14 +13,14 @@ from bank.robot_physics import BENCH, PULLS, SPINNING
 from bank.robots import draw_robot, true_values
 from bank.truth import BankSession, Made, Truth, recording
 from ssmr_ident.core.parameter import Estimate, ParameterSet
-from ssmr_ident.experiments import Scenario
+from ssmr_ident.experiments import PULL, VERTICAL_COMPRESSION, WHEEL_DRAG, Scenario
 from ssmr_ident.experiments.campaign import Campaign
 from ssmr_ident.experiments.pull import fixture_needed
 from ssmr_ident.physics.rig import Block
 from ssmr_ident.physics.robot import GRAVITY, Robot
 from ssmr_ident.session import Entry, Session
 from ssmr_ident.simulate import simulate
-from ssmr_ident.simulate.bench import compress_wheel, drag_wheel, pull_block
+from ssmr_ident.simulate.bench import load_wheel, pull_block
 
 ALL = (1, 2, 3, 4)
 PLAN = (  # direction, speed mm/s, height m, wheels, wheel rate rad/s, role
@@ -35,10 +35,10 @@ SPUN = (
     ("lateral", 2.0, 0.05, ALL, 0.2, "target"), ("lateral", 1.0, 0.05, ALL, 0.2, "heldout"),
 )  # fmt: skip
 TRAVEL = {"lateral": (6e-3, 10e-3), "longitudinal": (24e-3, 32e-3)}  # m
-BENCH_PLAN = (
-    ("wheel_drag", 1.0, "target"), ("wheel_drag", 0.3, "target"), ("vertical_compression", 1.0, "target"),
-    ("vertical_compression", 0.3, "target"), ("pull", 1.0, "target"), ("wheel_drag", 2.0, "heldout"),
-    ("vertical_compression", 2.0, "heldout"), ("pull", 0.5, "heldout"),
+BENCH_PLAN = (  # experiment, mean travel m, speed mm/s, role
+    (WHEEL_DRAG, 8e-3, 1.0, "target"), (WHEEL_DRAG, 8e-3, 0.3, "target"), (VERTICAL_COMPRESSION, 4e-3, 1.0, "target"),
+    (VERTICAL_COMPRESSION, 4e-3, 0.3, "target"), (PULL, 6e-3, 1.0, "target"), (WHEEL_DRAG, 8e-3, 2.0, "heldout"),
+    (VERTICAL_COMPRESSION, 4e-3, 2.0, "heldout"), (PULL, 6e-3, 0.5, "heldout"),
 )  # fmt: skip
 BLOCKS = {name: PULLS[name] for name in ("cable_compliance", "load_cell_drift", "stribeck", "sensor_saturation")}
 BLOCK_PLAN = ((1.0, "target"), (0.3, "target"), (2.0, "target"), (0.6, "heldout"), (1.5, "heldout"))
@@ -76,20 +76,18 @@ def draw_bench(kind: str, seed: int, effect: str | None, size: float | None, sho
     effects, size = choose(kind, effect, size, BENCH, random)
     rate = float(random.choice([100.0, 200.0]))
     entries, heads, forces = [], [], []
-    for number, (experiment, speed, role) in enumerate(BENCH_PLAN, start=1):
+    for number, (experiment, travel, speed, role) in enumerate(BENCH_PLAN, start=1):
         if short and speed < 0.5:
             continue
-        travel = {"wheel_drag": 8e-3, "vertical_compression": 4e-3, "pull": 6e-3}[experiment]
         head, slack = travelled(speed, travel * random.uniform(0.8, 1.2), rate, random)
         acting, going_on = without_cell(effects), tightened(head, slack)
-        if experiment == "pull":
-            force = pulled(robot, head - slack, rate, "lateral", 0.05, ALL, 0.0, acting)
-        elif experiment == "wheel_drag":
-            force = drag_wheel(robot, going_on, 1.0 / rate, True, acting)[:-1]
+        more = {}
+        if experiment.of_one_wheel:
+            force = load_wheel(robot, experiment, going_on, 1.0 / rate, effects=acting)[:-1]
         else:
-            force = compress_wheel(robot, going_on, 1.0 / rate, effects=acting)[:-1]
-        more = {"direction": "lateral", "height_m": 0.05, "cable": "steel"} if experiment == "pull" else {}
-        entries.append(Entry(f"test-{number}.csv", experiment, role=role, speed_mm_s=speed, **more))
+            force = pulled(robot, head - slack, rate, "lateral", 0.05, ALL, 0.0, acting)
+            more = {"direction": "lateral", "height_m": 0.05, "cable": "steel"}
+        entries.append(Entry(f"test-{number}.csv", experiment.name, role=role, speed_mm_s=speed, **more))
         heads.append(head)
         forces.append(force)
     return finished("bench", kind, seed, size, file, entries, heads, forces, effects, rate, true_values(robot), random)

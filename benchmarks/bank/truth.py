@@ -11,6 +11,7 @@ from ssmr_ident.compare.comparison import measure
 from ssmr_ident.compare.outcome import Prediction
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.core.recording import Channel, Provenance, Recording
+from ssmr_ident.experiments import Likelihood
 from ssmr_ident.experiments.campaign import Campaign, Measurement
 from ssmr_ident.session import Entry
 
@@ -75,7 +76,7 @@ class Made:
         true = np.column_stack([self.clean[name] for name in names])
         true = true + (logged - true).mean(axis=0)
         units = tuple(self.recording.channel(name).unit for name in names)
-        low_pass = 50.0 if self.entry.experiment in ("free_response", "forced") else None
+        low_pass = 50.0 if self.measurement.experiment.likelihood is Likelihood.WAVEFORM else None
         return measure(Prediction(self.recording.time, names, units, logged, true, low_pass_hz=low_pass))[0]
 
 

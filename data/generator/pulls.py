@@ -11,7 +11,7 @@ import numpy as np
 
 from generator import truth
 from generator.writing import write_robot, write_session
-from ssmr_ident.experiments import Scenario
+from ssmr_ident.experiments import EXPERIMENTS, Scenario
 from ssmr_ident.experiments.pull import cable_properties, fixture_needed
 from ssmr_ident.physics.robot import Robot, robot_from_parameters
 from ssmr_ident.physics.sensor import Noise
@@ -101,10 +101,11 @@ def travel_of(speed: float, travel: float) -> np.ndarray:
 
 def force_of(robot: Robot, entry: dict[str, Any], head: np.ndarray, random: np.random.Generator) -> np.ndarray:
     """What the load cell would read without noise, (n,) float [N]."""
-    if entry["experiment"] == "wheel_drag":
-        return drag_wheel(robot, head, STEP, entry["free_normal"])
-    if entry["experiment"] == "vertical_compression":
+    kind = EXPERIMENTS[entry["experiment"]]
+    if kind.vertical:
         return compress_wheel(robot, head, STEP, gap=random.uniform(0.8e-3, 1.4e-3))
+    if kind.of_one_wheel:
+        return drag_wheel(robot, head, STEP, entry["free_normal"])
     stiffness, damping = cable_properties(entry["cable"])
     rate = entry.get("wheel_rate_rad_s", 0.0)
     scenario = Scenario(
