@@ -17,9 +17,9 @@ from typing import Any
 import numpy as np
 
 from ssmr_ident.core.atomic import write_text
+from ssmr_ident.core.threads import processors
 from ssmr_ident.diagnose.diagnosis import MISSING, NOTHING, UNDETERMINED, Diagnosis
 from ssmr_ident.diagnose.weigh import CERTAIN
-from ssmr_ident.identify.fitting.parallel import processors
 
 LARGEST_TIE = 3
 UNSEEN = 1.02

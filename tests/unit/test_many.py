@@ -7,13 +7,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from ssmr_ident.core import threads
 from ssmr_ident.core.errors import Impossible, InputError
 from ssmr_ident.core.recording import Channel, Provenance, Recording
 from ssmr_ident.experiments.campaign import Measurement
 from ssmr_ident.experiments.free_response import free_response
 from ssmr_ident.experiments.scenario import Scenario
 from ssmr_ident.identify.body.builder import RobotBuilder
-from ssmr_ident.identify.fitting import parallel
 from ssmr_ident.identify.fitting.coordinates import Model
 from ssmr_ident.identify.fitting.joint import differentiate, evaluate
 from ssmr_ident.identify.posterior.objective import Unknown
@@ -131,7 +131,7 @@ def test_slopes_of_many_at_once_are_those_of_one_after_the_other(robot: Robot, m
     point = np.concatenate([[0.1, -0.2], point])
     nuisance = 0.1 * np.random.default_rng(5).standard_normal(len(trial.scales))
     fits = [evaluate([one], model, point, [nuisance]) for one in (trial, replace(trial, many=None))]
-    monkeypatch.setattr(parallel, "_POOL", parallel.Pool(1))  # a single processor takes one trial after the other
+    monkeypatch.setattr(threads, "_threads", lambda: None)  # a single processor takes one trial after the other
     together, apart = (differentiate(fit).slopes[0] for fit in fits)
     # matrices are multiplied in another order, and differences of 1e-3 magnify that
     np.testing.assert_allclose(together.shared, apart.shared, atol=1e-11 * np.abs(apart.shared).max())

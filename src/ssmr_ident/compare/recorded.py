@@ -8,10 +8,10 @@ import numpy as np
 
 from ssmr_ident.compare.outcome import Prediction
 from ssmr_ident.compare.roads import LAST, alone, by_other_roads
+from ssmr_ident.core.threads import side_by_side
 from ssmr_ident.identify.fitting.coordinates import Model
 from ssmr_ident.identify.fitting.horizons import led
 from ssmr_ident.identify.fitting.joint import JointFit, together
-from ssmr_ident.identify.fitting.parallel import side_by_side
 from ssmr_ident.identify.trials.trial import Array, Trial, Values
 from ssmr_ident.physics.slots import Effects
 from ssmr_ident.signals.filters import low_pass

@@ -8,11 +8,11 @@ from functools import cache, partial
 
 import numpy as np
 
+from ssmr_ident.core.threads import side_by_side
 from ssmr_ident.identify.fitting.coordinates import Model
 from ssmr_ident.identify.fitting.descent import LOUD, descend
 from ssmr_ident.identify.fitting.horizons import STEPS, horizons, led, radian
 from ssmr_ident.identify.fitting.joint import JointFit, evaluate, together
-from ssmr_ident.identify.fitting.parallel import side_by_side
 from ssmr_ident.identify.trials.trial import Array, Trial
 
 SHARES = (1.0, 0.6, 0.35)

@@ -17,13 +17,13 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from ssmr_ident.compare.recorded import follow
+from ssmr_ident.core.threads import side_by_side
 from ssmr_ident.diagnose.explain import with_suspect
 from ssmr_ident.diagnose.path import Path, path_of
 from ssmr_ident.diagnose.residual_force import Oscillator
 from ssmr_ident.diagnose.scan import Suspect, smaller
 from ssmr_ident.identify.fitting.coordinates import Model
 from ssmr_ident.identify.fitting.joint import JointFit
-from ssmr_ident.identify.fitting.parallel import side_by_side
 from ssmr_ident.physics.effect import Site
 from ssmr_ident.physics.effects import CATALOGUE
 from ssmr_ident.physics.rig import RIG_KEYS

@@ -10,6 +10,7 @@ import numpy as np
 
 from ssmr_ident.compare.outcome import Prediction
 from ssmr_ident.core.parameter import Estimate, ParameterSet
+from ssmr_ident.core.threads import side_by_side
 from ssmr_ident.diagnose.accept import left_over
 from ssmr_ident.diagnose.diagnosis import MISSING, NOTHING, UNDETERMINED, Conflict, Diagnosis, NamedEffect, Tried, Worth
 from ssmr_ident.diagnose.discriminate import next_experiment
@@ -38,7 +39,6 @@ from ssmr_ident.diagnose.worth import (
 )
 from ssmr_ident.identify.fitting.descent import slides
 from ssmr_ident.identify.fitting.joint import JointFit, differentiate
-from ssmr_ident.identify.fitting.parallel import side_by_side
 
 METRIC = "nrmse_percent"
 

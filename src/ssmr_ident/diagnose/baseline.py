@@ -11,6 +11,7 @@ from scipy.stats import chi2
 
 from ssmr_ident.compare.recorded import follow
 from ssmr_ident.core.parameter import ParameterSet
+from ssmr_ident.core.threads import side_by_side
 from ssmr_ident.diagnose.accept import CHANCE
 from ssmr_ident.diagnose.hollows import from_afar
 from ssmr_ident.diagnose.race import far_off
@@ -20,7 +21,6 @@ from ssmr_ident.identify.fitting.clouds import settled
 from ssmr_ident.identify.fitting.descent import LOUD, chatters, descend, slides
 from ssmr_ident.identify.fitting.horizons import horizons, led, radian
 from ssmr_ident.identify.fitting.joint import JointFit, differentiate, evaluate
-from ssmr_ident.identify.fitting.parallel import side_by_side
 from ssmr_ident.identify.fitting.swings import led_through_slides
 from ssmr_ident.identify.trials import Trial
 from ssmr_ident.signals.noise import block_noises

@@ -8,6 +8,7 @@ from functools import partial
 
 import numpy as np
 
+from ssmr_ident.core.threads import side_by_side
 from ssmr_ident.diagnose.along import begun_along, without_laws
 from ssmr_ident.diagnose.baseline import WIDE, bent, leaves_much
 from ssmr_ident.diagnose.explain import from_what_is_known
@@ -28,7 +29,6 @@ from ssmr_ident.diagnose.race import (
 from ssmr_ident.diagnose.scan import Suspect, candidates, moves_beyond, out_of_reach, promising, scan, variants
 from ssmr_ident.identify.fitting.descent import LOUD, chatters, descend, slides
 from ssmr_ident.identify.fitting.joint import JointFit
-from ssmr_ident.identify.fitting.parallel import side_by_side
 from ssmr_ident.physics.effects import CATALOGUE
 
 SCREENED = 8

@@ -8,12 +8,12 @@ import numpy as np
 
 from ssmr_ident.compare.recorded import follow
 from ssmr_ident.compare.roads import by_other_roads
+from ssmr_ident.core.threads import side_by_side
 from ssmr_ident.diagnose.baseline import LAST
 from ssmr_ident.diagnose.race import CLOSE, Progress, ranked, within_reach
 from ssmr_ident.identify.fitting.descent import LOUD, chatters, descend, slides
 from ssmr_ident.identify.fitting.horizons import led
 from ssmr_ident.identify.fitting.joint import JointFit
-from ssmr_ident.identify.fitting.parallel import side_by_side
 
 REFITTED = 3
 """Effects that are refitted to the end."""

@@ -8,11 +8,11 @@ from functools import partial
 import numpy as np
 
 from ssmr_ident.compare.recorded import follow
+from ssmr_ident.core.threads import side_by_side
 from ssmr_ident.diagnose.polish import polish, turned
 from ssmr_ident.diagnose.weigh import Explanation, evidences, log_evidence
 from ssmr_ident.identify.fitting.descent import descend
 from ssmr_ident.identify.fitting.joint import JointFit, evaluate
-from ssmr_ident.identify.fitting.parallel import side_by_side
 from ssmr_ident.identify.trials import Trial
 
 FURTHER = 3

@@ -9,13 +9,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from ssmr_ident.core.threads import side_by_side
 from ssmr_ident.diagnose.explain import with_suspect
 from ssmr_ident.diagnose.race import Progress, ranked
 from ssmr_ident.diagnose.scan import Suspect, candidates, probes, smaller
 from ssmr_ident.identify.fitting.descent import descend
 from ssmr_ident.identify.fitting.horizons import STEPS
 from ssmr_ident.identify.fitting.joint import JointFit, evaluate
-from ssmr_ident.identify.fitting.parallel import side_by_side
 from ssmr_ident.physics.effects import CATALOGUE
 
 SHARES = tuple(float(share) for share in np.geomspace(0.03, 30.0, 6))

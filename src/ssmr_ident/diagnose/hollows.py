@@ -10,9 +10,9 @@ from functools import partial
 
 import numpy as np
 
+from ssmr_ident.core.threads import side_by_side
 from ssmr_ident.identify.fitting.descent import descend
 from ssmr_ident.identify.fitting.joint import JointFit, evaluate_all
-from ssmr_ident.identify.fitting.parallel import side_by_side
 
 DRAWN, BEGUN, SEED = 64, 16, 20120511
 """Robots drawn out of what is known, those of them from which pulls are fitted, and the seed of all draws."""

@@ -8,6 +8,7 @@ from functools import partial
 
 import numpy as np
 
+from ssmr_ident.core.threads import side_by_side
 from ssmr_ident.diagnose.baseline import LAST, leaves_much, unsteady
 from ssmr_ident.diagnose.finals import anew, mended
 from ssmr_ident.diagnose.formulas import other_formulas
@@ -19,7 +20,6 @@ from ssmr_ident.identify.fitting.clouds import settled
 from ssmr_ident.identify.fitting.descent import LOUD, chatters, descend
 from ssmr_ident.identify.fitting.horizons import led
 from ssmr_ident.identify.fitting.joint import JointFit, evaluate
-from ssmr_ident.identify.fitting.parallel import side_by_side
 from ssmr_ident.identify.fitting.swings import led_through_slides
 from ssmr_ident.physics.effects import CATALOGUE
 

@@ -10,6 +10,7 @@ from functools import partial
 import numpy as np
 
 from ssmr_ident.compare.recorded import follow, nearest
+from ssmr_ident.core.threads import side_by_side
 from ssmr_ident.diagnose.explain import as_large_as_it_takes, beside, in_its_place, with_suspect
 from ssmr_ident.diagnose.gathered import gathered
 from ssmr_ident.diagnose.loose import begun_loose
@@ -17,7 +18,6 @@ from ssmr_ident.diagnose.scan import Suspect, both_ways, promising
 from ssmr_ident.identify.fitting.descent import chatters, descend, slides
 from ssmr_ident.identify.fitting.horizons import STEPS, led
 from ssmr_ident.identify.fitting.joint import JointFit, each_best, evaluate
-from ssmr_ident.identify.fitting.parallel import side_by_side
 from ssmr_ident.identify.trials.trial import Trial
 from ssmr_ident.physics.effects import CATALOGUE
 

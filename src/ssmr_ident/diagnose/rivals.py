@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ssmr_ident.core.threads import side_by_side
 from ssmr_ident.diagnose.accept import FORMULA, as_near, leaves_structure, left_over, significant
 from ssmr_ident.diagnose.explain import beside
 from ssmr_ident.diagnose.followed import NEAR, explained, joined, on_all
@@ -14,7 +15,6 @@ from ssmr_ident.diagnose.stripped import good_enough
 from ssmr_ident.diagnose.weigh import TIE, Explanation, all_fitted, evidences
 from ssmr_ident.diagnose.worth import BY_CHANCE, grows_with_motion, predictions
 from ssmr_ident.identify.fitting.descent import chatters, descend
-from ssmr_ident.identify.fitting.parallel import side_by_side
 from ssmr_ident.identify.trials import Trial
 
 NONE_OF_THEM = "unlisted"

@@ -14,12 +14,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ssmr_ident.core.parameter import Parameter
+from ssmr_ident.core.threads import side_by_side
 from ssmr_ident.diagnose.cleared import Cleared
 from ssmr_ident.diagnose.sizes import sizes_of
 from ssmr_ident.diagnose.weigh import CERTAIN
 from ssmr_ident.identify.fitting.coordinates import Model
 from ssmr_ident.identify.fitting.joint import JointFit, over
-from ssmr_ident.identify.fitting.parallel import side_by_side
 from ssmr_ident.physics.effect import Effect, Site, Sized
 from ssmr_ident.physics.effects import CATALOGUE
 

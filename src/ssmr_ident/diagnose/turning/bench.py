@@ -10,10 +10,10 @@ import numpy as np
 from ssmr_ident.compare.turning import AXES, turning_robot, with_floor
 from ssmr_ident.core.errors import Impossible, SimulationError
 from ssmr_ident.core.parameter import Estimate, ParameterSet
+from ssmr_ident.core.threads import side_by_side
 from ssmr_ident.diagnose.turning.conditions import Condition
 from ssmr_ident.diagnose.turning.spectra import Look, average, levels_of, look
 from ssmr_ident.experiments.scenario import Scenario
-from ssmr_ident.identify.fitting.parallel import side_by_side
 from ssmr_ident.physics.slots import Effects
 from ssmr_ident.simulate.simulation import simulate
 

@@ -17,8 +17,8 @@ from typing import TypeVar
 
 import numpy as np
 
+from ssmr_ident.core.threads import side_by_side
 from ssmr_ident.identify.fitting.coordinates import Model, Split
-from ssmr_ident.identify.fitting.parallel import side_by_side
 from ssmr_ident.identify.trials.trial import Asked, Trial
 from ssmr_ident.signals.noise import independent_samples
 

@@ -4,20 +4,26 @@ from __future__ import annotations
 
 import threading
 import time
+from concurrent.futures import ThreadPoolExecutor
 from contextvars import ContextVar
 
 import pytest
 
-from ssmr_ident.identify.fitting import parallel
-from ssmr_ident.identify.fitting.parallel import Pool, side_by_side
+from ssmr_ident.core import threads
+from ssmr_ident.core.threads import side_by_side
 
 SETTING: ContextVar[int] = ContextVar("setting", default=0)
 
 
 @pytest.fixture(params=[1, 2, 5])
 def workers(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> int:
-    monkeypatch.setattr(parallel, "_POOL", Pool(request.param))
+    _with(int(request.param), monkeypatch)
     return int(request.param)
+
+
+def _with(workers: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    pool = ThreadPoolExecutor(workers) if workers > 1 else None
+    monkeypatch.setattr(threads, "_threads", lambda: pool)
 
 
 def _who(_: object) -> str:
@@ -52,7 +58,7 @@ def test_what_is_asked_from_within_is_worked_off_however_deep(workers: int) -> N
 
 
 def test_who_has_nothing_to_do_helps_with_what_is_asked_from_within(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(parallel, "_POOL", Pool(2))
+    _with(2, monkeypatch)
 
     def long_or_short(long: bool) -> set[str]:
         if not long:
@@ -66,17 +72,25 @@ def test_who_has_nothing_to_do_helps_with_what_is_asked_from_within(monkeypatch:
     assert len(names) == 2
 
 
-def test_while_all_have_work_what_is_asked_from_within_stays_where_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(parallel, "_POOL", Pool(2))
-    together = threading.Barrier(2)
+def test_what_nobody_wants_any_more_ends_where_it_asks_for_more(monkeypatch: pytest.MonkeyPatch) -> None:
+    _with(2, monkeypatch)
+    reader, begun, ended = threading.current_thread(), threading.Event(), threading.Event()
 
-    def own(_: int) -> bool:
-        together.wait(10.0)
-        names = set(side_by_side(_who, range(3)))
-        together.wait(10.0)
-        return names == {threading.current_thread().name}
+    def endless(item: int) -> None:
+        if item == 0 or threading.current_thread() is reader:
+            return
+        begun.set()
+        try:
+            while True:
+                list(side_by_side(_who, [item]))
+        finally:
+            ended.set()
 
-    assert list(side_by_side(own, range(2))) == [True, True]
+    results = side_by_side(endless, range(50))
+    next(results)
+    assert begun.wait(10.0)
+    results.close()  # type: ignore[attr-defined]
+    assert ended.wait(10.0)
 
 
 def test_an_error_reaches_who_asked_and_leaves_the_pool_as_it_was(workers: int) -> None:
@@ -88,7 +102,7 @@ def test_an_error_reaches_who_asked_and_leaves_the_pool_as_it_was(workers: int) 
 
 
 def test_results_that_nobody_waits_for_are_not_worked_out(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(parallel, "_POOL", Pool(2))
+    _with(2, monkeypatch)
     begun: list[int] = []
 
     def one(item: int) -> str:
