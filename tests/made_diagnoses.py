@@ -6,7 +6,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from ssmr_ident.core.parameter import Estimate, ParameterSet
-from ssmr_ident.diagnose.diagnosis import Conflict, Diagnosis, Located, NamedEffect, Tried, Worth
+from ssmr_ident.diagnose.diagnosis import Conflict, Diagnosis, Located, NamedEffect, PredictionQuality, Tried
 from ssmr_ident.diagnose.evidence import Drift, Evidence, ForceSurface, Overlay, ResidualMap, SpeedMap
 
 K, MASS, DAMPING, CUBIC = 18000.0, 22.0, 25.0, 3.1e8
@@ -54,8 +54,8 @@ def hardening() -> Diagnosis:
         ),
         _tried("nonlinear_stiffness", 5228.4, 3.4, 22.0),
         "nrmse_percent",
-        Worth(21.4, 3.2, 2.9, ("roll-1.xlsx", "roll-2.xlsx")),
-        Worth(22.0, 3.4, 2.9, ("roll-3.xlsx", "pitch-3.xlsx"), (17.1, 20.2)),
+        PredictionQuality(21.4, 3.2, 2.9, ("roll-1.xlsx", "roll-2.xlsx")),
+        PredictionQuality(22.0, 3.4, 2.9, ("roll-3.xlsx", "pitch-3.xlsx"), (17.1, 20.2)),
         "",
         before,
         after,
@@ -79,7 +79,7 @@ def hardening() -> Diagnosis:
 def nothing() -> Diagnosis:
     """The baseline explains everything down to its noise."""
     same = _robot({"tire.stiffness_y_N_m": Estimate(18040.0, 95.0, "N/m")})
-    worth = Worth(2.95, 2.95, 2.91, ("roll-3.xlsx", "yaw-2.xlsx"))
+    worth = PredictionQuality(2.95, 2.95, 2.91, ("roll-3.xlsx", "yaw-2.xlsx"))
     return Diagnosis(
         "platform-free-response",
         "nothing_missing",
@@ -126,8 +126,8 @@ def undetermined() -> Diagnosis:
         ),
         _tried("quadratic_damping", 41.3, 6.1, 9.8, "dry_friction", "hysteresis"),
         "nrmse_percent",
-        Worth(9.2, 5.8, 4.9, ("shaker-1.csv",)),
-        Worth(9.8, 6.1, 4.9, ("shaker-2.csv",)),
+        PredictionQuality(9.2, 5.8, 4.9, ("shaker-1.csv",)),
+        PredictionQuality(9.8, 6.1, 4.9, ("shaker-2.csv",)),
         "Sweep the force slowly from 1 N to 12 N at 4 Hz, 3 repeats: quadratic damping and dry friction then differ by "
         "18 % of the response, enough to tell them apart 95 times in 100.",
         before,
@@ -168,8 +168,8 @@ def swivel() -> Diagnosis:
         ),
         _tried("wheel_eccentricity", 212.0, 2.1, 5.2),
         "log_psd_db",
-        Worth(5.0, 1.9, 1.6),
-        Worth(5.2, 2.1, 1.6, ("v0-w45-t20-frame-carpet.xlsx",)),
+        PredictionQuality(5.0, 1.9, 1.6),
+        PredictionQuality(5.2, 2.1, 1.6, ("v0-w45-t20-frame-carpet.xlsx",)),
         "",
         parameters,
         _robot({"tire.mu_kinetic": Estimate(0.70, 0.01, "1")}, effect),

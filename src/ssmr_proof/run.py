@@ -17,10 +17,10 @@ from ssmr_proof.blind import DIAGNOSE, BlindRun, run_blind
 from ssmr_proof.drawn.cases import draw_case
 from ssmr_proof.lab.case import Extent, record, write_session
 from ssmr_proof.scores.answer import read_answer
+from ssmr_proof.scores.heldout import judged
 from ssmr_proof.scores.score import marked
 from ssmr_proof.scores.summary import Summary, summarised
 from ssmr_proof.scores.table import Row, write_table
-from ssmr_proof.scores.worth import judged
 from ssmr_proof.seal import Envelope, read_seals, session_digest, write_seals
 
 Progress = Callable[[str, int, int], None]

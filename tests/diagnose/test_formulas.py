@@ -20,7 +20,7 @@ from ssmr_ident.diagnose.setup import set_up
 from ssmr_ident.diagnose.weigh import TIE
 from ssmr_ident.diagnose.words import law
 from ssmr_ident.identify.fitting.descent import descend
-from ssmr_ident.identify.fitting.horizons import led
+from ssmr_ident.identify.fitting.horizons import horizon_fit
 from ssmr_ident.identify.fitting.joint import JointFit, evaluate
 
 TRUE = {"F_c_N": 6.0, "rounding_m_s": 0.06}
@@ -94,7 +94,7 @@ def sinh() -> tuple[JointFit, tuple[float, ...]]:
     base, lengths = best_baseline(setup.fitted, setup, drawn.campaign.parameters)
     model, begin = base.model.with_effect("nonlinear_stiffness", {"k3_N_m3": 1e8}, {"k3_N_m3": 1e8})
     rest = lengths[1:] or lengths
-    return led(base.trials, model, np.concatenate([base.point, begin]), rest, 8, base.nuisances), lengths
+    return horizon_fit(base.trials, model, np.concatenate([base.point, begin]), rest, 8, base.nuisances), lengths
 
 
 def test_tires_that_harden_in_proportion_to_their_stiffness(sinh: tuple[JointFit, tuple[float, ...]]) -> None:
@@ -119,7 +119,7 @@ def test_a_formula_that_is_no_better_is_no_other(
     for by, better in ((1.9 * TIE, False), (2.1 * TIE, True)):
         other = ahead(by)
         assert cubic.cost(other.counted) - other.cost(other.counted) == pytest.approx(by)
-        monkeypatch.setattr(polish, "led", lambda *_, other=other: other)
+        monkeypatch.setattr(polish, "horizon_fit", lambda *_, other=other: other)
         assert turned(cubic, lengths) is (other if better else cubic)
 
 

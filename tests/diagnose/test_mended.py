@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from bank import draw
 
-from ssmr_ident.compare.roads import by_other_roads
+from ssmr_ident.compare.starts import by_other_starts
 from ssmr_ident.diagnose import finals
 from ssmr_ident.diagnose.baseline import best_baseline
 from ssmr_ident.diagnose.finals import led_on, mended
@@ -35,18 +35,18 @@ def astray(released: JointFit) -> JointFit:
 
 
 def test_other_roads_lead_back(released: JointFit, astray: JointFit) -> None:
-    found = by_other_roads(astray)
+    found = by_other_starts(astray)
     assert found.parts == pytest.approx(released.parts, rel=0.01)
     assert all(one is other for one, other in zip(found.nuisances[1:], astray.nuisances[1:], strict=True))
 
 
 def test_roads_are_tried_for_what_is_asked_for(astray: JointFit) -> None:
     others = list(range(1, len(astray.trials)))
-    assert np.array_equal(by_other_roads(astray, only=others).parts, astray.parts)
+    assert np.array_equal(by_other_starts(astray, only=others).parts, astray.parts)
 
 
 def test_a_road_that_ends_worse_is_not_taken(released: JointFit) -> None:
-    assert np.array_equal(by_other_roads(released).parts, released.parts)
+    assert np.array_equal(by_other_starts(released).parts, released.parts)
 
 
 def test_a_fit_is_mended_where_one_recording_is_astray(released: JointFit, astray: JointFit) -> None:
@@ -58,7 +58,7 @@ def test_a_fit_is_mended_where_one_recording_is_astray(released: JointFit, astra
 def test_what_is_left_as_well_without_the_effect_is_no_reason(
     released: JointFit, astray: JointFit, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(finals, "by_other_roads", lambda *_, **__: pytest.fail("a hundred simulations for nothing"))
+    monkeypatch.setattr(finals, "by_other_starts", lambda *_, **__: pytest.fail("a hundred simulations for nothing"))
     assert mended(astray, astray) is astray
     assert mended(released) is released
     # of a model that leaves most of them it is no start that is wanting
@@ -75,9 +75,9 @@ def test_what_cannot_come_first_is_neither_led_on_nor_begun_elsewhere(
     hopeless = replace(released, residuals=tuple(10.0 * r for r in released.residuals))
     further: list[JointFit] = []
     elsewhere: list[JointFit] = []
-    monkeypatch.setattr(finals, "led", lambda trials, model, point, *_: handed.pop(0))
+    monkeypatch.setattr(finals, "horizon_fit", lambda trials, model, point, *_: handed.pop(0))
     monkeypatch.setattr(finals, "descend", lambda fit, *_, **__: further.append(fit) or fit)
-    monkeypatch.setattr(finals, "by_other_roads", lambda fit, **_: elsewhere.append(fit) or fit)
+    monkeypatch.setattr(finals, "by_other_starts", lambda fit, **_: elsewhere.append(fit) or fit)
     monkeypatch.setattr(finals, "side_by_side", lambda work, items: [work(item) for item in items])
     for other, led_further, begun_elsewhere in (
         (astray, [released, astray], [astray]),

@@ -10,10 +10,10 @@ import pytest
 from ssmr_ident.diagnose.baseline import unsteady
 from ssmr_ident.diagnose.sliding import crossed
 from ssmr_ident.experiments import PULL
+from ssmr_ident.identify.fitting.after_release import first_part, fit_past_release
 from ssmr_ident.identify.fitting.coordinates import Model, Unknown
 from ssmr_ident.identify.fitting.descent import chatters, descend
 from ssmr_ident.identify.fitting.joint import JointFit, evaluate
-from ssmr_ident.identify.fitting.swings import first_part, led_through_slides
 from ssmr_ident.identify.trials.moments import lets_go
 from ssmr_ident.identify.trials.trial import Array, Course, Trial, Values
 from ssmr_ident.signals.noise import AutoregressiveNoise
@@ -59,7 +59,7 @@ def test_a_fit_is_led_past_the_valleys_of_a_swing() -> None:
     begun = fitted(0.0, np.array([4.0, 0.0]))
     caught = descend(begun, 20, plain=True)
     assert caught.parts[0] > 2.0 * caught.size
-    led = led_through_slides(begun)
+    led = fit_past_release(begun)
     assert led.point == pytest.approx(TRUE, abs=0.3)
     assert led.parts[0] < 1.2 * led.size
     assert led.trials == begun.trials
@@ -68,7 +68,7 @@ def test_a_fit_is_led_past_the_valleys_of_a_swing() -> None:
 def test_what_does_not_slide_is_left_alone() -> None:
     still = replace(pull(0.0), slides_from=None)
     fit = evaluate([still], MODEL, np.zeros(2), [np.zeros(0)])
-    assert led_through_slides(fit) is fit
+    assert fit_past_release(fit) is fit
     assert first_part(still, 0.1) is still
 
 

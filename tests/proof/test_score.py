@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from ssmr_proof.scores.answer import Answer, Claim
+from ssmr_proof.scores.heldout import HeldOut
 from ssmr_proof.scores.intervals import mean_interval, median_interval, share_interval
 from ssmr_proof.scores.power import power
 from ssmr_proof.scores.score import CLEAN, FALSE_ALARM, MISSED, PARTLY, RIGHT, SURPLUS, TIE, WRONG, marked
 from ssmr_proof.scores.summary import summarised
 from ssmr_proof.scores.table import Row
-from ssmr_proof.scores.worth import HeldOut
 
 
 def truth(*ids: str, also: tuple[str, ...] = ()) -> dict[str, Any]:

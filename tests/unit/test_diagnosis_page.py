@@ -14,7 +14,7 @@ import pytest
 from made_diagnoses import EVERY, hardening, nothing, swivel, undetermined
 
 from ssmr_ident.core.parameter import Estimate, ParameterSet
-from ssmr_ident.diagnose.diagnosis import Conflict, Diagnosis, Tried, Worth
+from ssmr_ident.diagnose.diagnosis import Conflict, Diagnosis, PredictionQuality, Tried
 from ssmr_ident.diagnose.evidence import Evidence, ForceSurface, SpeedMap
 from ssmr_ident.report.curves import busiest_part, thinned
 from ssmr_ident.report.diagnosis_page import diagnosis_page, render_report, write_report
@@ -191,7 +191,7 @@ def test_poor_evidence_is_drawn_as_it_is() -> None:
         evidence=evidence,
         tried=(Tried("nonlinear_stiffness", float("nan"), float("-inf")), Tried("baseline", 0.0, 0.0)),
         conflicts=(Conflict("mass_kg", 2.0, 2.0, 0.0, "kg"), Conflict("tire.x", 0.0, 1.0, float("inf"), "m")),
-        heldout=Worth(0.0, 0.0, float("nan")),
+        heldout=PredictionQuality(0.0, 0.0, float("nan")),
     )
     page = render_report(poor, "", 0)
     assert "nan%" not in page

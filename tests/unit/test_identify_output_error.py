@@ -15,7 +15,7 @@ from ssmr_ident.identify.body.free_decays import BodyDecay, body_decay
 from ssmr_ident.identify.body.output_error import START_SCALES, DecaySamples
 from ssmr_ident.identify.body.response import body_response, sensor_gains
 from ssmr_ident.identify.body.unknowns import robot_unknowns
-from ssmr_ident.identify.posterior.flatness import flat_directions
+from ssmr_ident.identify.posterior.identifiability import flat_directions
 from ssmr_ident.identify.posterior.most_probable import most_probable
 from ssmr_ident.physics.linear import linear_robot, responses
 from ssmr_ident.session import read_parameters

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 import ssmr_ident
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import ParameterSet
-from ssmr_ident.diagnose.diagnosis import Diagnosis, Worth
+from ssmr_ident.diagnose.diagnosis import Diagnosis, PredictionQuality
 from ssmr_ident.diagnose.evidence import Evidence, Overlay
 from ssmr_ident.workflows.spectrum.run import spectrum
 
@@ -51,8 +51,8 @@ def test_a_diagnosis_shows_where_it_gains_most() -> None:
     )
     empty = ParameterSet("rig", {})
     diagnosis = Diagnosis(
-        "s", "nothing_missing", (), (), (), (), "nrmse_percent", Worth(1, 1, 1), Worth(1, 1, 1), "", empty, empty, "",
-        evidence=Evidence(overlays=overlays),
+        "s", "nothing_missing", (), (), (), (), "nrmse_percent", PredictionQuality(1, 1, 1), PredictionQuality(1, 1, 1),
+        "", empty, empty, "", evidence=Evidence(overlays=overlays),
     )  # fmt: skip
     figure = ssmr_ident.plot(diagnosis)
     text = " ".join(t.get_text() for axes in figure.axes for t in (axes.title, axes._left_title))

@@ -7,10 +7,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from ssmr_ident.compare.outcome import Prediction
-from ssmr_ident.compare.roads import LAST, alone, by_other_roads
+from ssmr_ident.compare.starts import LAST, alone, by_other_starts
 from ssmr_ident.core.threads import side_by_side
 from ssmr_ident.identify.fitting.coordinates import Model
-from ssmr_ident.identify.fitting.horizons import led
+from ssmr_ident.identify.fitting.horizons import horizon_fit
 from ssmr_ident.identify.fitting.joint import JointFit, together
 from ssmr_ident.identify.trials.trial import Array, Trial, Values
 from ssmr_ident.physics.slots import Effects
@@ -27,7 +27,7 @@ def follow(
     """A model held where it is, with the nuisances of each recording at their best.
 
     Small motions give the start of a decay, or nuisances that are near. Where effects bend the motion and more than
-    noise is left, other roads are tried. Each recording goes by itself: one that takes long is no reason to go on with
+    noise is left, other starts are tried. Each recording goes by itself: one that takes long is no reason to go on with
     those that are at rest.
 
     Parameters
@@ -43,15 +43,16 @@ def follow(
     starts = begun(trials, model, point) if near is None else near
     pairs = list(zip(trials, starts, strict=True))
     found = together(list(side_by_side(lambda pair: alone(pair[0], model, point, pair[1]), pairs)))
-    return by_other_roads(found, kin, known=near is not None) if found.model.ids else found
+    return by_other_starts(found, kin, known=near is not None) if found.model.ids else found
 
 
 def nearest(trials: Sequence[Trial], model: Model, point: Array, near: Sequence[Array] | None = None) -> JointFit:
-    """The same by the first road alone, all recordings at one step until they gain no more together: where physics is
-    to be fitted at once, it is no use to bring each to rest.
+    """The same from the first start alone, all recordings at one step until they gain no more together.
+
+    Where physics is to be fitted at once, it is no use to bring each to rest.
     """
     starts = begun(trials, model, point) if near is None else near
-    return led(trials, model, point, [np.inf], LAST, starts, shared=False)
+    return horizon_fit(trials, model, point, [np.inf], LAST, starts, shared=False)
 
 
 def begun(trials: Sequence[Trial], model: Model, point: Array) -> list[Array]:

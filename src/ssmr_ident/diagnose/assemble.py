@@ -12,7 +12,16 @@ from ssmr_ident.compare.outcome import Prediction
 from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.core.threads import side_by_side
 from ssmr_ident.diagnose.accept import left_over
-from ssmr_ident.diagnose.diagnosis import MISSING, NOTHING, UNDETERMINED, Conflict, Diagnosis, NamedEffect, Tried, Worth
+from ssmr_ident.diagnose.diagnosis import (
+    MISSING,
+    NOTHING,
+    UNDETERMINED,
+    Conflict,
+    Diagnosis,
+    NamedEffect,
+    PredictionQuality,
+    Tried,
+)
 from ssmr_ident.diagnose.discriminate import next_experiment
 from ssmr_ident.diagnose.drift import drifts
 from ssmr_ident.diagnose.engine import Outcome
@@ -162,7 +171,7 @@ def assembled(outcome: Outcome, parameters: ParameterSet, seed: int) -> Diagnosi
 
 
 def hidden_by_jolts(
-    whole: Sequence[Worth], before: Sequence[Sequence[Prediction]], after: Sequence[Sequence[Prediction]]
+    whole: Sequence[PredictionQuality], before: Sequence[Sequence[Prediction]], after: Sequence[Sequence[Prediction]]
 ) -> tuple[str, ...]:
     """Words where recordings, fitted or held out, are worse after, but for the jolts of cables better."""
     sets = zip(("fitted", "held out"), whole, before, after, strict=True)
@@ -252,7 +261,7 @@ def _open(outcome: Outcome) -> tuple[str, ...]:
     )
 
 
-def _notes(best: Explanation, free: Explanation, heldout: Worth) -> tuple[str, ...]:
+def _notes(best: Explanation, free: Explanation, heldout: PredictionQuality) -> tuple[str, ...]:
     notes = []
     clipped = sum(t.facts.get("clipped", 0.0) for t in (*best.fit.trials, *best.kept.trials))
     if clipped:

@@ -17,11 +17,11 @@ from ssmr_ident.diagnose.hollows import from_afar
 from ssmr_ident.diagnose.race import far_off
 from ssmr_ident.diagnose.setup import Setup
 from ssmr_ident.diagnose.start import begin, pooled
-from ssmr_ident.identify.fitting.clouds import settled
+from ssmr_ident.identify.fitting.after_release import fit_past_release
 from ssmr_ident.identify.fitting.descent import LOUD, chatters, descend, slides
-from ssmr_ident.identify.fitting.horizons import horizons, led, radian
+from ssmr_ident.identify.fitting.horizons import horizon_fit, horizons, radian
 from ssmr_ident.identify.fitting.joint import JointFit, differentiate, evaluate
-from ssmr_ident.identify.fitting.swings import led_through_slides
+from ssmr_ident.identify.fitting.sampled_slopes import settled
 from ssmr_ident.identify.trials import Trial
 from ssmr_ident.signals.noise import block_noises
 
@@ -77,7 +77,7 @@ def best_baseline(
     fit = fit_baseline(trials, setup, parameters)
     lengths = tuple(horizons(fit.trials, radian(fit.trials)))
     if leaves_much(fit) and len(lengths) > 1:
-        other = differentiate(led(fit.trials, fit.model, fit.point, lengths, LAST // 2))
+        other = differentiate(horizon_fit(fit.trials, fit.model, fit.point, lengths, LAST // 2))
         fit = min((fit, other), key=lambda f: f.cost(fit.counted))
     if any(trial.uneven is not None for trial in fit.trials):
         other = brought_home(uneven(fit))
@@ -131,13 +131,13 @@ def begun_again(fit: JointFit, lengths: Sequence[float]) -> JointFit | None:
     """
     if slides(fit) or len(lengths) == 1 or not bent(fit) or not leaves_much(fit):
         return None
-    return differentiate(called_back(led(fit.trials, fit.model, np.zeros_like(fit.point), lengths, LAST)))
+    return differentiate(called_back(horizon_fit(fit.trials, fit.model, np.zeros_like(fit.point), lengths, LAST)))
 
 
 def led_out(fit: JointFit) -> JointFit:
     """Pulls led out of the hollow in which a descent has left them: from all sides, through their slides, by clouds."""
     begun = (fit, *from_all_sides(fit))
-    best = min((*begun, *(led_through_slides(f) for f in begun if unsteady(f))), key=lambda f: f.cost(fit.counted))
+    best = min((*begun, *(fit_past_release(f) for f in begun if unsteady(f))), key=lambda f: f.cost(fit.counted))
     best = min((best, descend(best, LAST), descend(settled(best), LAST)), key=lambda f: f.cost(fit.counted))
     afar = from_afar(best) if unsteady(best) and swings_alone(best) else []
     return differentiate(min((best, *afar), key=lambda f: f.cost(best.counted)))

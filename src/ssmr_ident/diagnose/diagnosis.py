@@ -96,7 +96,7 @@ class Tried:
 
 
 @dataclass(frozen=True)
-class Worth:
+class PredictionQuality:
     """Mean of the metric over recordings: of the baseline, with the effects added, and what noise alone leaves.
 
     ``improvement`` is the 95 % interval of before − after over recordings.
@@ -120,7 +120,7 @@ class Diagnosis(Shown):
         Most important first.
     metric : str
         ``nrmse_percent`` or ``log_psd_db``.
-    training, heldout : Worth
+    training, heldout : PredictionQuality
     next_experiment : str
         What to record next, empty where nothing is left to tell apart.
     before, after : ParameterSet
@@ -140,8 +140,8 @@ class Diagnosis(Shown):
     effects: tuple[NamedEffect, ...]
     tried: tuple[Tried, ...]
     metric: str
-    training: Worth
-    heldout: Worth
+    training: PredictionQuality
+    heldout: PredictionQuality
     next_experiment: str
     before: ParameterSet
     after: ParameterSet
@@ -211,7 +211,7 @@ def _folded(line: str) -> list[str]:
     return textwrap.wrap(line, WIDTH, subsequent_indent=" " * (indent + 4), break_long_words=False) or [line]
 
 
-def _worth(worth: Worth) -> dict[str, Any]:
+def _worth(worth: PredictionQuality) -> dict[str, Any]:
     plain: dict[str, Any] = {"before": worth.before, "after": worth.after, "noise_floor": worth.noise_floor}
     if worth.recordings:
         plain["recordings"] = list(worth.recordings)

@@ -13,7 +13,7 @@ from ssmr_ident.diagnose.scan import Suspect, smaller
 from ssmr_ident.diagnose.sizes import limits_of
 from ssmr_ident.identify.fitting.coordinates import Model
 from ssmr_ident.identify.fitting.descent import descend
-from ssmr_ident.identify.fitting.horizons import led
+from ssmr_ident.identify.fitting.horizons import horizon_fit
 from ssmr_ident.identify.fitting.joint import JointFit, Slopes, evaluate
 from ssmr_ident.physics.effects import CATALOGUE
 
@@ -82,7 +82,7 @@ def from_what_is_known(fit: JointFit, suspect: Suspect, lengths: Sequence[float]
     Beside a baseline that has left what is known to do without it, an effect finds little to do.
     """
     model, point = with_suspect(fit, suspect)
-    begun = led(fit.trials, _held(fit, suspect, model, point), model.as_known(fit.point), lengths, SETTLING)
+    begun = horizon_fit(fit.trials, _held(fit, suspect, model, point), model.as_known(fit.point), lengths, SETTLING)
     return evaluate(fit.trials, model, np.concatenate([begun.point, point[len(fit.point) :]]), begun.nuisances)
 
 

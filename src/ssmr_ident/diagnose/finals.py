@@ -7,12 +7,12 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from ssmr_ident.compare.recorded import follow
-from ssmr_ident.compare.roads import by_other_roads
+from ssmr_ident.compare.starts import by_other_starts
 from ssmr_ident.core.threads import side_by_side
 from ssmr_ident.diagnose.baseline import LAST
 from ssmr_ident.diagnose.race import CLOSE, Progress, ranked, within_reach
 from ssmr_ident.identify.fitting.descent import LOUD, chatters, descend, slides
-from ssmr_ident.identify.fitting.horizons import led
+from ssmr_ident.identify.fitting.horizons import horizon_fit
 from ssmr_ident.identify.fitting.joint import JointFit
 
 REFITTED = 3
@@ -54,7 +54,7 @@ def led_on(
     def halfway(fit: JointFit) -> JointFit:
         if chatters(base):
             fit = descend(fit, LAST // 2, plain=True)
-        return led(base.trials, fit.model, fit.point, rest, LAST // 2, _all_nuisances(base, fit, lengths))
+        return horizon_fit(base.trials, fit.model, fit.point, rest, LAST // 2, _all_nuisances(base, fit, lengths))
 
     def ended(fit: JointFit) -> JointFit:
         # what is as far behind as this halfway does not win, and where exactly it ends decides nothing
@@ -103,7 +103,7 @@ def mended(fit: JointFit, beside: JointFit | None = None) -> JointFit:
     stuck = _stuck(fit, beside)
     if not len(stuck):
         return fit
-    led_back = by_other_roads(fit, only=stuck.tolist(), known=True)
+    led_back = by_other_starts(fit, only=stuck.tolist(), known=True)
     found_another = np.any(np.log(fit.parts / led_back.parts) > AS_MUCH)
     return descend(led_back, LAST) if found_another else fit
 
@@ -162,4 +162,4 @@ def anew(fit: JointFit, lengths: tuple[float, ...]) -> JointFit:
     point = fit.model.as_known(fit.point)
     short = [t.until(lengths[0]) for t in fit.trials]
     begun = follow(short, fit.model, point, kin=fit)
-    return mended(led(fit.trials, fit.model, point, lengths, LAST, begun.nuisances))
+    return mended(horizon_fit(fit.trials, fit.model, point, lengths, LAST, begun.nuisances))

@@ -16,11 +16,11 @@ from ssmr_ident.diagnose.gathered import gathered
 from ssmr_ident.diagnose.race import far_off, ranked
 from ssmr_ident.diagnose.scan import held_at
 from ssmr_ident.diagnose.weigh import TIE
-from ssmr_ident.identify.fitting.clouds import settled
+from ssmr_ident.identify.fitting.after_release import fit_past_release
 from ssmr_ident.identify.fitting.descent import LOUD, chatters, descend
-from ssmr_ident.identify.fitting.horizons import led
+from ssmr_ident.identify.fitting.horizons import horizon_fit
 from ssmr_ident.identify.fitting.joint import JointFit, evaluate
-from ssmr_ident.identify.fitting.swings import led_through_slides
+from ssmr_ident.identify.fitting.sampled_slopes import settled
 from ssmr_ident.physics.effects import CATALOGUE
 
 MOST_TURNS = 2
@@ -38,7 +38,7 @@ def turned(fit: JointFit, lengths: tuple[float, ...]) -> JointFit:
     for tried in held_at(CATALOGUE[effect_id], fit.model):
         if tried != {name: own[name] for name in tried}:
             model = replace(fit.model, held={**fit.model.held, effect_id: {**own, **tried}})
-            best = ranked((best, led(fit.trials, model, fit.point, rest, LAST, fit.nuisances)))[0]
+            best = ranked((best, horizon_fit(fit.trials, model, fit.point, rest, LAST, fit.nuisances)))[0]
     for name in fit.model.ids:
         for _ in range(MOST_TURNS):
             before, best = best, _otherwise(best, name, rest)
@@ -51,7 +51,7 @@ def _otherwise(fit: JointFit, name: str, lengths: tuple[float, ...]) -> JointFit
     """The best of a fit and those with one of its effects in another formula; along one axis a cubic spring and one in
     proportion to its stiffness are the same law, and the one that it was begun with stays."""
     forms = list(other_formulas(fit, name))
-    others = side_by_side(lambda form: led(fit.trials, *form, lengths, LAST, fit.nuisances), forms)
+    others = side_by_side(lambda form: horizon_fit(fit.trials, *form, lengths, LAST, fit.nuisances), forms)
     first = ranked((fit, *others))[0]
     return first if fit.cost(first.counted) - first.cost(first.counted) > 2.0 * TIE else fit
 
@@ -110,5 +110,5 @@ def calmed(fit: JointFit) -> JointFit:
     """
     begun = descend(fit, LAST, plain=True)
     if unsteady(fit):
-        begun = min((begun, led_through_slides(fit)), key=lambda f: f.rss + f.penalty)
+        begun = min((begun, fit_past_release(fit)), key=lambda f: f.rss + f.penalty)
     return ranked((fit, descend(settled(begun), LAST)))[0]

@@ -16,7 +16,7 @@ from ssmr_ident.diagnose.gathered import gathered
 from ssmr_ident.diagnose.loose import begun_loose
 from ssmr_ident.diagnose.scan import Suspect, both_ways, promising
 from ssmr_ident.identify.fitting.descent import chatters, descend, slides
-from ssmr_ident.identify.fitting.horizons import STEPS, led
+from ssmr_ident.identify.fitting.horizons import STEPS, horizon_fit
 from ssmr_ident.identify.fitting.joint import JointFit, each_best, evaluate
 from ssmr_ident.identify.trials.trial import Trial
 from ssmr_ident.physics.effects import CATALOGUE
@@ -157,7 +157,7 @@ def screened(
     """
     loud = _loudest(base)
     few = evaluate([base.trials[k] for k in loud], base.model, base.point, [base.nuisances[k] for k in loud])
-    first = led(few.trials, few.model, few.point, lengths[:1], STEPS, few.nuisances)
+    first = horizon_fit(few.trials, few.model, few.point, lengths[:1], STEPS, few.nuisances)
     known = _from_what_is_known(first)
     starts = [
         (start, suspect)
@@ -196,7 +196,7 @@ def screened(
 
 
 def _led_on(trials: Sequence[Trial], lengths: Sequence[float], steps: int, fit: JointFit) -> JointFit:
-    return led(trials, fit.model, fit.point, lengths, steps, fit.nuisances)
+    return horizon_fit(trials, fit.model, fit.point, lengths, steps, fit.nuisances)
 
 
 def _enlarged(base: JointFit, suspect: Suspect) -> JointFit | None:

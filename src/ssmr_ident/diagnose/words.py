@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from ssmr_ident.core.parameter import Estimate
-from ssmr_ident.diagnose.diagnosis import UNIT, Conflict, NamedEffect, Worth
+from ssmr_ident.diagnose.diagnosis import UNIT, Conflict, NamedEffect, PredictionQuality
 from ssmr_ident.physics.effects import CATALOGUE, unlisted
 
 LAWS = {
@@ -66,7 +66,9 @@ def told(effect_id: str, parameters: Mapping[str, Estimate]) -> str:
     return CATALOGUE[effect_id].sentence.rstrip(".") + (f": {numbers}." if numbers else ".")
 
 
-def missing(effects: Sequence[NamedEffect], heldout: Worth, metric: str, conflicts: Sequence[Conflict]) -> str:
+def missing(
+    effects: Sequence[NamedEffect], heldout: PredictionQuality, metric: str, conflicts: Sequence[Conflict]
+) -> str:
     """The verdict in one sentence."""
     unit = UNIT[metric]
     names = " and ".join(readable(e.id) for e in effects)
@@ -87,7 +89,7 @@ def missing(effects: Sequence[NamedEffect], heldout: Worth, metric: str, conflic
     )
 
 
-def nothing(heldout: Worth, metric: str, tried: int) -> str:
+def nothing(heldout: PredictionQuality, metric: str, tried: int) -> str:
     unit = UNIT[metric]
     return (
         f"Nothing is missing: the baseline leaves {heldout.before:.3g} {unit} on recordings never fitted, noise alone "
@@ -95,7 +97,7 @@ def nothing(heldout: Worth, metric: str, tried: int) -> str:
     )
 
 
-def undetermined(heldout: Worth, metric: str, tried: Sequence[str], shown: str = "") -> str:
+def undetermined(heldout: PredictionQuality, metric: str, tried: Sequence[str], shown: str = "") -> str:
     """``shown`` says where something is missing that recordings never fitted do not show."""
     unit = UNIT[metric]
     names = ", ".join(map(readable, tried[:3]))

@@ -11,7 +11,7 @@ from scipy.stats import spearmanr
 from ssmr_ident.compare.comparison import measure
 from ssmr_ident.compare.outcome import Prediction
 from ssmr_ident.compare.recorded import predicted
-from ssmr_ident.diagnose.diagnosis import Worth
+from ssmr_ident.diagnose.diagnosis import PredictionQuality
 from ssmr_ident.diagnose.evidence import Overlay
 from ssmr_ident.identify.fitting.joint import JointFit
 from ssmr_ident.identify.trials.trial import Trial
@@ -155,7 +155,7 @@ def errors(found: Sequence[Prediction]) -> Array:
     return np.array([measure(prediction)[0] for prediction in found])
 
 
-def worth(before: Sequence[Prediction], after: Sequence[Prediction], names: Sequence[str]) -> Worth:
+def worth(before: Sequence[Prediction], after: Sequence[Prediction], names: Sequence[str]) -> PredictionQuality:
     """Means over recordings, and the 95 % interval of the improvement by bootstrap over recordings."""
     first = errors(before)
     second = first if after is before else errors(after)
@@ -166,7 +166,7 @@ def worth(before: Sequence[Prediction], after: Sequence[Prediction], names: Sequ
         rng = np.random.default_rng(20120510)
         means = gain[rng.integers(0, len(gain), (2000, len(gain)))].mean(axis=1)
         interval = (float(np.quantile(means, 0.025)), float(np.quantile(means, 0.975)))
-    return Worth(float(first.mean()), float(second.mean()), float(floor.mean()), tuple(names), interval)
+    return PredictionQuality(float(first.mean()), float(second.mean()), float(floor.mean()), tuple(names), interval)
 
 
 def overlays(

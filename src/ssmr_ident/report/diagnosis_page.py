@@ -107,13 +107,13 @@ def _found(diagnosis: Diagnosis) -> tuple[Fact, ...]:
 
 
 def _clear(diagnosis: Diagnosis) -> tuple[Fact, ...]:
-    worth, unit = diagnosis.heldout, UNIT[diagnosis.metric]
+    quality, unit = diagnosis.heldout, UNIT[diagnosis.metric]
     tried = [t for t in diagnosis.tried if t.id != "baseline"]
-    largest = max(worth.before, worth.noise_floor)
-    left, floor = alike((worth.before, worth.noise_floor))
+    largest = max(quality.before, quality.noise_floor)
+    left, floor = alike((quality.before, quality.noise_floor))
     facts = [
-        Fact("Model, on held-out recordings", f"{left} {unit}", _spread(diagnosis), _bar(worth.before, largest)),
-        Fact("Noise alone would leave", f"{floor} {unit}", "the noise floor", _bar(worth.noise_floor, largest)),
+        Fact("Model, on held-out recordings", f"{left} {unit}", _spread(diagnosis), _bar(quality.before, largest)),
+        Fact("Noise alone would leave", f"{floor} {unit}", "the noise floor", _bar(quality.noise_floor, largest)),
         Fact("Explanations tried", f"{len(tried)}", "none earns its place"),
     ]
     moved = max((abs(c.sigmas) for c in diagnosis.conflicts), default=None)
@@ -132,19 +132,19 @@ def _open(diagnosis: Diagnosis) -> tuple[Fact, ...]:
 
 
 def _before_after(diagnosis: Diagnosis) -> tuple[Fact, ...]:
-    worth, unit = diagnosis.heldout, UNIT[diagnosis.metric]
-    largest = max(worth.before, worth.after, worth.noise_floor)
-    before, after, floor = alike((worth.before, worth.after, worth.noise_floor))
-    gain = "one held-out recording gives no interval" if len(worth.recordings) == 1 else ""
-    if worth.improvement is not None:
-        gain = f"improved by {interval(*worth.improvement, unit)} (95 %)"
-    count = len(worth.recordings)
+    quality, unit = diagnosis.heldout, UNIT[diagnosis.metric]
+    largest = max(quality.before, quality.after, quality.noise_floor)
+    before, after, floor = alike((quality.before, quality.after, quality.noise_floor))
+    gain = "one held-out recording gives no interval" if len(quality.recordings) == 1 else ""
+    if quality.improvement is not None:
+        gain = f"improved by {interval(*quality.improvement, unit)} (95 %)"
+    count = len(quality.recordings)
     on = f"on {count} recording{'s' if count > 1 else ''} never fitted" if count else "on recordings never fitted"
-    facts = [Fact("Model before", f"{before} {unit}", on, _bar(worth.before, largest), "before")]
+    facts = [Fact("Model before", f"{before} {unit}", on, _bar(quality.before, largest), "before")]
     if name := after_name(diagnosis):
-        facts.append(Fact(name.capitalize(), f"{after} {unit}", gain, _bar(worth.after, largest), "after"))
+        facts.append(Fact(name.capitalize(), f"{after} {unit}", gain, _bar(quality.after, largest), "after"))
     facts.append(
-        Fact("Noise alone would leave", f"{floor} {unit}", "the noise floor", _bar(worth.noise_floor, largest))
+        Fact("Noise alone would leave", f"{floor} {unit}", "the noise floor", _bar(quality.noise_floor, largest))
     )
     return tuple(facts)
 

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 
 from ssmr_ident.core.parameter import Estimate
-from ssmr_ident.diagnose.diagnosis import MISSING, NOTHING, UNIT, Conflict, Diagnosis, NamedEffect, Worth
+from ssmr_ident.diagnose.diagnosis import MISSING, NOTHING, UNIT, Conflict, Diagnosis, NamedEffect, PredictionQuality
 from ssmr_ident.report.diagnosis_pictures import after_name, explained, known_std, moved, proof, scalar
 from ssmr_ident.report.diagnosis_places import places
 from ssmr_ident.report.figures_diagnosis import evidence_text, readable
@@ -113,10 +113,10 @@ def _proof(diagnosis: Diagnosis) -> Section:
     return Section(title, text, tuple(tables), proof(diagnosis))
 
 
-def _gain(worth: Worth) -> Cell:
-    if worth.improvement is None:
+def _gain(quality: PredictionQuality) -> Cell:
+    if quality.improvement is None:
         return Number(NONE, math.nan)
-    return Number(interval(*worth.improvement), worth.improvement[0])
+    return Number(interval(*quality.improvement), quality.improvement[0])
 
 
 def _metrics(values: Sequence[tuple[float, float, float]], diagnosis: Diagnosis) -> list[list[Number]]:

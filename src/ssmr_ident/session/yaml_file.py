@@ -17,7 +17,7 @@ _QUESTION = re.compile(r"^([^#]*:\s*TODO\s*(?:[,}][^#]*)?)(?:#(.*))?$")
 
 
 class _Loader(yaml.SafeLoader):
-    """SafeLoader that refuses a key given twice and aliases (the road to exponential files)."""
+    """SafeLoader that refuses a key given twice and aliases (which let small files grow exponentially)."""
 
     def compose_node(self, parent: yaml.Node | None, index: int) -> yaml.Node | None:
         if self.check_event(yaml.AliasEvent):

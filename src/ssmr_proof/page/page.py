@@ -1,4 +1,4 @@
-"""proof.html: what was hidden, what was found, and what that is worth."""
+"""proof.html: what was hidden, what was found, and how well it predicts."""
 
 from __future__ import annotations
 

@@ -11,8 +11,8 @@ from typing import Any
 
 from ssmr_ident.core.atomic import write_text
 from ssmr_proof.scores.answer import Answer
+from ssmr_proof.scores.heldout import HeldOut
 from ssmr_proof.scores.score import Mark
-from ssmr_proof.scores.worth import HeldOut
 
 COLUMNS = (
     "case", "family", "kind", "trap", "hidden", "strength", "outcome", "verdict", "named", "before_percent",

@@ -7,7 +7,16 @@ from collections.abc import Mapping
 import numpy as np
 
 from ssmr_ident.core.parameter import Estimate, ParameterSet
-from ssmr_ident.diagnose.diagnosis import MISSING, NOTHING, UNDETERMINED, Conflict, Diagnosis, NamedEffect, Tried, Worth
+from ssmr_ident.diagnose.diagnosis import (
+    MISSING,
+    NOTHING,
+    UNDETERMINED,
+    Conflict,
+    Diagnosis,
+    NamedEffect,
+    PredictionQuality,
+    Tried,
+)
 from ssmr_ident.diagnose.evidence import Evidence
 from ssmr_ident.diagnose.turning.anchor import Anchor
 from ssmr_ident.diagnose.turning.candidates import UNLISTED
@@ -19,9 +28,9 @@ from ssmr_ident.diagnose.turning.maps import follows, speed_maps
 from ssmr_ident.diagnose.turning.next_run import next_run
 from ssmr_ident.diagnose.turning.rivals import WITHIN, with_rivals
 from ssmr_ident.diagnose.turning.search import SPREAD_FACTOR, Explained
+from ssmr_ident.diagnose.turning.spectral_distance import against_simulation, repeatability_db
 from ssmr_ident.diagnose.turning.verdict import Decision, decide, findings_of
 from ssmr_ident.diagnose.turning.words import EQUATIONS, UNLISTED_EQUATIONS, UNLISTED_WORDS, unlisted_form
-from ssmr_ident.diagnose.turning.worth import against_simulation, repeatability_db
 from ssmr_ident.physics.effects import CATALOGUE
 
 METRIC = "log_psd_db"
@@ -151,7 +160,7 @@ def _tried(outcome: Outcome) -> tuple[Tried, ...]:
 
 def _worth(
     outcome: Outcome, conditions: tuple[Condition, ...], added: Mapping[str, float], effects: Mapping, floor: float
-) -> Worth:
+) -> PredictionQuality:
     before = against_simulation(outcome.bench, conditions, outcome.anchor.values, {})
     after = against_simulation(outcome.bench, conditions, added, effects)
     names = tuple(name for name in before if name in after)
@@ -161,7 +170,7 @@ def _worth(
         random = np.random.default_rng(0)
         means = random.choice(gains, (2000, len(gains))).mean(axis=1)
         interval = (float(np.quantile(means, 0.025)), float(np.quantile(means, 0.975)))
-    return Worth(
+    return PredictionQuality(
         float(np.mean([before[name] for name in names])), float(np.mean([after[name] for name in names])), floor, names,
         interval,
     )  # fmt: skip
@@ -186,7 +195,7 @@ def _conflicts(anchor: Anchor) -> tuple[Conflict, ...]:
     return tuple(one for one in found if abs(one.sigmas) > CONFLICT)
 
 
-def _summary(outcome: Outcome, decision: Decision, best: Explained | None, heldout: Worth) -> str:
+def _summary(outcome: Outcome, decision: Decision, best: Explained | None, heldout: PredictionQuality) -> str:
     after = (
         f"{heldout.before:.1f} dB become {heldout.after:.1f} dB on recordings never fitted "
         f"(repeatability {heldout.noise_floor:.1f} dB)"

@@ -9,7 +9,7 @@ from ssmr_ident.diagnose.turning.engine import CLOSE, FINAL_SEEDS, Outcome
 from ssmr_ident.diagnose.turning.ensemble import TAU_DB
 from ssmr_ident.diagnose.turning.rivals import NEARER, ONE_SIDED, WITHIN
 from ssmr_ident.diagnose.turning.search import Explained
-from ssmr_ident.diagnose.turning.worth import against_simulation
+from ssmr_ident.diagnose.turning.spectral_distance import against_simulation
 from ssmr_ident.physics.slots import Effects
 
 NO_WORSE = 1.02

@@ -10,8 +10,8 @@ from ssmr_ident.diagnose.evidence import SpeedMap
 from ssmr_ident.diagnose.turning.conditions import Condition
 from ssmr_ident.diagnose.turning.engine import Outcome
 from ssmr_ident.diagnose.turning.likelihood import NEPER_DB
+from ssmr_ident.diagnose.turning.spectral_distance import channel_logs
 from ssmr_ident.diagnose.turning.starts import lever
-from ssmr_ident.diagnose.turning.worth import channel_logs
 from ssmr_ident.physics.slots import Effects
 
 NARROW = 0.2  # of the logarithm of speed, over which a course can be told

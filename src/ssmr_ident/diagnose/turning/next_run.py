@@ -8,7 +8,7 @@ import numpy as np
 
 from ssmr_ident.diagnose.turning.conditions import Condition
 from ssmr_ident.diagnose.turning.engine import Outcome
-from ssmr_ident.diagnose.turning.worth import channel_logs, distance_db
+from ssmr_ident.diagnose.turning.spectral_distance import channel_logs, distance_db
 from ssmr_ident.physics.motor import wheel_rates
 from ssmr_ident.physics.robot import robot_from_parameters
 

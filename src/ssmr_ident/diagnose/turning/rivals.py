@@ -11,8 +11,8 @@ from ssmr_ident.diagnose.diagnosis import MISSING, UNDETERMINED
 from ssmr_ident.diagnose.turning.candidates import UNLISTED
 from ssmr_ident.diagnose.turning.engine import FINAL_SEEDS, Outcome
 from ssmr_ident.diagnose.turning.search import Explained
+from ssmr_ident.diagnose.turning.spectral_distance import against_simulation, repeatability_db
 from ssmr_ident.diagnose.turning.verdict import GAIN, MOST, Decision
-from ssmr_ident.diagnose.turning.worth import against_simulation, repeatability_db
 
 LEVEL = 0.95  # of the one-sided test by which the best has to lie nearer
 FEWEST = 4  # recordings for such a test

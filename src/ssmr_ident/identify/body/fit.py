@@ -159,7 +159,7 @@ def distrust_of(residual: Array) -> Array:
     -----
     A residual with structure is no white noise of the sensor's level: taken for it, a thousand samples of one and
     the same error would outvote everything known beforehand. Its variance in the first quarter v and the number of
-    samples that go together, τ = 1 + 2Σρ², say how much it is worth: n/(vτ) instead of n. Channels that pass for
+    samples that go together, τ = 1 + 2Σρ², say for how many it counts: n/(vτ) instead of n. Channels that pass for
     white keep 1.
     """
     early = residual[: max(len(residual) // 4, 16)]

@@ -1,4 +1,4 @@
-"""What a fitted decay is worth: modes with uncertainties, and a report that prints."""
+"""A fitted decay: modes with uncertainties, and a report that prints."""
 
 from __future__ import annotations
 

@@ -96,7 +96,7 @@ def evidence(records: Sequence[Record], noises: Noises, fits: dict[int, PoleFit]
     """Schwarz's criterion of each number of modes, on the whitened residual.
 
     The samples that count are those during which the motion stands above the whitened noise: the quiet tail
-    says nothing about the modes, and coloured samples are worth less than their number.
+    says nothing about the modes, and coloured samples count for less than their number.
     """
     blocks = whitened_blocks(records, noises)
     richest = fits[max(fits)]

@@ -26,7 +26,7 @@ AHEAD = WIDTH
 """Dampings that are simulated together where that costs hardly more than one."""
 
 SLOW = 1e-4
-"""The same per independent sample: where a model leaves structure, its optimum is flat beyond what that is worth."""
+"""The same per independent sample: where a model leaves structure, its optimum is flat beyond what that tells."""
 
 
 LOUD = 2.0

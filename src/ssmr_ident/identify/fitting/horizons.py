@@ -62,7 +62,7 @@ def horizons(trials: Sequence[Trial], time: float) -> list[float]:
     return [*found, np.inf]
 
 
-def led(
+def horizon_fit(
     trials: Sequence[Trial],
     model: Model,
     point: Array,

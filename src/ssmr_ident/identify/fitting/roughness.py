@@ -1,10 +1,10 @@
-"""How far estimates scatter where contacts slide: in the smooth part of a rough cost, as far as its hollows are deep.
+"""How far estimates scatter where contacts slide: in the smooth part of a rough cost, as far as its minima are deep.
 
-Which wheel lets go first gives the cost of pulls hollows along every parameter. A descent ends in one, the curvature
-there is the hollow's own, and says nothing of how far the next one is: of six robots that lack nothing a quarter of
-all parameters lay more than three such deviations from the truth, and 2 % do now. A plane through a cloud of
-simulations as wide as that curvature has it averages hollows out. What the cost of single points lies off that
-plane's is how deep hollows are, and their lowest point is found no nearer than where the smooth part has risen by as
+Which wheel lets go first gives the cost of pulls local minima along every parameter. A descent ends in one, the
+curvature there is that minimum's own, and says nothing of how far the next one is: of six robots that lack nothing a
+quarter of all parameters lay more than three such deviations from the truth, and 2 % do now. A plane through a cloud of
+simulations as wide as that curvature has it averages them out. What the cost of single points lies off that
+plane's is how deep the minima are, and the lowest point is found no nearer than where the smooth part has risen by as
 much.
 """
 

@@ -16,7 +16,7 @@ from scipy.stats import chi2
 
 from ssmr_ident.core.shown import Shown
 from ssmr_ident.identify.body.output_error import System
-from ssmr_ident.identify.posterior.flatness import flat_directions
+from ssmr_ident.identify.posterior.identifiability import flat_directions
 from ssmr_ident.identify.posterior.objective import Objective, Observation, Samples, Unknown
 
 Array = np.ndarray

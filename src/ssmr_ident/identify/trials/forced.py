@@ -30,7 +30,7 @@ INPUTS = ("force", "torque")
 LOWEST_RATE_HZ, RATE_PER_FREQUENCY = 250.0, 12.0
 """Block averages keep at least this rate, and this many blocks in a period of the rig."""
 
-LOOSE_RATE_HZ = 50.0
+UNHELD_RATE_HZ = 50.0
 """Rate at which the path of a mass without a spring is compared: slow enough that its encoder's steps average out."""
 
 OVERSAMPLING = 4
@@ -98,8 +98,8 @@ def forced_trial(measurement: Measurement, parameters: ParameterSet) -> Trial:
         # the force comes through a sensor and a converter of the same kind: what both delay alike cancels
         bandwidth = math.inf
     natural = math.sqrt(max(builder.nominal.stiffness, 0.0) / builder.nominal.mass) / (2.0 * math.pi)
-    loose = builder.nominal.stiffness == 0.0 and COLUMN[outputs[0]] == 0
-    needed = LOOSE_RATE_HZ if loose else max(LOWEST_RATE_HZ, RATE_PER_FREQUENCY * (1.0 + FREQUENCY_REACH) * natural)
+    unheld = builder.nominal.stiffness == 0.0 and COLUMN[outputs[0]] == 0
+    needed = UNHELD_RATE_HZ if unheld else max(LOWEST_RATE_HZ, RATE_PER_FREQUENCY * (1.0 + FREQUENCY_REACH) * natural)
     block = max(1, int(rate / needed))
     slow = math.isfinite(bandwidth)
     columns = [COLUMN[name] for name in outputs]
@@ -156,10 +156,10 @@ def forced_trial(measurement: Measurement, parameters: ParameterSet) -> Trial:
             even.start + (np.arange(count) + 0.5 * (block - 1) / block) * block / rate,
             target,
             tuple(
-                _noise(target[:, c], loose and COLUMN[name] == 0, rounding(measured[:, c]) / math.sqrt(block))
+                _noise(target[:, c], unheld and COLUMN[name] == 0, rounding(measured[:, c]) / math.sqrt(block))
                 for c, name in enumerate(outputs)
             ),
-            np.vander(np.linspace(-1.0, 1.0, count), 1 if loose else 2, increasing=True),
+            np.vander(np.linspace(-1.0, 1.0, count), 1 if unheld else 2, increasing=True),
             run,
             begin,
             nuisances,
@@ -182,10 +182,10 @@ def forced_trial(measurement: Measurement, parameters: ParameterSet) -> Trial:
     return assembled(whole, FINE)
 
 
-def _noise(samples: Array, loose: bool, least: float) -> AutoregressiveNoise:
+def _noise(samples: Array, unheld: bool, least: float) -> AutoregressiveNoise:
     """White, or where nothing holds the mass white in its second difference: a small error of force carries a free mass
     away for good, so its path is compared by its curvature."""
-    bend = np.array([1.0, -2.0, 1.0]) if loose else np.ones(1)
+    bend = np.array([1.0, -2.0, 1.0]) if unheld else np.ones(1)
     least *= float(np.linalg.norm(bend))
     return white_noise(samples, least, bend)
 

@@ -89,8 +89,8 @@ def _parameters(fit: SessionFit) -> Section:
             row.append(Number(interval(low, high), low))
         before = Number(NONE, math.nan) if v.before is None else Number(measured(v.before, v.before_std), v.before)
         rows.append((*row, before, unit(v.unit) or NONE, v.source or NONE))
-    header = ("parameter", "found ± std", "95 % interval", "known before ± std", "unit", "told by")
-    caption = "Everything that was fitted. Told by: whether the data or the earlier knowledge decides the value."
+    header = ("parameter", "found ± std", "95 % interval", "known before ± std", "unit", "informed by")
+    caption = "Everything that was fitted. Informed by: whether the data or the earlier knowledge decides the value."
     return Section("Parameters", tables=(Table(caption, header, tuple(rows)),) if rows else ())
 
 

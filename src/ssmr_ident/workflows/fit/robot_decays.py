@@ -18,7 +18,7 @@ from ssmr_ident.workflows.fit.robot_forces import Gathered
 AXES = ("ax", "ay", "az")
 
 NAMED = 1.2
-"""Variance over the noise's, or widening of a standard deviation, below which structure is not worth a sentence."""
+"""Variance over the noise's, or widening of a standard deviation, below which structure is not told."""
 
 CLIPPED = 3
 """Samples at the end of the sensor's range from which a channel is left out."""

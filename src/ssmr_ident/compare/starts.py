@@ -11,7 +11,7 @@ import numpy as np
 from ssmr_ident.core.threads import side_by_side
 from ssmr_ident.identify.fitting.coordinates import Model
 from ssmr_ident.identify.fitting.descent import LOUD, descend
-from ssmr_ident.identify.fitting.horizons import STEPS, horizons, led, radian
+from ssmr_ident.identify.fitting.horizons import STEPS, horizon_fit, horizons, radian
 from ssmr_ident.identify.fitting.joint import JointFit, evaluate, together
 from ssmr_ident.identify.trials.trial import Array, Trial
 
@@ -19,28 +19,28 @@ SHARES = (1.0, 0.6, 0.35)
 """Of the start that small motions suggest: where tires harden, the same acceleration takes a smaller deflection."""
 
 LAST, TRIED = 10, 2
-"""Gauss-Newton steps on a horizon, and those after which a road that is far behind is left."""
+"""Gauss-Newton steps on a horizon, and those after which a start that is far behind is given up."""
 
 REACH = 3.0
-"""Times what was found leaves up to which a road may still overtake it. Of 1,505 roads (6 sessions of decays) 75 ended
-more than 3 ahead in cost; 13 of them were farther behind after two steps, two of which ended 331 and 870 ahead."""
+"""Times what was found leaves up to which a start may still overtake it. Of 1,505 starts (6 sessions of decays) 75
+ended more than 3 ahead in cost; 13 of them were farther behind after two steps, two of which ended 331 and 870 ahead."""
 
-Road = tuple[Array, Sequence[float]]
-"""Nuisances to begin with, and the horizons through which they are led."""
+Start = tuple[Array, Sequence[float]]
+"""Nuisances to begin with, and the growing horizons that they are fitted over."""
 
 
 def alone(trial: Trial, model: Model, point: Array, start: Array, steps: int = LAST) -> JointFit:
     """One recording's nuisances at their best, from a start."""
-    return led([trial], model, point, [np.inf], steps, [start], shared=False)
+    return horizon_fit([trial], model, point, [np.inf], steps, [start], shared=False)
 
 
-def by_other_roads(
+def by_other_starts(
     found: JointFit, kin: JointFit | None = None, only: Sequence[int] | None = None, known: bool = False
 ) -> JointFit:
-    """Recordings that are left with more than noise, each by its best road.
+    """Recordings that are left with more than noise, each from its best start.
 
-    The roads: from the start that fits without the effects, from recordings of the same kind, in proportion, through
-    growing horizons, and from a robot that is let go at rest.
+    The starts: what fits without the effects, recordings of the same kind, in proportion, what growing
+    horizons lead to, and a robot that is let go at rest.
 
     Parameters
     ----------
@@ -60,14 +60,14 @@ def by_other_roads(
     def small(k: int) -> Array:
         return trials[k].begin(values, effects)
 
-    def bare(k: int) -> Road:
+    def without_effects(k: int) -> Start:
         start = small(k)
         if not known:
             plain = replace(model, held={}, free=())
             start = alone(trials[k], plain, point[: len(model.physics)], start).nuisances[0]
         return start, [np.inf]
 
-    def grown(k: int) -> Road:
+    def over_horizons(k: int) -> Start:
         first, *rest = horizons([trials[k]], time)
         if not rest:
             return small(k), [np.inf]
@@ -76,21 +76,21 @@ def by_other_roads(
         fits = [alone(short, model, point, share * whole, STEPS) for share in SHARES]
         return min(fits, key=lambda f: f.rss if np.isfinite(f.rss) else np.inf).nuisances[0], rest
 
-    def let_go(k: int) -> Road:
+    def let_go(k: int) -> Start:
         # where damping grows with deflection the first push hardly swings, and no small motion looks like it; what is
         # let go at rest has its deflection in the first samples, before any damping acts
         begun = alone(_let_go_at_rest(trials[k]), model, point, np.zeros_like(small(k)))
         return begun.nuisances[0], horizons([trials[k]], time)
 
-    def alike(sign: float) -> Callable[[int], Road]:
+    def like_others(sign: float) -> Callable[[int], Start]:
         return lambda k: (_in_proportion(trials[k], small(k), found if kin is None else kin, sign), [np.inf])
 
-    for road in (bare, alike(1.0), alike(-1.0), grown, let_go):
+    for start in (without_effects, like_others(1.0), like_others(-1.0), over_horizons, let_go):
         left = [k for k in _left(found, kin) if only is None or k in only]
         if not left:
             return found
         each = [found.only(k) for k in range(len(trials))]
-        others = side_by_side(partial(_by, road), [(each[k], k) for k in left])
+        others = side_by_side(partial(_from, start), [(each[k], k) for k in left])
         for k, other in zip(left, others, strict=True):
             each[k] = other
         found = together(each)
@@ -108,9 +108,9 @@ def _left(found: JointFit, kin: JointFit | None) -> list[int]:
     return left
 
 
-def _by(road: Callable[[int], Road], recording: tuple[JointFit, int]) -> JointFit:
+def _from(start: Callable[[int], Start], recording: tuple[JointFit, int]) -> JointFit:
     found, index = recording
-    return _along(found, *road(index))
+    return _along(found, *start(index))
 
 
 def _along(found: JointFit, start: Array, lengths: Sequence[float]) -> JointFit:

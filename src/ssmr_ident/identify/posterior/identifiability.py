@@ -32,7 +32,7 @@ def flat_directions(names: Sequence[str], information: Array) -> tuple[Direction
 
     Notes
     -----
-    Only combinations of parameters that the data do inform in some other combination are worth naming: a
+    Only combinations of parameters that the data do inform in some other combination are named: a
     parameter that no observation depends on is simply not informed.
     """
     touched = [k for k in range(len(names)) if information[k, k] > 1.0]

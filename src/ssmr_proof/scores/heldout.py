@@ -1,4 +1,4 @@
-"""What a diagnosis is worth on recordings that it never saw, and how well the baseline had hidden the effect."""
+"""How well a diagnosis predicts recordings that it never saw, and how well the baseline had hidden the effect."""
 
 from __future__ import annotations
 

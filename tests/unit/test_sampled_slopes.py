@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from ssmr_ident.experiments import PULL
-from ssmr_ident.identify.fitting.clouds import averaged, settled
 from ssmr_ident.identify.fitting.coordinates import Model
 from ssmr_ident.identify.fitting.descent import descend
 from ssmr_ident.identify.fitting.joint import JointFit, evaluate
+from ssmr_ident.identify.fitting.sampled_slopes import averaged, settled
 from ssmr_ident.identify.posterior.objective import Unknown
 from ssmr_ident.identify.trials import Trial
 from ssmr_ident.identify.trials.trial import Course, Runner

@@ -1,4 +1,4 @@
-"""Slopes of what chatters: a plane through the residuals of many points about a fit, in place of differences.
+"""Slopes of a rough cost: a plane through the residuals of many points about a fit, in place of differences.
 
 Which wheel lets go first makes kinks along every parameter alone, and at a kink a difference tells one side. A cloud of
 points changes all parameters at once; the plane through what they leave averages kinks and chatter out.

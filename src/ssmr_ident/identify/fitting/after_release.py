@@ -1,4 +1,4 @@
-"""Pulls led on from the moment at which the robot lets go.
+"""Pulls fitted over growing parts of a slide, from the moment at which the robot lets go.
 
 A robot that slides swings on its tires, and constant friction does not damp that. Over a long slide a swing that is a
 period off fits better than one a quarter off, as in a decay: the cost has a valley for every period, and kinks beside.
@@ -32,8 +32,8 @@ def first_part(trial: Trial, share: float) -> Trial:
     return replace(trial, counts=inside if trial.counts is None else trial.counts & inside)
 
 
-def led_through_slides(fit: JointFit) -> JointFit:
-    """A fit led through longer and longer parts of its slides by plain squares, and on with all.
+def fit_past_release(fit: JointFit) -> JointFit:
+    """A fit over longer and longer parts of its slides by plain squares, then over all.
 
     Parameters
     ----------
