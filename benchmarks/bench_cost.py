@@ -18,8 +18,8 @@ import numpy as np
 from bank import draw
 from bank.truth import BankSession
 
-from ssmr_ident.experiments.campaign import Campaign
 from ssmr_ident.core.threads import processors
+from ssmr_ident.experiments.campaign import Campaign
 from ssmr_ident.workflows.diagnose import diagnose
 
 MULTIPLES = (1, 2, 4, 8)

@@ -41,7 +41,6 @@ from ssmr_ident.diagnose.turning.search import SPREAD_FACTOR
 from ssmr_ident.diagnose.turning.spectra import look
 from ssmr_ident.diagnose.turning.spectral_distance import channel_logs, distance_db
 from ssmr_ident.diagnose.turning.verdict import findings_of
-from ssmr_ident.diagnose.turning.worth import channel_logs, distance_db
 from ssmr_ident.experiments.campaign import Campaign, Measurement
 from ssmr_ident.experiments.quantities import to_quantities
 from ssmr_ident.experiments.swivel import swivel

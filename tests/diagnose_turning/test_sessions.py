@@ -16,10 +16,9 @@ from ssmr_ident.core.recording import Channel, Provenance, Recording
 from ssmr_ident.diagnose.turning import diagnose_turning
 from ssmr_ident.diagnose.turning.bench import STEP, Bench, measure
 from ssmr_ident.diagnose.turning.conditions import conditions_of, held_back
-from ssmr_ident.diagnose.turning.worth import channel_logs, distance_db
+from ssmr_ident.diagnose.turning.spectral_distance import channel_logs, distance_db
 from ssmr_ident.experiments.campaign import Campaign, Measurement, load
 from ssmr_ident.experiments.swivel import swivel
-from ssmr_ident.diagnose.turning.spectral_distance import channel_logs, distance_db
 from ssmr_ident.physics.motor import wheel_rates
 from ssmr_ident.physics.robot import robot_from_parameters
 from ssmr_ident.session import Entry, Session, read_parameters

@@ -23,7 +23,8 @@ LAST, TRIED = 10, 2
 
 REACH = 3.0
 """Times what was found leaves up to which a start may still overtake it. Of 1,505 starts (6 sessions of decays) 75
-ended more than 3 ahead in cost; 13 of them were farther behind after two steps, two of which ended 331 and 870 ahead."""
+ended more than 3 ahead in cost; 13 of them were farther behind after two steps, two of which ended 331 and 870 ahead.
+"""
 
 Start = tuple[Array, Sequence[float]]
 """Nuisances to begin with, and the growing horizons that they are fitted over."""
