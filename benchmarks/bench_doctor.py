@@ -19,10 +19,12 @@ import time
 from pathlib import Path
 
 from doctor.engines import ENGINES
-from doctor.frozen import FAMILIES, Case, cases
+from doctor.frozen import FAMILIES, Case
 from doctor.session_process import answered
 from doctor.side_by_side import differences
+from doctor.sources import absent, cases
 from doctor.tables import answers, said, table
+from doctor.unseen import with_unseen
 from scoring import Row, append, engine, read
 
 RESULTS = Path(__file__).parent / "results" / "doctor"
@@ -37,6 +39,7 @@ def main() -> None:
     parser.add_argument("--limit", type=float, default=300.0, help="processor seconds that a session may take")
     parser.add_argument("--seconds", type=float, default=float("inf"), help="begin no session after so long")
     parser.add_argument("--show", action="store_true", help="run nothing, print what is stored")
+    parser.add_argument("--visible", action="store_true", help="work out whether what was missed shows at all")
     parser.add_argument("--list", action="store_true", help="with every session's own line")
     parser.add_argument("--between", nargs=2, metavar="STORED", help="two result files by name, side by side")
     asked = parser.parse_args()
@@ -46,12 +49,19 @@ def main() -> None:
     if asked.between:
         between(*asked.between, families)
         return
+    for folder in absent():
+        print(f"{folder} is not there: its sessions are passed over")
     wanted = list(cases(families, asked.count, asked.start))
     file = RESULTS / f"{engine()}-{asked.engine.replace(':', '.')}.jsonl"
     if not asked.show:
         run(wanted, asked.engine, file, asked.limit, asked.seconds)
     found = {row["key"]: row for row in read(file)}
     rows = [found[case.key] for case in wanted if case.key in found]
+    if asked.visible:
+        from doctor.visible import look
+
+        look(rows)
+    rows = with_unseen(rows)
     if asked.list:
         print("\n".join(line_of(row) for row in rows))
     print(f"{file.stem}, {len(rows)} of {len(wanted)} sessions\n\n{table(rows)}\n\n{answers(rows)}")
@@ -76,7 +86,8 @@ def line_of(row: Row) -> str:
 
 def between(first: str, second: str, families: tuple[str, ...]) -> None:
     """Tables of the sessions that both have, and the differences."""
-    stored = [[r for r in read(RESULTS / f"{name}.jsonl") if r["family"] in families] for name in (first, second)]
+    stored = [with_unseen(read(RESULTS / f"{name}.jsonl")) for name in (first, second)]
+    stored = [[row for row in own if row["family"] in families] for own in stored]
     both = {row["key"] for row in stored[0]} & {row["key"] for row in stored[1]}
     rows = [[row for row in own if row["key"] in both] for own in stored]
     for name, own in zip((first, second), rows, strict=True):

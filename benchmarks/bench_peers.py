@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 from bank import draw
-from score_practice import SHARED
+from doctor.folders import SHARED
 from scoring import append, read, share
 
 from ssmr_ident.diagnose.diagnosis import NOTHING

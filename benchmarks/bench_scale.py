@@ -16,13 +16,12 @@ import numpy as np
 from bank import KINDS, SHARES
 from bank.decays import draw_decays
 from bank.scaled import AS_IT_IS, Scale
-from scoring import Row, append, engine, read, row_of, share
+from scoring import GOOD, Row, append, engine, read, row_of, share
 
 from ssmr_ident.diagnose.diagnosis import Diagnosis
 from ssmr_ident.workflows.diagnose import diagnose
 
 SCALES = {"small": Scale(0.064, 0.4), "as it is": AS_IT_IS, "large": Scale(15.6, 2.5)}
-RIGHT = ("right", "tie", "clean")
 
 
 def main() -> None:
@@ -77,13 +76,13 @@ def summary(rows: list[Row]) -> str:
     lines = []
     for name in SCALES:
         own = [row for row in rows if row["scale"] == name]
-        right = sum(row["outcome"] in RIGHT for row in own)
+        right = sum(row["outcome"] in GOOD for row in own)
         pairs = [(row["seed"], name) for row in own if (row["seed"], "as it is") in answers]
         same = sum(answers[pair] == answers[pair[0], "as it is"] for pair in pairs)
         outcomes = ", ".join(f"{outcome} {n}" for outcome, n in Counter(row["outcome"] for row in own).most_common())
         seconds = float(np.median([row["seconds"] for row in own])) if own else float("nan")
         lines.append(
-            f"{name:<9} right or clean {share(right, len(own))}; as the original {same} of {len(pairs)}; "
+            f"{name:<9} right or tie {share(right, len(own))}; as the original {same} of {len(pairs)}; "
             f"{seconds:.0f} s; {outcomes}"
         )
     return "\n".join(lines)

@@ -1,10 +1,6 @@
-r"""Write docs/theory/diagnosis_scores.md from the result files of the benchmarks.
+"""Write docs/theory/diagnosis_scores.md from the result files of the benchmarks.
 
-python benchmarks/score_practice.py --out out/practice.jsonl
-python benchmarks/score_practice.py --real --out out/real.jsonl
-python benchmarks/bench_diagnosis.py --first 5300 --count 100 --out benchmarks/results/diagnosis.jsonl
-python benchmarks/bench_nulls.py --first 193000 --count 1000 --out benchmarks/results/nulls.jsonl --families \
-    decays,forced,rig_decay,bench,decays,forced,rig_decay,pulls,decays,forced,rig_decay,block
+make bench-doctor
 python benchmarks/bench_power.py --family forced --sessions 8 --out benchmarks/results/power.jsonl
 python benchmarks/bench_peers.py --out out/peers.jsonl
 (python benchmarks/bench_cost.py --whole; python benchmarks/bench_cost.py) > out/cost.txt
@@ -19,11 +15,13 @@ import io
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-import bench_nulls
 import bench_peers
 import bench_power
 import bench_scale
-from scoring import Row, read, summary, table
+from bench_doctor import RESULTS
+from doctor.tables import answers, table
+from doctor.unseen import with_unseen
+from scoring import Row, read
 
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "theory" / "diagnosis_scores.md"
 
@@ -31,8 +29,7 @@ HEAD = """# What the diagnosis is worth
 
 Written by `python benchmarks/write_scores.py` from the results of the benchmarks named below; nothing here is typed by
 hand but the words. An engine's commit stands with each table; a + means that files were changed beside it. Rows of
-counts that take hours, and go on where they stopped, are in `benchmarks/results/`; a session that led to a change
-of the engine stays in them as it was answered before.
+counts that take hours, and go on where they stopped, are in `benchmarks/results/`.
 
 ## How it is judged
 **Sessions.** `benchmarks/bank` draws random sessions with known answers, each from its seed: nine decays of a robot and
@@ -53,17 +50,14 @@ formulas), they agree with the simulator to 0.03 % (`tests/unit/test_session_ban
 other formulas (the robot's pull has one plant only), rolling resistance in pulls (along the robot the fixture of a
 spinning pull holds what it would do), and nulls of the baseline `decoupled`, which no such robot has.
 
-**Outcomes.** *right*: verdict and every name; *tie*: every true name is named or in the reported tie of a name, three
-at most; *clean*: nothing missing, nothing named; *unseen*: missed where the baseline explains even recordings it never
+**Outcomes.** *right*: verdict and every name, or nothing where nothing is missing; *tie*: every true name is named or
+in the reported tie of a name, three at most; *unseen*: missed where the baseline explains even recordings it never
 saw to within 2 % of what the true signals leave, or missed, or named in part, where the truth itself, refitted from the
 true values, has no more log evidence over the truth without what was not named than the 6.9 that an effect needs, so
-that nobody could gain by knowing (`visible.py`). Wheels that lift slide axis by axis in the bank and
+that nobody could gain by knowing (`doctor/visible.py`). Wheels that lift slide axis by axis in the bank and
 along both axes together in fits of decays, so for them this is judged under a law that they were not made with;
-*part* and *extra*: some of the right names, or right names and more;
-the rest speaks for itself. Rows of engines bddf8ee and b347682 (pulls and blocks) began small effects in pulls at
-three sizes, which was taken back. From b4ee2cc on contacts of one friction coefficient slide by Coulomb's law, in the
-bank as in the engine ([decision 2](../decisions/0002-relay-lands-on-its-limit.md)): pulls of earlier engines, and
-decays in which wheels lift, are other recordings than the same seeds make now. The noise floor is that of the true
+*part*: some of the right names; *wrong*: a name that does not belong, beside right ones too; *failed*: a crash, or no
+answer within 300 s of processor; the rest speaks for itself. The noise floor is that of the true
 signals, not the one that the diagnosis states.
 """
 
@@ -99,25 +93,7 @@ def page(folder: Path) -> str:
         else:
             parts.append(before[title])
 
-    section(
-        "Practice sessions",
-        "practice.jsonl",
-        "Held-out errors are those of `compare` on the further recordings that each session has in a folder of its "
-        "own, which the diagnosis never sees (`score_practice.py`). Seconds were measured while other runs shared the "
-        "processors; times that are promised stand under Cost. The error of 14, a pull with stick-slip, is worse after "
-        "than before: with the true robot and the true law 18.1 % are left there, against 17.8 of a refitted "
-        "baseline that stays between the teeth, which come at other times in every run.\n",
-        lambda rows: table(rows) + "\n\n" + block(summary(rows)),
-    )
-    section("Real recordings", "real.jsonl", "Each with what it must show.\n", _real)
-    section(
-        "Fresh random sessions",
-        "diagnosis.jsonl",
-        "`bench_diagnosis.py`; the last hundred seeds that were all run, by family, then by what was left out, and the "
-        "other hundreds, as far as they were run, as the engine of their day answered.\n",
-        _fresh,
-        dated=False,
-    )
+    parts.append(f"## The frozen set\n{FROZEN}\n{_frozen()}")
     section(
         "Robots of other sizes",
         "scale.jsonl",
@@ -125,12 +101,6 @@ def page(folder: Path) -> str:
         "the length, and of one of 470 kg and 2.5 times the length, which read the same over the square root of that "
         "time; noise and mains are the sensor's, so what is near the noise may differ.\n",
         lambda rows: block(bench_scale.summary(rows)),
-    )
-    section(
-        "False alarms",
-        "nulls.jsonl",
-        "`bench_nulls.py`: three in four sessions are short (4 to 6 recordings of 1.5 to 2 s), the rest full.\n",
-        lambda rows: block(bench_nulls.report(rows)),
     )
     section(
         "How large an effect must be",
@@ -166,23 +136,25 @@ def _sections() -> dict[str, str]:
     return {text.split("\n", 1)[0]: f"## {text.rstrip()}\n" for text in found}
 
 
-COST = """`bench_cost.py`: seconds over the number of recordings, and of sessions for which a time is promised
-(`--whole`).
+FROZEN = """`make bench-doctor`: drawn sessions of seeds that no tuning has seen, and the sessions and recordings that
+lie beside the checkout ([why](../decisions/0026-a-frozen-set-for-every-engine.md)). Of practice sessions what is held
+out is the further recordings that the diagnosis never sees, of the others what it keeps back. A later engine is laid
+beside this one by `bench_doctor.py --between`.
 """
 
 
-def _fresh(rows: Sequence[Row]) -> str:
-    """The last hundred seeds that were all run, which nobody had looked at, and in a line each the others."""
-    hundreds: dict[int, list[Row]] = {}
-    for row in rows:
-        hundreds.setdefault(row["seed"] // 100, []).append(row)
-    whole = [hundred for hundred, own in hundreds.items() if len(own) == 100]
-    last = hundreds.pop(max(whole or hundreds))
-    text = versions(last) + block(summary(last)) + "\n" + block(summary(last, "kind").split("\n\n")[0])
-    for hundred, own in sorted(hundreds.items()):
-        told = summary(own).splitlines()
-        text += f"\nSeeds {100 * hundred} to {100 * hundred + 99}. {versions(own)}" + block("\n".join(told[:4]))
-    return text
+def _frozen() -> str:
+    """A table for every engine that has been asked."""
+    parts = []
+    for file in sorted(RESULTS.glob("*-*.jsonl")):
+        rows = with_unseen(read(file))
+        parts.append(f"Engine {file.stem}, {len(rows)} sessions.\n\n{table(rows)}\n\n{block(answers(rows))}")
+    return "\n".join(parts) or "Not measured yet.\n"
+
+
+COST = """`bench_cost.py`: seconds over the number of recordings, and of sessions for which a time is promised
+(`--whole`).
+"""
 
 
 PEERS = """`bench_peers.py`, on driven rigs: those of the practice sessions and random ones with plain sizes (0.7),
@@ -194,15 +166,6 @@ a sliding joint and its claims are the warnings of its own report. The first can
 or mains make its residual coloured as well; the last warns only of parameters at their bounds. *diagnosis* is
 `ident diagnose` on the same sessions.
 """
-
-
-def _real(rows: Sequence[Row]) -> str:
-    lines = ["| recording | said | holds | s |", "| --- | --- | --- | --- |"]
-    for row in rows:
-        remarks = "<br>".join(row.get("remarks", [row["outcome"]]))
-        lines.append(f"| {row['name']} | {', '.join(row.get('named', [])) or row.get('verdict', '–')} | {remarks} "
-                     f"| {row['seconds']:.1f} |")  # fmt: skip
-    return "\n".join(lines) + "\n"
 
 
 def main() -> None:

@@ -1,17 +1,16 @@
-"""Which sessions the frozen set has: seeds of what is drawn, folders of what lies beside the checkout."""
+"""Which sessions the frozen set draws: families, kinds and seeds, written down once."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator
 from dataclasses import dataclass
 
-FAMILIES = ("rigs", "rig-nulls")
+FAMILIES = ("rigs", "rig-nulls", "decays", "decay-nulls", "pulls", "pull-nulls", "swivels", "swivel-nulls", "open")
+"""Pulls are pulls and drags; nulls have nothing missing; open are recordings of others."""
 
 
 @dataclass(frozen=True)
 class Case:
-    """One session by its name, ``source/what/kind/seed`` or ``source/folder``, which ``opened`` makes or reads."""
+    """One session: its key begins with its source, of ``sources.SOURCES``, and goes on as that needs it."""
 
     family: str
     key: str
@@ -25,7 +24,7 @@ class Stream:
     ----------
     family : str
     drawn : str
-        Of ``bank.FAMILIES``.
+        ``bank`` and a family of ``bank.FAMILIES``, or ``swivels``.
     kind : str
         ``missing`` (the seed says what) or ``none``.
     first : int
@@ -41,30 +40,21 @@ class Stream:
     share: float = 1.0
 
 
+# no seed from 600,000 to 799,999 had been drawn before; each stream has ten thousand of its own
 STREAMS = (
-    # from 600,000 on no seed has been drawn before; each stream has ten thousand of its own
-    Stream("rigs", "forced", "missing", 600_000),
-    Stream("rigs", "rig_decay", "missing", 610_000, 0.5),
-    Stream("rig-nulls", "forced", "none", 700_000),
-    Stream("rig-nulls", "rig_decay", "none", 710_000, 0.5),
+    Stream("rigs", "bank/forced", "missing", 600_000),
+    Stream("rigs", "bank/rig_decay", "missing", 610_000, 0.5),
+    Stream("rig-nulls", "bank/forced", "none", 700_000),
+    Stream("rig-nulls", "bank/rig_decay", "none", 710_000, 0.5),
+    Stream("decays", "bank/decays", "missing", 620_000),
+    Stream("decays", "bank/decoupled", "missing", 630_000, 0.1),
+    Stream("decay-nulls", "bank/decays", "none", 720_000),
+    Stream("pulls", "bank/pulls", "missing", 640_000, 0.3),
+    Stream("pulls", "bank/bench", "missing", 650_000, 0.2),
+    Stream("pulls", "bank/block", "missing", 660_000, 0.2),
+    Stream("pull-nulls", "bank/pulls", "none", 740_000, 0.3),
+    Stream("pull-nulls", "bank/bench", "none", 750_000, 0.2),
+    Stream("pull-nulls", "bank/block", "none", 760_000, 0.2),
+    Stream("swivels", "swivels", "missing", 680_000, 0.2),
+    Stream("swivel-nulls", "swivels", "none", 780_000, 0.2),
 )
-
-
-def cases(families: tuple[str, ...], count: int, start: int = 0) -> Iterator[Case]:
-    """Sessions of some families, family by family.
-
-    Parameters
-    ----------
-    families : tuple of str
-        Of ``FAMILIES``.
-    count : int
-        N: sessions of a stream of share 1.
-    start : int
-        Sessions of each stream that are passed over: others than the frozen ones, for a look with fresh eyes.
-    """
-    for family in families:
-        for stream in STREAMS:
-            if stream.family == family:
-                begin = stream.first + start
-                for seed in range(begin, begin + math.ceil(stream.share * count)):
-                    yield Case(family, f"bank/{stream.drawn}/{stream.kind}/{seed}")

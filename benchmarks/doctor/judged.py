@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import time
-import traceback
 from collections.abc import Callable
 
 import numpy as np
-from scoring import Row, errors, outcome
+from scoring import GOOD, Row, errors, outcome
 
 from doctor.opened import Opened
 from ssmr_ident.diagnose.diagnosis import Diagnosis
@@ -18,18 +17,19 @@ OUTCOMES = ("right", "tie", "part", "wrong", "missed", "false alarm", "undetermi
 def judged(session: Opened, run: Callable[[], Diagnosis]) -> Row:
     """Run an engine and hold its answer against what is right.
 
-    Where several answers are right, the one that the engine came nearest to counts.
+    Where several answers are right, the one that the engine came nearest to counts; where an answer has claims to meet,
+    it is right if it meets them all, and right names that do not are a part.
     """
     begun = time.process_time()
-    try:
-        diagnosis = run()
-    except Exception:  # a session that breaks the engine is a result
-        error = traceback.format_exc(limit=-3)
-        return {"outcome": "failed", "seconds": time.process_time() - begun, "error": error}
+    diagnosis = run()
     seconds = time.process_time() - begun
-    before, after, floor = (session.heldout or kept_back)(session, diagnosis)
+    before, after, floor = session.heldout(diagnosis) if session.heldout else kept_back(session, diagnosis)
+    said = min((outcome(names, diagnosis) for names in session.right), key=OUTCOMES.index)
+    shown = session.claims(diagnosis) if session.claims else ()
+    if shown:
+        said = "right" if all(holds for _, holds in shown) else "part" if said in GOOD else said
     return {
-        "outcome": min((outcome(names, diagnosis) for names in session.right), key=OUTCOMES.index),
+        "outcome": said,
         "seconds": seconds,
         "verdict": diagnosis.verdict,
         "named": [effect.id for effect in diagnosis.effects],
@@ -39,6 +39,7 @@ def judged(session: Opened, run: Callable[[], Diagnosis]) -> Row:
         "after": after,
         "floor": floor,
         "errors": errors(diagnosis, session.effects, session.parameters),
+        "claims": [f"{'yes' if holds else 'no'}: {words}" for words, holds in shown],
     }
 
 

@@ -2,18 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-import numpy as np
-from bank import KINDS, SHARES, draw
-
-from doctor.frozen import Case
 from ssmr_ident.diagnose.diagnosis import Diagnosis
 from ssmr_ident.experiments.campaign import Campaign
-
-FULL = 0.25
-"""Share of drawn nulls that are as long as other sessions; the rest are short, so that there can be many."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,6 +28,8 @@ class Opened:
         What the true signals leave of the metric.
     heldout : callable, optional
         Before, after and the floor on recordings that the engine never saw, where there are some.
+    claims : callable, optional
+        What the answer must show beside the names, in words, and whether it does.
     """
 
     campaign: Campaign
@@ -43,28 +38,5 @@ class Opened:
     effects: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     parameters: Mapping[str, float] = field(default_factory=dict)
     floors: Mapping[str, float] = field(default_factory=dict)
-    heldout: Callable[[Opened, Diagnosis], tuple[float, float, float]] | None = None
-
-
-def opened(case: Case) -> Opened:
-    """Draw or read it."""
-    source, rest = case.key.split("/", 1)
-    return SOURCES[source](rest)
-
-
-def from_bank(rest: str) -> Opened:
-    """``family/kind/seed``; the seed decides what is left out and how much of it."""
-    family, kind, number = rest.split("/")
-    seed = int(number)
-    random = np.random.default_rng([seed, 0])
-    if kind == "none":
-        drawn = draw(family, "none", seed, short=bool(random.random() >= FULL))
-    else:
-        kinds = [kind for kind in KINDS[family] if kind != "none"]
-        odds = np.array([SHARES[kind] for kind in kinds])
-        drawn = draw(family, str(random.choice(kinds, p=odds / odds.sum())), seed)
-    truth = drawn.truth
-    return Opened(drawn.campaign, seed, (truth.ids,), truth.effects, truth.parameters, truth.noise_floor)
-
-
-SOURCES = {"bank": from_bank}
+    heldout: Callable[[Diagnosis], tuple[float, float, float]] | None = None
+    claims: Callable[[Diagnosis], Sequence[tuple[str, bool]]] | None = None

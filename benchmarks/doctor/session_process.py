@@ -6,6 +6,7 @@ import math
 import multiprocessing
 import resource
 import time
+import traceback
 from multiprocessing.connection import Connection
 
 from scoring import Row
@@ -13,7 +14,7 @@ from scoring import Row
 from doctor.engines import ENGINES, engine_named
 from doctor.frozen import Case
 from doctor.judged import judged
-from doctor.opened import opened
+from doctor.sources import opened
 
 # children are forked from a process that has imported what takes long (of the package: a fork server does not find
 # modules beside a script) and has started no thread
@@ -49,6 +50,8 @@ def answered(case: Case, engine: str, limit: float) -> Row:
                 row["error"] = f"no answer within {patience:g} s"
                 break
             row |= receiver.recv()
+            if "error" in row:
+                break
     except EOFError:  # it died without a word
         process.join()
         row["error"] = f"ended with {process.exitcode} (the limit is {limit:g} s of processor)"
@@ -58,11 +61,14 @@ def answered(case: Case, engine: str, limit: float) -> Row:
 
 
 def _answer(sender: Connection, case: Case, engine: str, limit: float) -> None:
-    session, diagnose = opened(case), engine_named(engine)
-    sender.send({"right": [list(names) for names in session.right]})
-    wall, begun = time.perf_counter(), time.process_time()
-    most = math.ceil(begun + limit)
-    resource.setrlimit(resource.RLIMIT_CPU, (most, most))
-    row = judged(session, lambda: diagnose(session.campaign, seed=session.seed))
-    sender.send({**row, "wall": time.perf_counter() - wall})
-    sender.close()
+    begun = time.process_time()
+    try:
+        session, diagnose = opened(case), engine_named(engine)
+        sender.send({"right": [list(names) for names in session.right]})
+        wall, begun = time.perf_counter(), time.process_time()
+        most = math.ceil(begun + limit)
+        resource.setrlimit(resource.RLIMIT_CPU, (most, most))
+        row = judged(session, lambda: diagnose(session.campaign, seed=session.seed))
+        sender.send({**row, "wall": time.perf_counter() - wall})
+    except Exception:  # a session that cannot be read or breaks the engine is a result
+        sender.send({"error": traceback.format_exc(limit=-3), "seconds": time.process_time() - begun})

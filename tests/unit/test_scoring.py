@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
+from doctor.unseen import is_unseen
 from made_diagnoses import hardening
-from scoring import errors, is_unseen, outcome, row_of, share, summary
+from scoring import errors, outcome, row_of, share
 
 from ssmr_ident.core.parameter import Estimate
 from ssmr_ident.diagnose.diagnosis import Diagnosis, NamedEffect
@@ -62,25 +63,26 @@ def test_a_session_that_breaks_the_engine_is_a_result() -> None:
     assert "ZeroDivisionError" in row["error"]
 
 
-def test_the_summary_counts() -> None:
-    floors = {"roll-3.xlsx": 3.0, "pitch-3.xlsx": 3.0}
-    right, _ = row_of("a", ("nonlinear_stiffness",), hardening, floors, family="decays", seed=1)
-    missed, _ = row_of("b", ("stribeck",), lambda: said(NOTHING), floors, family="decays", seed=2)
-    small = {**missed, "name": "c", "before": 3.03}
-    assert right["floor"] == 3.0
-    assert not is_unseen(missed)
-    assert is_unseen(small)
-    assert is_unseen({**missed, "true_evidence": {"stribeck": 3.0}})
-    assert not is_unseen({**missed, "true_evidence": {"stribeck": 300.0}})
-    text = summary([right, missed, small])
-    assert "something missing: right or tie  1/3" in text
-    assert "without what nobody could see  1/2" in text
+def test_a_row_holds_the_floor_of_what_was_kept_back() -> None:
+    row, _ = row_of("a", ("nonlinear_stiffness",), hardening, {"roll-3.xlsx": 3.0, "pitch-3.xlsx": 3.0}, seed=1)
+    assert (row["outcome"], row["floor"], row["seed"]) == ("right", 3.0, 1)
+
+
+def test_a_rate_has_its_interval() -> None:
     assert share(0, 1000).endswith("(0.0 … 0.4)")
 
 
 def test_of_two_the_one_that_was_not_named_must_show() -> None:
-    part = {"outcome": "part", "truth": ["free_play", "viscoelastic_relaxation"], "named": ["free_play"]}
-    assert is_unseen({**part, "true_evidence": {"free_play": 1800.0, "viscoelastic_relaxation": 5.2}})
-    assert not is_unseen({**part, "true_evidence": {"free_play": 1800.0, "viscoelastic_relaxation": 250.0}})
-    assert not is_unseen(part)
-    assert not is_unseen({**part, "outcome": "wrong", "true_evidence": {"viscoelastic_relaxation": 5.2}})
+    part = {"outcome": "part", "right": [["free_play", "viscoelastic_relaxation"]], "named": ["free_play"]}
+    assert is_unseen(part, {"free_play": 1800.0, "viscoelastic_relaxation": 5.2})
+    assert not is_unseen(part, {"free_play": 1800.0, "viscoelastic_relaxation": 250.0})
+    assert not is_unseen(part, {})
+    assert not is_unseen({**part, "outcome": "wrong"}, {"viscoelastic_relaxation": 5.2})
+
+
+def test_what_is_missed_shows_unless_nothing_could_be_gained() -> None:
+    missed = {"outcome": "missed", "right": [["stribeck"]], "named": [], "before": 4.0, "floor": 3.0}
+    assert not is_unseen(missed, {})
+    assert is_unseen({**missed, "before": 3.03}, {})
+    assert is_unseen(missed, {"stribeck": 3.0})
+    assert not is_unseen(missed, {"stribeck": 300.0})

@@ -1,20 +1,19 @@
-"""The real recordings, and what the diagnosis of each must show."""
+"""Open recordings of others, and what the answer to each must show."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from pathlib import Path
-from typing import Any
+from collections.abc import Callable, Iterator
 
 import numpy as np
-from scoring import engine, row_of
 
+from doctor.folders import SHARED
+from doctor.frozen import Case
+from doctor.opened import Opened
 from ssmr_ident.compare import predict
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.diagnosis import Diagnosis
 from ssmr_ident.experiments.campaign import Campaign, load
 from ssmr_ident.signals.filters import low_pass
-from ssmr_ident.workflows.diagnose import diagnose, write_diagnosis
 
 Claims = list[tuple[str, bool]]
 
@@ -116,16 +115,14 @@ REAL: dict[str, tuple[tuple[str, ...], Callable[[Campaign, Diagnosis], Claims]]]
 }
 
 
-def judge(folder: Path, write: Path | None) -> dict[str, Any]:
-    """One real session; its ``remarks`` say which demands hold."""
-    truth, claims = REAL[folder.name]
+def recording_cases() -> Iterator[Case]:
+    """Those that lie beside the checkout."""
+    return (Case("open", f"recordings/{name}") for name in REAL if (SHARED / "recordings" / name).is_dir())
+
+
+def from_recordings(key: str) -> Opened:
+    """One recording; its claims are held against the answer."""
+    folder = SHARED / key
+    names, claims = REAL[folder.name]
     campaign = load(folder)
-    row, found = row_of(folder.name, truth, lambda: diagnose(campaign), {}, family="real", engine=engine())
-    if found is not None:
-        held = claims(campaign, found)
-        row["outcome"] = "holds" if all(ok for _, ok in held) else "FAILS"
-        row["remarks"] = [f"{'yes' if ok else 'NO '} {text}" for text, ok in held]
-        row["floor"] = row["floor_said"]
-        if write is not None:
-            write_diagnosis(found, campaign, write / folder.name)
-    return row
+    return Opened(campaign, 0, (names,), claims=lambda diagnosis: claims(campaign, diagnosis))

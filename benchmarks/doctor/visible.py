@@ -1,4 +1,5 @@
-"""Whether a session shows at all what was left out of it: the true effects, refitted from the truth, against fewer."""
+"""How much evidence a session holds of what was left out of it: the true effects, refitted from the truth, against
+fewer. It is the session's own and no engine's, so it is worked out once and kept."""
 
 from __future__ import annotations
 
@@ -6,7 +7,10 @@ from collections.abc import Sequence
 
 import numpy as np
 from bank.truth import BankSession
+from scoring import Row, append
 
+from doctor.sources import drawn_by
+from doctor.unseen import KEPT, UNNAMED, known_evidence
 from ssmr_ident.compare.recorded import follow
 from ssmr_ident.diagnose.baseline import LAST, alike_in, best_baseline, prepared
 from ssmr_ident.diagnose.explain import with_suspect, without
@@ -18,6 +22,14 @@ from ssmr_ident.diagnose.weigh import Explanation, surplus
 from ssmr_ident.identify.fitting.descent import descend
 from ssmr_ident.identify.fitting.joint import JointFit, evaluate
 from ssmr_ident.identify.trials import Trial
+
+
+def look(rows: Sequence[Row]) -> None:
+    """Work out and keep the evidence of sessions of the bank whose effects an engine has missed."""
+    known = known_evidence()
+    for row in rows:
+        if row["outcome"] in UNNAMED and row["key"].startswith("bank/") and row["key"] not in known:
+            append(KEPT, {"key": row["key"], "evidence": true_evidence(drawn_by(row["key"])) or {}})
 
 
 def true_evidence(drawn: BankSession) -> dict[str, float] | None:
