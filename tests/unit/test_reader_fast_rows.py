@@ -9,6 +9,7 @@ import pandas as pd
 import pytest
 
 from ssmr_ident.readers import read_one
+from ssmr_ident.readers.text.dialect import NUMBER, Layout
 from ssmr_ident.readers.text.encoding import Text
 from ssmr_ident.readers.text.fast_rows import count_lines, parse_rows
 from ssmr_ident.readers.text.numbers import Dialect
@@ -17,8 +18,9 @@ from ssmr_ident.readers.text.numeric_run import NumberRun, TextRow, compiled_row
 
 def rows_of(text: str, width: int, delimiter: str = ",", decimal: str = ".") -> tuple[np.ndarray, str]:
     data = text.encode()
-    out = np.empty((width, 1000))
-    count, end = parse_rows(np.frombuffer(data, np.uint8), 0, ord(delimiter), ord(decimal), out)
+    out, kinds = np.empty((width, 1000)), np.zeros(width, dtype=np.int64)
+    none = np.zeros((0, 0, 2), dtype=np.int64)
+    count, end = parse_rows(np.frombuffer(data, np.uint8), 0, ord(delimiter), ord(decimal), kinds, out, none)
     return out[:, :count].T, data[end:].decode()
 
 
@@ -54,7 +56,7 @@ def test_halfway_cases_are_rounded_to_even() -> None:
 
 
 @pytest.mark.parametrize(
-    "row", ["1,x", "1,", "1", "1,NaN", "1,2,3", "1,2 3", "1,0x2", "1,2e", "1,--2", "1,1e400",
+    "row", ["1,x", "1", "1,NaN", "1,2,3", "1,2 3", "1,0x2", "1,2e", "1,--2", "1,1e400",
             "1,1234567890123456789012",            "1,.", "1,-", '1,"2"', "", "   ", "1,14:03:11"],
 )  # fmt: skip
 def test_rows_that_are_handed_over(row: str) -> None:
@@ -64,8 +66,8 @@ def test_rows_that_are_handed_over(row: str) -> None:
 
 
 def test_endings_blanks_and_empty_cells() -> None:
-    rows, rest = rows_of(" 1 , 2 \r\n3,4,,\n,6\n7,8", 2)
-    np.testing.assert_array_equal(rows, [[1, 2], [3, 4], [np.nan, 6], [7, 8]])
+    rows, rest = rows_of(" 1 , 2 \r\n3,4,,\n,6\n7,\n7,8", 2)
+    np.testing.assert_array_equal(rows, [[1, 2], [3, 4], [np.nan, 6], [7, np.nan], [7, 8]])
     assert rest == ""
     rows, rest = rows_of("  1   2\n\t3\t4\n", 2, " ")
     np.testing.assert_array_equal(rows, [[1, 2], [3, 4]])
@@ -101,7 +103,7 @@ def test_agrees_with_pandas(tmp_path: Path) -> None:
 def test_lines_are_counted_through_all_ways() -> None:
     body = "".join(f"{k},{k}\n" for k in range(60_000))
     text = Text(f"a,b\n{body}\nwords\n1,2\n".encode(), "utf-8")
-    items = list(walk(text, Dialect(",")))
+    items = list(walk(text, Layout(Dialect(","))))
     assert isinstance(items[0], TextRow)
     assert isinstance(items[1], NumberRun)
     assert (items[1].lines[0], items[1].lines[-1]) == (2, 60_001)
@@ -113,7 +115,28 @@ def test_lines_are_counted_through_all_ways() -> None:
 def test_compiled_rows_grow() -> None:
     """Rows that get shorter: the guess from the head is too small."""
     text = "1000000.000000,2000000.000000\n" * 3000 + "1,2\n" * 200_000
-    rows, end = compiled_rows(text.encode(), 0, Dialect(","), 2)
+    rows, end, _ = compiled_rows(text.encode(), 0, Dialect(","), (NUMBER, NUMBER))
     assert len(rows) == 203_000
     assert end == len(text)
     assert rows[-1].tolist() == [1, 2]
+
+
+def test_text_and_stamps_are_passed_over(tmp_path: Path) -> None:
+    """The loop and Python's way read the same table of stamps, numbers, words and blanks."""
+    rng = np.random.default_rng(9)
+    rows = [
+        f'2024-03-01 12:{k // 6000:02d}:{k % 6000 / 100:05.2f},{"" if k % 4 else f"{v:.4f}"},"state, {k % 3}",{v:.5f}'
+        for k, v in enumerate(rng.standard_normal(9000))
+    ]
+    recordings = []
+    for count in (9000, 3000):
+        path = tmp_path / f"{count}.csv"
+        path.write_text("\n".join(["timestamp,Load (N),state,a (m/s^2)", *rows[:count]]) + "\n")
+        recordings.append(read_one(path))
+    long, short = recordings
+    assert long.names == ("force", "acceleration")
+    np.testing.assert_allclose(long.time[:100], np.arange(100) / 100, atol=1e-6)
+    np.testing.assert_array_equal(long["acceleration"][:2997], short["acceleration"])
+    np.testing.assert_array_equal(long.series("force").samples[:750], short.series("force").samples)
+    assert long.series("force").rate == pytest.approx(25.0, rel=1e-6)
+    assert any("column(s) of text left out: state" in note.text for note in long.notes)

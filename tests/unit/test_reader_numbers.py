@@ -15,7 +15,8 @@ from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.units import QUANTITY_OF_UNIT, find_unit, to_si
 from ssmr_ident.readers import ReadOptions, read_one
 from ssmr_ident.readers.table.headings import is_units_row, quantity_of, split_header
-from ssmr_ident.readers.text.numbers import clock, dated, evidence_for_decimal, number
+from ssmr_ident.readers.text.numbers import evidence_for_decimal, number
+from ssmr_ident.readers.text.stamps import is_date, is_stamp, seconds_of
 
 
 @pytest.mark.parametrize(
@@ -59,14 +60,34 @@ def test_evidence(token: str, sign: str) -> None:
     assert evidence_for_decimal(token) == sign
 
 
+def seconds(*cells: str) -> list[float]:
+    return seconds_of([cell.encode() for cell in cells]).seconds.tolist()
+
+
 def test_clock_times() -> None:
-    assert clock("14:03:11.5") == 14 * 3600 + 3 * 60 + 11.5
-    assert clock("2:03:11 PM") == clock("14:03:11")
-    assert clock("12:00:00 AM") == 0.0
-    assert clock("25:00:00") is clock("12:61:00") is clock("13:00:00 PM") is None
-    assert dated("2012/05/10 14:03:11") == 1336658591.0
-    assert dated("2012-05-10T14:03:11.25") == 1336658591.25
-    assert dated("2012/02/31 10:00:00") is None
+    assert seconds("14:03:11.5") == [14 * 3600 + 3 * 60 + 11.5]
+    assert seconds("2:03:11 PM") == seconds("14:03:11")
+    assert seconds("12:00:00 AM", "02:03.25") == [0.0, 123.25]
+    assert not any(map(is_stamp, ("25:00:00", "12:61:00", "13:00:00 PM", "12.5", "1" * 20_000 + ":x")))
+
+
+@pytest.mark.parametrize(
+    "cell",
+    ["2012/05/10 14:03:11.25", "2012-05-10T14:03:11.250Z", "10.05.2012 14:03:11,25", "10-May-2012 14:03:11.25",
+     "May 10, 2012 2:03:11.25 PM", "2012-05-10 14:03:11.25 UTC+00:00", "10 mai 2012 14:03:11.25"],
+)  # fmt: skip
+def test_dates(cell: str) -> None:
+    assert is_stamp(cell)
+    assert seconds(cell) == [1336658591.25]
+
+
+def test_the_column_says_which_is_the_day() -> None:
+    assert seconds("02/28/2024", "02/29/2024") == [1709078400.0, 1709164800.0]
+    assert seconds("28/02/2024", "29/02/2024") == [1709078400.0, 1709164800.0]
+    assert np.diff(seconds("01/02/2024 23:59:59", "02/02/2024 00:00:01")) == [2.0]
+    assert np.isnan(seconds("2012/02/31 10:00:00", "2012/02/28 10:00:00")).tolist() == [True, False]
+    assert is_date("1.3.2024")
+    assert not is_date("1.3")
 
 
 # Factors from NIST SP 811 (2008), appendix B.8
@@ -169,7 +190,7 @@ def test_comma_for_everything_is_refused(tmp_path: Path) -> None:
 
 def test_no_unit_is_refused_and_can_be_given(tmp_path: Path) -> None:
     text = "Time,Position,Load\n" + "".join(f"{k / 10},{k},{2 * k}\n" for k in range(12))
-    with pytest.raises(InputError, match=r"unit of Position unknown\. Give --units Position="):
+    with pytest.raises(InputError, match=r"unit of Position, Load unknown .*Give --units Position=…,Load=…"):
         log(tmp_path, text)
     recording = log(tmp_path, text, units={"load": "lbf", "pos": "in"})
     np.testing.assert_allclose(recording["force"], 2 * np.arange(12) * 4.4482216152605, rtol=1e-15)

@@ -38,7 +38,7 @@ def test_originals_ask_for_what_they_do_not_say(shared: Path) -> None:
             read(path)
         recording = read_one(path, ReadOptions(units={"position": "mm", "force": "N"}, time_unit="us"))
         assert recording.names == ("position", "force") or recording.names == ("force", "position")
-        assert recording.sample_rate == pytest.approx(84, abs=3)
+        assert recording.series("force").rate == pytest.approx(84, abs=3)
 
 
 def test_every_practice_log_is_read(shared: Path) -> None:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.shown import Shown, html_table
 
 ENDS = 0.999
@@ -41,6 +42,50 @@ class Provenance:
 
 
 @dataclass(frozen=True)
+class Series(Shown):
+    """Samples on the clock that took them.
+
+    Parameters
+    ----------
+    time : (n,) float [s]
+        Increasing, of the same zero as the recording's.
+    samples : (n,) float
+    """
+
+    time: np.ndarray
+    samples: np.ndarray
+
+    @property
+    def rate(self) -> float:
+        """Samples per second from first and last time [Hz]."""
+        return (len(self.time) - 1) / float(self.time[-1] - self.time[0])
+
+    def at(self, time: np.ndarray) -> np.ndarray:
+        """Samples at other times, (m,) float: as logged where a stamp is met, a cubic spline between even stamps, a
+        straight line between uneven ones; NaN outside and beside a sample that is none.
+
+        Parameters
+        ----------
+        time : (m,) float [s]
+        """
+        from scipy.interpolate import CubicSpline  # half a second that a log with one clock need not wait
+
+        steps = np.diff(self.time)
+        typical = float(np.median(steps))
+        missing = ~np.isfinite(self.samples)
+        even = len(steps) > 3 and not missing.any() and float(np.abs(steps - typical).max()) < 0.1 * typical
+        values = CubicSpline(self.time, self.samples)(time) if even else np.interp(time, self.time, self.samples)
+        near = np.clip(np.searchsorted(self.time, time - 1e-3 * typical), 0, len(self.time) - 1)
+        met = np.abs(self.time[near] - time) <= 1e-3 * typical
+        values = np.where(met, self.samples[near], values)
+        inside = (time >= self.time[0] - 1e-3 * typical) & (time <= self.time[-1] + 1e-3 * typical)
+        return np.where(inside, values, np.nan)
+
+    def __str__(self) -> str:
+        return f"{len(self.time)} samples from {self.time[0]:.6g} to {self.time[-1]:.6g} s, {self.rate:.6g} Hz"
+
+
+@dataclass(frozen=True)
 class Channel:
     """One measured quantity.
 
@@ -58,6 +103,9 @@ class Channel:
     rails : (float, float)
         Values, in ``unit``, at which whatever logged it came to its end: a sample at one of them says only that there
         was as much or more.
+    logged : Series or None
+        What was logged, in ``unit``, where the channel has a clock of its own: then ``samples`` are that at the
+        recording's times.
     """
 
     name: str
@@ -65,6 +113,18 @@ class Channel:
     unit: str
     label: str = ""
     rails: tuple[float, float] = (-np.inf, np.inf)
+    logged: Series | None = None
+
+    def scaled(self, scale: Callable[[np.ndarray], np.ndarray], unit: str) -> Channel:
+        """The channel in another unit.
+
+        Parameters
+        ----------
+        scale : function of (n,) float to (n,) float
+        unit : str
+        """
+        own = None if self.logged is None else Series(self.logged.time, scale(self.logged.samples))
+        return replace(self, samples=scale(self.samples), unit=unit, logged=own)
 
     def shows(self, limit: float) -> tuple[float, float]:
         """Between which values samples say what there was, of a sensor that ends at ± ``limit``, in ``unit``."""
@@ -74,6 +134,9 @@ class Channel:
 @dataclass(frozen=True)
 class Recording(Shown):
     """Channels on one time axis.
+
+    Where channels have clocks of their own, the axis is the one of the channel with most samples, over what all cover;
+    ``series`` has each as it was logged, ``on_clock_of`` puts all on the clock of another.
 
     Parameters
     ----------
@@ -117,6 +180,46 @@ class Recording(Shown):
             if channel.name == name:
                 return channel
         raise KeyError(f"{self.provenance.file} has no channel {name!r}; it has {', '.join(self.names)}")
+
+    def series(self, name: str) -> Series:
+        """A channel as it was logged, on its own clock."""
+        channel = self.channel(name)
+        return channel.logged or Series(self.time, channel.samples)
+
+    @property
+    def clocks_differ(self) -> bool:
+        """True when a channel has a clock of its own."""
+        return any(channel.logged is not None for channel in self.channels)
+
+    def on_clock_of(self, name: str, among: Sequence[str] = ()) -> Recording:
+        """The recording at the times of one channel, over what all cover.
+
+        Parameters
+        ----------
+        name : str
+            Its samples stay as logged; others are taken between theirs (``Series.at``).
+        among : sequence of str
+            Only these channels and ``name`` count for what is covered, and only they are kept; all when empty.
+        """
+        kept = [c for c in self.channels if not among or c.name == name or c.name in among]
+        time = self.series(name).time
+        logged = [self.series(c.name) for c in kept]
+        half = 1e-3 * float(np.median(np.diff(time))) if len(time) > 1 else 0.0
+        begin, end = max(s.time[0] for s in logged) - half, min(s.time[-1] for s in logged) + half
+        time = time[(time >= begin) & (time <= end)]
+        if len(time) < 2:
+            raise InputError(
+                self.provenance.file,
+                f"channels {', '.join(c.name for c in kept)} have no time in common",
+                "Leave one out with --columns, or give logs of one event.",
+            )
+        # a channel on the very clock of the axis needs no second copy of itself
+        same = [len(s.time) == len(time) and np.array_equal(s.time, time) for s in logged]
+        channels = tuple(
+            replace(c, samples=s.samples, logged=None) if m else replace(c, samples=s.at(time), logged=s)
+            for c, s, m in zip(kept, logged, same, strict=True)
+        )
+        return replace(self, time=time, channels=channels)
 
     @property
     def sample_rate(self) -> float:

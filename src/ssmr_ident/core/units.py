@@ -39,7 +39,9 @@ INCH = 0.0254  # m, exact (1959)
 _TABLE: dict[str, tuple[str, float]] = {
     # force
     "N": ("N", 1.0), "kN": ("N", 1e3), "mN": ("N", 1e-3), "MN": ("N", 1e6), "uN": ("N", 1e-6), "daN": ("N", 10.0),
-    "Newton": ("N", 1.0), "Newtons": ("N", 1.0),
+    "Newton": ("N", 1.0), "Newtons": ("N", 1.0), "kips": ("N", 1e3 * POUND_FORCE),
+    "ton-force": ("N", 1e3 * STANDARD_GRAVITY),
+    "tf": ("N", 1e3 * STANDARD_GRAVITY), "dyn": ("N", 1e-5),
     "lb": ("N", POUND_FORCE), "lbf": ("N", POUND_FORCE), "lbs": ("N", POUND_FORCE),
     "klbf": ("N", 1e3 * POUND_FORCE),
     "kip": ("N", 1e3 * POUND_FORCE), "ozf": ("N", POUND_FORCE / 16.0),
@@ -51,6 +53,7 @@ _TABLE: dict[str, tuple[str, float]] = {
     # time
     "s": ("s", 1.0), "sec": ("s", 1.0), "secs": ("s", 1.0), "second": ("s", 1.0), "seconds": ("s", 1.0),
     "ms": ("s", 1e-3), "msec": ("s", 1e-3), "us": ("s", 1e-6), "usec": ("s", 1e-6), "ns": ("s", 1e-9),
+    "nsec": ("s", 1e-9), "sek": ("s", 1.0),
     "min": ("s", 60.0), "minutes": ("s", 60.0), "h": ("s", 3600.0), "hour": ("s", 3600.0), "hours": ("s", 3600.0),
     # speed
     "m/s": ("m/s", 1.0), "mm/s": ("m/s", 1e-3), "cm/s": ("m/s", 1e-2), "um/s": ("m/s", 1e-6),
@@ -59,10 +62,14 @@ _TABLE: dict[str, tuple[str, float]] = {
     # acceleration; "g" alone is the unit of acceleration, a mass or a force in grams is written out
     "m/s^2": ("m/s^2", 1.0), "mm/s^2": ("m/s^2", 1e-3), "cm/s^2": ("m/s^2", 1e-2), "in/s^2": ("m/s^2", INCH),
     "g": ("m/s^2", STANDARD_GRAVITY), "mg": ("m/s^2", STANDARD_GRAVITY / 1e3), "g0": ("m/s^2", STANDARD_GRAVITY),
+    "g_n": ("m/s^2", STANDARD_GRAVITY), "gn": ("m/s^2", STANDARD_GRAVITY), "ug": ("m/s^2", STANDARD_GRAVITY / 1e6),
+    "milli-g": ("m/s^2", STANDARD_GRAVITY / 1e3), "mps2": ("m/s^2", 1.0), "gal": ("m/s^2", 1e-2),
     # angle and its rate
     "rad": ("rad", 1.0), "mrad": ("rad", 1e-3), "deg": ("rad", math.pi / 180), "rad/s": ("rad/s", 1.0),
     "mrad/s": ("rad/s", 1e-3), "deg/s": ("rad/s", math.pi / 180), "dps": ("rad/s", math.pi / 180),
-    "rpm": ("rad/s", 2 * math.pi / 60), "1/min": ("rad/s", 2 * math.pi / 60),
+    "rpm": ("rad/s", 2 * math.pi / 60), "U/min": ("rad/s", 2 * math.pi / 60), "rev": ("rad", 2 * math.pi),
+    "mdps": ("rad/s", 1e-3 * math.pi / 180), "mps": ("m/s", 1.0), "kph": ("m/s", 1 / 3.6),
+    "1/min": ("rad/s", 2 * math.pi / 60),
     "rad/s^2": ("rad/s^2", 1.0), "deg/s^2": ("rad/s^2", math.pi / 180),
     # stress, strain, moment
     "Pa": ("Pa", 1.0), "kPa": ("Pa", 1e3), "MPa": ("Pa", 1e6), "GPa": ("Pa", 1e9), "N/mm^2": ("Pa", 1e6),
@@ -70,8 +77,11 @@ _TABLE: dict[str, tuple[str, float]] = {
     "1": ("1", 1.0), "-": ("1", 1.0), "%": ("1", 1e-2), "mm/mm": ("1", 1.0), "m/m": ("1", 1.0),
     "in/in": ("1", 1.0),
     "ustrain": ("1", 1e-6), "um/m": ("1", 1e-6),
-    "N m": ("N m", 1.0), "Nm": ("N m", 1.0), "N*m": ("N m", 1.0), "kNm": ("N m", 1e3), "Nmm": ("N m", 1e-3),
-    "mNm": ("N m", 1e-3),
+    "N m": ("N m", 1.0), "Nm": ("N m", 1.0), "N*m": ("N m", 1.0), "N-m": ("N m", 1.0), "kNm": ("N m", 1e3),
+    "Nmm": ("N m", 1e-3),
+    "mNm": ("N m", 1e-3), "in-lb": ("N m", INCH * POUND_FORCE), "in lbf": ("N m", INCH * POUND_FORCE),
+    "lbf in": ("N m", INCH * POUND_FORCE), "ft-lb": ("N m", 12 * INCH * POUND_FORCE),
+    "ft lbf": ("N m", 12 * INCH * POUND_FORCE), "lbf ft": ("N m", 12 * INCH * POUND_FORCE),
     # electrical and others that pass through
     "V": ("V", 1.0), "Volt": ("V", 1.0), "Volts": ("V", 1.0), "mV": ("V", 1e-3), "uV": ("V", 1e-6),
     "A": ("A", 1.0), "Amps": ("A", 1.0), "mA": ("A", 1e-3), "Hz": ("Hz", 1.0), "kHz": ("Hz", 1e3),
@@ -94,18 +104,55 @@ QUANTITY_OF_UNIT = {
 }  # fmt: skip
 
 
+LONGEST = 24  # characters; no unit is longer, and nothing longer is looked at
+
+_SIGNS = str.maketrans({"µ": "u", "μ": "u", "·": "*", "⋅": "*", "×": "*", "−": "-", "–": "-", "⁻": "-", "¹": "1",
+                        "²": "2", "³": "3", "⁴": "4", "º": "°", "″": '"', "\u00a0": " ", "\u202f": " "})  # fmt: skip
+_POWER = re.compile(r"(?P<name>[A-Za-z%][A-Za-z0%]*)\^?(?P<power>[+-]?[1-4])?\Z", re.ASCII)
+_WORDS = {"degrees": "deg", "degree": "deg", "Grad": "deg", "grad": "deg", "radians": "rad", "sec": "s", "sek": "s",
+          "Sek": "s", "Sec": "s", "meter": "m", "metre": "m", "meters": "m", "metres": "m"}  # fmt: skip
+
+# What composed units are made of: exponents of (kg, m, s, rad, V, A, K) and the factor to them
+_DIMENSIONS: dict[str, tuple[tuple[int, ...], float]] = {
+    "kg": ((1, 0, 0, 0, 0, 0, 0), 1.0), "m": ((0, 1, 0, 0, 0, 0, 0), 1.0), "s": ((0, 0, 1, 0, 0, 0, 0), 1.0),
+    "rad": ((0, 0, 0, 1, 0, 0, 0), 1.0), "V": ((0, 0, 0, 0, 1, 0, 0), 1.0), "A": ((0, 0, 0, 0, 0, 1, 0), 1.0),
+    "K": ((0, 0, 0, 0, 0, 0, 1), 1.0), "N": ((1, 1, -2, 0, 0, 0, 0), 1.0), "Pa": ((1, -1, -2, 0, 0, 0, 0), 1.0),
+    "W": ((1, 2, -3, 0, 0, 0, 0), 1.0), "Hz": ((0, 0, -1, 0, 0, 0, 0), 1.0), "1": ((0,) * 7, 1.0),
+    "m/s": ((0, 1, -1, 0, 0, 0, 0), 1.0), "m/s^2": ((0, 1, -2, 0, 0, 0, 0), 1.0),
+    "rad/s": ((0, 0, -1, 1, 0, 0, 0), 1.0), "rad/s^2": ((0, 0, -2, 1, 0, 0, 0), 1.0),
+    "N m": ((1, 2, -2, 0, 0, 0, 0), 1.0),
+}  # fmt: skip
+_BY_DIMENSION = {dimension: unit for unit, (dimension, _) in _DIMENSIONS.items()}
+
+
 def _plain(text: str) -> str:
     """The unit in plain letters: µ, ², ·, ** and the signs for degrees and seconds are written many ways."""
-    text = text.strip().strip("\"'").strip()
-    for old, new in (("µ", "u"), ("μ", "u"), ("°/s", "deg/s"), ("²", "^2"), ("**", "^"), ("·", " "), ("⋅", " "),
-                     ("−", "-")):  # fmt: skip
-        text = text.replace(old, new)
-    text = re.sub(r"°\s*([CF])\b", r"deg\1", text).replace("°", "deg")
-    text = re.sub(r"^(deg(?:rees)?|Grad)\b", "deg", text)
-    text = re.sub(r"/\s*(?:sec|s)\s*(?:\^2|2)$|/s/s$", "/s^2", text)
-    text = re.sub(r"/sec$", "/s", text)
-    text = re.sub(r"mm2$", "mm^2", text)
-    return re.sub(r"\s+", " ", text)
+    text = text.strip().strip("\"'").strip().translate(_SIGNS).replace("**", "^")
+    while text[:1] == "(" and text[-1:] == ")":
+        text = text[1:-1].strip()
+    text = re.sub(r"° ?([CF])\b", r"deg\1", text).replace("°", "deg")
+    return " ".join(text.split())
+
+
+def _composed(text: str) -> Conversion | None:
+    """A product of known units with powers: ``m s^-2``, ``in/s2``, ``m/s/s``, ``kg*m/s^2``, ``rad s-1``."""
+    factor, total, sign = 1.0, [0] * 7, 1
+    parts = re.split(r"([*/ ])", text.replace("(", "").replace(")", "").replace(" / ", "/").replace(" * ", "*"))
+    for part in parts:
+        if part in ("*", " ", ""):
+            continue
+        if part == "/":
+            sign = -1  # what stands behind a slash is below it: m/s/s, N/mm^2
+            continue
+        match = _POWER.match(part)
+        known = _EXACT.get(_WORDS.get(match["name"], match["name"])) if match else None
+        if match is None or known is None or known.offset or known.unit not in _DIMENSIONS:
+            return None
+        power = sign * int(match["power"] or 1)
+        factor *= known.factor**power
+        total = [t + power * d for t, d in zip(total, _DIMENSIONS[known.unit][0], strict=True)]
+    unit = _BY_DIMENSION.get(tuple(total))
+    return Conversion(unit, factor) if unit and unit != "1" else None
 
 
 def find_unit(unit: str) -> Conversion | None:
@@ -116,10 +163,13 @@ def find_unit(unit: str) -> Conversion | None:
     >>> find_unit("furlong") is None
     True
     """
+    if len(unit) > LONGEST + 4:
+        return None
     plain = _plain(unit)
-    if plain in _EXACT:
-        return _EXACT[plain]
-    return _FOLDED.get(plain.lower())
+    for name in (plain, _WORDS.get(plain, plain), plain.replace("*", " ")):
+        if name in _EXACT:
+            return _EXACT[name]
+    return _composed(plain) or _FOLDED.get(plain.lower())
 
 
 def to_si(unit: str) -> Conversion:

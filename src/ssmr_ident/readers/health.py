@@ -198,6 +198,8 @@ def warnings_of(channels: tuple[Channel, ...]) -> list[Note]:
             notes.append(
                 Note("warning", f"{name} stands at its largest value for {flat} samples: saturated?", channel.name)
             )
+        if not channel.unit:
+            continue  # a flag or a code may well stand still
         first = channel.samples[0] if len(channel.samples) >= _SATURATED else np.nan
         if first == channel.samples[-1] and bool((channel.samples == first).all()):
             text = "zero throughout" if first == 0 else "one value throughout"

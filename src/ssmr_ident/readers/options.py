@@ -19,13 +19,19 @@ class ReadOptions:
     units : mapping of str to str
         Unit by column: header, canonical name or start of either (``{"load": "lbf"}``). Wins over the file.
     columns : mapping of str to int or str
-        Column by quantity, as number from 0 or as header (``{"time": 0, "force": 2}``); only these are read.
+        Column by quantity, as number from 0 or as header (``{"time": 0, "force": 2}``); only these and the time are
+        read, or all where the time alone is named.
+    channels : mapping of str to str
+        Header by quantity, whatever its words suggest (``{"angular_rate": "velocity"}``); all others are read as well.
     skip : int or "auto"
         Rows of the numeric block of a workbook's sheet to pass over; 10 is the thesis' ``11:end``.
     sheets : mapping of str to int or str
         Worksheet by axis, as number from 1 or as name (``{"x": 4, "y": 3, "z": 2}``).
     time_unit : str or None
         Unit of the time column when the file does not say (``ms``, ``us``).
+    stamps : {"auto", "even", "logged"}
+        Whether stamps that come in bursts or are coarser than the sampling become even by regression (``auto``), all
+        stamps do, or none.
     on_bad : {"error", "nan"}
         What a cell that is no number does inside the data: stop, or become NaN (a row without time is dropped).
     trim : bool
@@ -44,6 +50,8 @@ class ReadOptions:
     columns: Mapping[str, int | str] = field(default_factory=dict)
     skip: int | str = "auto"
     sheets: Mapping[str, int | str] = field(default_factory=dict)
+    channels: Mapping[str, str] = field(default_factory=dict)
+    stamps: str = "auto"
     time_unit: str | None = None
     on_bad: str = "error"
     trim: bool = False
@@ -56,6 +64,8 @@ class ReadOptions:
             raise ValueError(f"fs must be a positive number of Hz. Got {self.fs!r} instead.")
         if self.on_bad not in ("error", "nan"):
             raise ValueError(f"on_bad must be 'error' or 'nan'. Got {self.on_bad!r} instead.")
+        if self.stamps not in ("auto", "even", "logged"):
+            raise ValueError(f"stamps must be 'auto', 'even' or 'logged'. Got {self.stamps!r} instead.")
         if self.skip != "auto" and not (isinstance(self.skip, int) and self.skip >= 0):
             raise ValueError(f"skip must be 'auto' or a number of rows from 0. Got {self.skip!r} instead.")
         if self.decimal not in (None, ".", ","):

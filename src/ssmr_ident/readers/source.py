@@ -9,6 +9,7 @@ from pathlib import Path
 
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.recording import Note, Provenance
+from ssmr_ident.readers.table.vocabulary import Vocabulary, vocabulary_for
 
 MAX_BYTES = 2**30  # a log of 20 s is 1 MB; an hour of three axes at 1 kHz as text is 150 MB
 _BESIDE = 2**20  # bytes from which on a thread pays
@@ -57,6 +58,11 @@ class Source:
     @property
     def name(self) -> str:
         return str(self.path)
+
+    @property
+    def vocabulary(self) -> Vocabulary:
+        """What columns are called: the shipped words and those of a ``vocabulary.yaml`` beside the log."""
+        return vocabulary_for(self.path.parent)
 
     def provenance(self, reader: str, part: str = "") -> Provenance:
         return Provenance(self.name, self.digest.hex(), reader, part)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from ssmr_ident.core.recording import Note, Recording
@@ -10,7 +12,6 @@ from ssmr_ident.readers.lvm.header import MAGIC, Header, Lines, is_segment_start
 from ssmr_ident.readers.lvm.rows import Rows, read_rows
 from ssmr_ident.readers.options import ReadOptions
 from ssmr_ident.readers.source import Source
-from ssmr_ident.readers.table import clocks
 from ssmr_ident.readers.table.assemble import recordings_of
 from ssmr_ident.readers.table.columns import Column, Table, at_lines, facts
 from ssmr_ident.readers.table.headings import split_header
@@ -162,11 +163,11 @@ def _recordings_of_segment(
     for index, label in enumerate(labels):
         values = np.ascontiguousarray(rows.values[:, index])
         if label == "X_Value":
-            columns.append(Column("X_Value", "s", values, quantity="time"))
+            columns.append(Column("X_Value", "s", values, quantity="time", number=index))
             continue
         name, unit = split_header(label)
         unit = units[data.index(index)] or unit
-        columns.append(Column(name, unit, values))
+        columns.append(Column(name, unit, values, number=index))
         if name.lower() == "f" and unit == "g":
             source.warn("channel F bears the unit g, an acceleration's; if it is a force: --units F=N", "Y_Unit_Label")
     columns = _without_empty(source, columns)
@@ -176,6 +177,8 @@ def _recordings_of_segment(
     ]
     part = f"segment {segment}, lines {rows.lines[0]}-{rows.lines[-1]}"
     times = [column for column in columns if column.quantity == "time"]
+    if len(times) < 2 and options.fs is None:
+        _own_steps(source, header, columns, [labels[k] for k in data], decimal, step, bool(times))
     declared = [int(cell) for cell in header.per_channel("Samples", len(data), step) if cell]
     samples = max(declared, default=0)
     pieces = [slice(0, len(rows.values))]
@@ -200,12 +203,12 @@ def _recordings_of_segment(
     }
     recordings = []
     for count, piece in enumerate(pieces, start=1):
-        mine = [Column(c.label, c.unit, c.values[piece], c.clock, c.quantity) for c in columns]
+        mine = [replace(c, values=c.values[piece] if not (c.step and times) else c.values) for c in columns]
         here = rows.lines[piece]
         label = part if len(pieces) == 1 else f"record {count} of {len(pieces)}, lines {here[0]}-{here[-1]}"
         piece_notes = list(notes)
-        if not times:
-            mine.insert(0, _computed_time(source, header, decimal, len(here), options, piece_notes))
+        if not times and options.fs is None:
+            piece_notes += _about_steps(header, mine)
         table = Table(
             mine,
             at_lines(here),
@@ -216,7 +219,6 @@ def _recordings_of_segment(
             axes_in_volts=True,
             split=True,
         )
-        clocks.onto_one_clock(source, table, options)
         recordings += recordings_of(source, "lvm", table, options)
     return recordings
 
@@ -239,7 +241,10 @@ def _rate(source: Source, header: Header, decimal: str) -> float:
 
 
 def _number(source: Source, header: Header, tag: str, decimal: str) -> float:
-    cell = header.first(tag)
+    return _cell(source, header, tag, header.first(tag), decimal)
+
+
+def _cell(source: Source, header: Header, tag: str, cell: str, decimal: str) -> float:
     for sign in (decimal, ".", ","):
         try:
             value = number(cell, sign)
@@ -256,17 +261,44 @@ def _number(source: Source, header: Header, tag: str, decimal: str) -> float:
     )
 
 
-def _computed_time(
-    source: Source, header: Header, decimal: str, count: int, options: ReadOptions, notes: list[Note]
-) -> Column:
-    begin = _number(source, header, "X0", decimal)
-    if options.fs is not None:
-        return Column("X_Value", "s", begin + np.arange(count) / options.fs, quantity="time")
-    step = _number(source, header, "Delta_X", decimal)
-    if step <= 0:
+def _own_steps(
+    source: Source, header: Header, columns: list[Column], names: list[str], decimal: str, step: int, timed: bool
+) -> None:
+    """Give columns the start and the step that the header states for them.
+
+    With an X column that is done only where a channel's step is another one than the X column's: such a channel fills
+    the first rows and is blank below, and the X beside its samples is not theirs.
+    """
+    steps = header.per_channel("Delta_X", len(names), step)
+    starts = header.per_channel("X0", len(names), step)
+    stamps = next((c.values for c in columns if c.quantity == "time"), None)
+    shown = float(np.median(np.diff(stamps))) if stamps is not None and len(stamps) > 1 else 0.0
+    data = [c for c in columns if c.quantity != "time"]
+    order = {c.number: k for k, c in enumerate(c for c in columns if c.quantity != "time")}
+    known = [_cell(source, header, "Delta_X", cell, decimal) for cell in steps]
+    first = next((v for v in known if v > 0), 0.0)
+    if not timed and first <= 0:
         raise source.error("has no X column and no Delta_X above zero", "Give --fs.")
-    notes.append(Note("info", f"time from X0 and Delta_X: {1 / step:.6g} Hz"))
-    note = packets.rounded_step(header.first("Delta_X"), step)
-    if note is not None:
-        notes.append(note)
-    return Column("X_Value", "s", begin + np.arange(count) * step, quantity="time")
+    for column in data:
+        place = [k for k, name in enumerate(names) if split_header(name)[0] == column.label]
+        k = place[0] if place else order[column.number]
+        own = known[k] if known[k] > 0 else first
+        if timed and (own <= 0 or shown <= 0 or abs(own - shown) <= 0.2 * min(own, shown)):
+            continue
+        filled = np.flatnonzero(np.isfinite(column.values))
+        column.step, column.start = own, _cell(source, header, "X0", starts[k], decimal)
+        column.values = column.values[: int(filled[-1]) + 1 if len(filled) else 0]
+        if timed:
+            source.inform(
+                f"channel {column.label}: {len(column.values)} samples with a Delta_X of its own, {own:g} s, in place "
+                f"of the X column's {shown:g} s"
+            )
+
+
+def _about_steps(header: Header, columns: list[Column]) -> list[Note]:
+    rates = sorted({1 / c.step for c in columns if c.step})
+    notes = [Note("info", f"time from X0 and Delta_X: {', '.join(f'{rate:.6g} Hz' for rate in rates)}")]
+    if len(rates) == 1:
+        note = packets.rounded_step(header.first("Delta_X"), 1 / rates[0])
+        notes += [note] if note is not None else []
+    return notes

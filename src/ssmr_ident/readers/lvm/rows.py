@@ -10,7 +10,7 @@ from ssmr_ident.core.recording import Note
 from ssmr_ident.readers.lvm.header import MAGIC, Lines, is_segment_start
 from ssmr_ident.readers.options import ReadOptions
 from ssmr_ident.readers.source import Source
-from ssmr_ident.readers.text.dialect import value_of
+from ssmr_ident.readers.text.dialect import NUMBER, value_of
 from ssmr_ident.readers.text.numbers import Dialect
 from ssmr_ident.readers.text.numeric_run import LONG, compiled_rows
 
@@ -54,7 +54,8 @@ def read_rows(source: Source, lines: Lines, decimal: str, width: int | None, opt
 
     while not lines.ended:
         if width is not None and not len(pending) % 50 and len(lines.text.data) - lines.position > LONG:
-            block, lines.position = compiled_rows(lines.text.data, lines.position, dialect, width)
+            kinds = (NUMBER,) * width
+            block, lines.position, _ = compiled_rows(lines.text.data, lines.position, dialect, kinds)
             if len(block):
                 flush()
                 parts.append(block)

@@ -1,22 +1,27 @@
-"""From columns of a table to a Recording: which one is time, units to SI, names, checks. Shared by all formats."""
+"""From columns of a table to Recordings: names, time, units to SI, parts, clocks of their own, checks. All formats'."""
 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
-from ssmr_ident.core.errors import did_you_mean
-from ssmr_ident.core.recording import Channel, Note, Recording
-from ssmr_ident.core.units import find_unit
+from ssmr_ident.core.recording import Channel, Note, Recording, Series
 from ssmr_ident.readers.health import warnings_of
 from ssmr_ident.readers.options import ReadOptions
 from ssmr_ident.readers.source import Source
 from ssmr_ident.readers.table import time_axis
-from ssmr_ident.readers.table.channels import apply_units, channels_of
+from ssmr_ident.readers.table.channels import channels_of
+from ssmr_ident.readers.table.clock import Clocked, clocked
 from ssmr_ident.readers.table.columns import Column, Table, all_finite
-from ssmr_ident.readers.table.headings import quantity_of
+from ssmr_ident.readers.table.naming import named_columns
+
+_BLANK = 0.9
+"""Choice: share of filled cells below which a column that is filled at even distances has a rate of its own."""
+_RARE = 0.01
+"""Choice: share of rows without a stamp that are left out; with more of them the table is not understood."""
 
 
 def recordings_of(source: Source, reader: str, table: Table, options: ReadOptions) -> list[Recording]:
@@ -27,59 +32,81 @@ def recordings_of(source: Source, reader: str, table: Table, options: ReadOption
     InputError
         Time or a unit is missing, or time cannot be used.
     """
-    columns = _chosen(source, table, options)
-    if not table.units_given:
-        apply_units(source, columns, options)
-    time_column = _time_column(source, columns, options, table)
-    data = [column for column in columns if column is not time_column]
-    if not data:
-        raise source.error("has a time column and no other", "Export the measured channels too.", table.part)
-    notes = list(table.notes)
-    count = len(data[0].values)
-    if time_column is None or options.fs is not None:
-        assert options.fs is not None
-        stamps = np.arange(count) / options.fs
-        notes.append(
-            Note(
-                "info",
-                f"time from --fs {options.fs:g} Hz"
-                + ("" if time_column is None else f"; column {time_column.label!r} not used"),
-            )
-        )
-    else:
-        stamps = _seconds(source, time_column, options, table, notes)
-    rows: np.ndarray | None = None  # None: all; a copy of a million rows costs more than reading them
-    if not all_finite(stamps):
-        kept = np.isfinite(stamps)
-        row = int(np.flatnonzero(~kept)[0])
-        if options.on_bad != "nan":
-            raise source.error("time is missing", "Drop the row with --on-bad nan, or mend it.", table.place(row))
-        notes.append(Note("warning", f"{int((~kept).sum())} row(s) without time dropped", table.place(row)))
-        rows = np.flatnonzero(kept)
-        stamps = stamps[rows]
-    try:
-        axis = time_axis.check(stamps, _place(table, rows, 0), split=table.split)
-    except time_axis.TimeProblem as error:
-        raise source.error(error.problem, error.mend, _place(table, rows, 0)(error.row)) from error
-    notes += axis.notes
-    if axis.rows is not None:
-        rows = axis.rows if rows is None else rows[axis.rows]
-    channels = channels_of(source, data, rows, table, notes)
+    columns = named_columns(source, table, options)
+    groups = clocked(source, columns, options, table)
+    made = [_on_rows(source, group, table, options) for group in groups]
+    longest = max(made, key=lambda m: len(m[0].time))[0]
+    channels = iter(channels_of(source, [c for _, members, _ in made for c in members], table, _seen(longest)))
+    by_group = [(axis, rows, [next(channels) for c in members if _has_numbers(c)]) for axis, members, rows in made]
+    by_group = [group for group in by_group if group[2]]
+    if len(by_group) > 1:
+        return [_of_several_clocks(source, reader, table, by_group)]
+    axis, rows, found = by_group[0]
     edges = [0, *axis.restarts, len(axis.time)]
     return [
-        _recording(
-            source,
-            reader,
-            table,
-            axis.time[a:b],
-            _place(table, rows, a),
-            [c.samples[a:b] for c in channels],
-            channels,
-            notes,
-            (number, len(edges) - 1),
-        )
+        _part(source, reader, table, axis.time[a:b], _place(table, rows, a), [_cut(c, a, b) for c in found],
+              (number, len(edges) - 1))
         for number, (a, b) in enumerate(itertools.pairwise(edges), start=1)
-    ]
+    ]  # fmt: skip
+
+
+def _has_numbers(column: Column) -> bool:
+    return bool(np.isfinite(column.values).any())
+
+
+def _seen(axis: time_axis.TimeAxis) -> str:
+    """What is understood of a log whose units are asked for."""
+    count = len(axis.time)
+    if count < 2:
+        return f"{count} rows"
+    parts = f", {len(axis.restarts) + 1} parts" if axis.restarts else ""
+    end = axis.restarts[0] if axis.restarts else count
+    rate = (end - 1) / float(axis.time[end - 1] - axis.time[0]) if end > 1 else 0.0
+    notes = "; ".join(note.text.split(";")[0] for note in axis.notes[:2])
+    return f"{count} rows{parts} at {rate:.6g} Hz{'; ' + notes if notes else ''}"
+
+
+def _on_rows(
+    source: Source, group: Clocked, table: Table, options: ReadOptions
+) -> tuple[time_axis.TimeAxis, list[Column], np.ndarray | None]:
+    """A clock looked over, and its columns cut to the rows that it keeps."""
+    stamps, rows = group.stamps, group.rows
+    if not all_finite(stamps):
+        kept = np.isfinite(stamps)
+        lost = int((~kept).sum())
+        row = int(np.flatnonzero(~kept)[0])
+        place = _place(table, rows, 0)(row)
+        if options.on_bad != "nan" and lost > max(3, _RARE * len(stamps)):
+            raise source.error(
+                f"time is missing in {lost} of {len(stamps)} rows", "Drop them with --on-bad nan, or mend them.", place
+            )
+        table.notes.append(Note("warning", f"{lost} row(s) without time dropped", place))
+        rows = np.flatnonzero(kept) if rows is None else rows[kept]
+        stamps = stamps[kept]
+    if group.exact:
+        axis = time_axis.TimeAxis(stamps)
+    else:
+        here = rows
+
+        def repeats(of: np.ndarray) -> np.ndarray:
+            places = of if here is None else here[of]
+            before = of - 1 if here is None else here[of - 1]
+            return np.all([(c.values[places] == c.values[before]) | np.isnan(c.values[places]) for c in group.columns],
+                          axis=0)  # fmt: skip
+
+        try:
+            axis = time_axis.check(
+                stamps, _place(table, rows, 0), split=table.split, repeats=repeats, stamps_are=options.stamps
+            )
+        except time_axis.TimeProblem as error:
+            raise source.error(error.problem, error.mend, _place(table, rows, 0)(error.row)) from error
+    table.notes += axis.notes
+    if axis.rows is not None:
+        rows = axis.rows if rows is None else rows[axis.rows]
+    if rows is not None:  # a copy of a million rows costs more than reading them
+        for column in group.columns:
+            column.values = column.values[rows]
+    return axis, group.columns, rows
 
 
 def _place(table: Table, rows: np.ndarray | None, begin: int) -> Callable[[int], str]:
@@ -87,142 +114,126 @@ def _place(table: Table, rows: np.ndarray | None, begin: int) -> Callable[[int],
     return lambda row: table.place(begin + row if rows is None else int(rows[begin + row]))
 
 
-def _recording(
+def _cut(channel: Channel, a: int, b: int) -> Channel:
+    return replace(channel, samples=channel.samples[a:b])
+
+
+def _part(
     source: Source,
     reader: str,
     table: Table,
     time: np.ndarray,
     place: Callable[[int], str],
-    samples: Sequence[np.ndarray],
-    channels: Sequence[Channel],
-    notes: list[Note],
+    channels: list[Channel],
     of: tuple[int, int],
 ) -> Recording:
+    """One part of a table with one clock, on which some columns may have samples in some of the rows only."""
+    part = table.part
     if len(time) < 2:
         raise source.error(
             f"has {len(time)} row(s) of data",
             "A recording needs two samples at least.",
-            place(0) if len(time) else table.part,
+            place(0) if len(time) else part,
         )
-    part = table.part
     if of[1] > 1:
         part = f"{part}, sample {of[0]} of {of[1]}".lstrip(", ")
-    mine = notes + time_axis.gaps(time, place)
-    for channel, values in zip(channels, samples, strict=True):
-        if not all_finite(values):
-            missing = np.flatnonzero(~np.isfinite(values))
-            mine.append(
+    notes = table.notes + time_axis.gaps(time, place)
+    kept: list[Channel] = []
+    for channel in channels:
+        if all_finite(channel.samples):
+            kept.append(channel)
+            continue
+        filled = np.flatnonzero(np.isfinite(channel.samples))
+        if not len(filled):
+            notes.append(Note("warning", f"{channel.label} has no number here; left out", part))
+            continue
+        series = _own_rate(time, channel.samples, filled)
+        if series is not None:
+            notes.append(
                 Note(
-                    "warning",
-                    f"{len(missing)} value(s) of {channel.label or channel.name} are no number, "
-                    f"kept as NaN; the first at t = {time[missing[0]]:.6g} s",
-                    place(int(missing[0])),
+                    "info",
+                    f"{channel.label} has a rate of its own, {series.rate:.6g} Hz: {len(filled)} samples from "
+                    f"{series.time[0]:.6g} s on, blank in the other rows",
                 )
             )
-            if len(missing) == len(values):
-                raise source.error(
-                    f"column {channel.label or channel.name} has no numbers",
-                    "Export it again, or leave it out with --columns.",
-                    part,
-                )
-    whole = tuple(
-        Channel(c.name, np.ascontiguousarray(v), c.unit, c.label) for c, v in zip(channels, samples, strict=True)
-    )
+            kept.append(replace(channel, logged=series))
+            continue
+        missing = np.flatnonzero(~np.isfinite(channel.samples))
+        notes.append(
+            Note(
+                "warning",
+                f"{len(missing)} value(s) of {channel.label} are no number, "
+                f"kept as NaN; the first at t = {time[missing[0]]:.6g} s",
+                place(int(missing[0])),
+            )
+        )
+        kept.append(channel)
+    if not kept:
+        raise source.error("has no channel with numbers", "Export it again.", part)
+    return _recording(source, reader, table, part, time, kept, notes)
+
+
+def _own_rate(time: np.ndarray, samples: np.ndarray, filled: np.ndarray) -> Series | None:
+    """A column that is filled at even distances and blank between."""
+    if len(filled) < 3 or len(filled) >= _BLANK * len(samples):
+        return None
+    steps = np.diff(time[filled])
+    even = float(np.mean(np.abs(steps - np.median(steps)) <= 0.25 * np.median(steps)))
+    return Series(time[filled], samples[filled]) if even >= _BLANK else None
+
+
+def _of_several_clocks(
+    source: Source,
+    reader: str,
+    table: Table,
+    groups: list[tuple[time_axis.TimeAxis, np.ndarray | None, list[Channel]]],
+) -> Recording:
+    """A recording whose columns have clocks of their own."""
+    channels: list[Channel] = []
+    for axis, _, members in groups:
+        if len(axis.time) < 2:
+            raise source.error(f"{members[0].label} has {len(axis.time)} sample(s)", "Two are needed.", table.part)
+        end = axis.restarts[0] if axis.restarts else len(axis.time)
+        if axis.restarts:
+            table.warn(f"the clock of {members[0].label} begins again; what is before that is read")
+        channels += [
+            replace(c, samples=c.samples[:end], logged=Series(axis.time[:end], c.samples[:end])) for c in members
+        ]
+    longest = max(groups, key=lambda g: len(g[0].time))[0]
+    return _recording(source, reader, table, table.part, longest.time, channels, list(table.notes))
+
+
+def _recording(
+    source: Source, reader: str, table: Table, part: str, time: np.ndarray, channels: list[Channel], notes: list[Note]
+) -> Recording:
+    """Put channels on the clock of the one with most samples, where they have clocks of their own."""
+    whole = tuple(replace(c, samples=np.ascontiguousarray(c.samples)) for c in channels)
+    if any(c.logged is not None for c in whole):
+        logged = {c.name: c.logged or Series(time, c.samples) for c in whole}
+        base = max(logged, key=lambda name: len(logged[name].time))
+        blank = tuple(replace(c, samples=np.zeros(len(time)), logged=logged[c.name]) for c in whole)
+        recording = Recording(time, blank, source.provenance(reader, part)).on_clock_of(base)
+        notes = [*notes, _own_clocks(logged, base, recording)]
+        whole = recording.channels
+        time = recording.time
+    looked = tuple(c if c.logged is None else replace(c, samples=c.logged.samples) for c in whole)
     return Recording(
         np.ascontiguousarray(time),
         whole,
         source.provenance(reader, part),
-        (*source.notes, *mine, *warnings_of(whole)),
+        (*source.notes, *notes, *warnings_of(looked)),
         dict(table.header),
     )
 
 
-def _chosen(source: Source, table: Table, options: ReadOptions) -> list[Column]:
-    """The columns that the user mapped, or all of them."""
-    if not options.columns:
-        return table.columns
-    labels = [column.label for column in table.columns]
-    chosen = []
-    for quantity, which in options.columns.items():
-        index = _index(source, labels, which, quantity)
-        column = table.columns[index]
-        chosen.append(Column(column.label, column.unit, column.values, column.clock, quantity))
-    left = [
-        label
-        for label, column in zip(labels, table.columns, strict=True)
-        if not any(column.values is one.values for one in chosen)
-    ]
-    if left:
-        table.notes.append(Note("info", f"columns not read, as --columns says: {', '.join(left)}"))
-    return chosen
-
-
-def _index(source: Source, labels: list[str], which: int | str, quantity: str) -> int:
-    if isinstance(which, str) and not which.lstrip("-").isdigit():
-        folded = [label.lower() for label in labels]
-        if which.lower() in folded:
-            return folded.index(which.lower())
-        raise source.error(f"has no column {which!r} for {quantity}", did_you_mean(which, labels))
-    number = int(which)
-    if not 0 <= number < len(labels):
-        raise source.error(
-            f"has {len(labels)} columns, numbered from 0; column {number} for {quantity} is not there",
-            f"They are: {', '.join(f'{i}={label}' for i, label in enumerate(labels))}.",
-        )
-    return number
-
-
-def _time_column(source: Source, columns: list[Column], options: ReadOptions, table: Table) -> Column | None:
-    mapped = [column for column in columns if column.quantity == "time"]
-    named = mapped or [c for c in columns if c.quantity is None and quantity_of(c.label, c.unit) == "time"]
-    if not named:
-        named = [c for c in columns if c.quantity is None and c.unit and (u := find_unit(c.unit)) and u.unit == "s"]
-    if named:
-        return named[0]
-    if options.fs is not None:
-        return None
-    first = columns[0].values
-    if len(columns) > 1 and columns[0].quantity is None and not columns[0].label and len(first) > 2:
-        steps = np.diff(first)
-        if (steps > 0).all() and np.ptp(steps) <= 0.02 * np.median(steps) + 1e-6:
-            table.notes.append(Note("warning", "no header: the first column rises evenly and was taken as time in s"))
-            return columns[0]
-    labels = ", ".join(f"{i}={c.label or 'no header'}" for i, c in enumerate(columns))
-    raise source.error(
-        f"time column missing; columns: {labels}",
-        "Give --fs 1000 for samples at a known rate, or --columns time=0.",
-        table.part,
+def _own_clocks(logged: dict[str, Series], base: str, recording: Recording) -> Note:
+    """How channels with clocks of their own are compared."""
+    rates = ", ".join(f"{name} at {s.rate:.6g} Hz from {s.time[0]:.6g} s" for name, s in logged.items())
+    begins = [float(s.time[0]) for s in logged.values()]
+    apart = f"; they begin {max(begins) - min(begins):.6g} s apart" if max(begins) > min(begins) else ""
+    return Note(
+        "info",
+        f"channels have clocks of their own: {rates}{apart}. Aligned by their start times; what all cover is "
+        f"{recording.time[0]:.6g} to {recording.time[-1]:.6g} s, compared at the times of {base}, between the "
+        "samples of the others by interpolation",
     )
-
-
-def _seconds(source: Source, column: Column, options: ReadOptions, table: Table, notes: list[Note]) -> np.ndarray:
-    values = column.values
-    if not np.isfinite(values).any():
-        raise source.error(f"time column {column.label!r} has no numbers", "Give --fs.", table.part)
-    unit = options.time_unit or (None if column.clock else column.unit)
-    if unit is None and not column.clock:
-        finite = values[np.isfinite(values)]
-        step = float(np.median(np.diff(finite))) if len(finite) > 1 else 0.0
-        whole = len(finite) > 2 and bool((finite == np.round(finite)).all())
-        if whole and step >= 1 and np.nanmin(values) < time_axis.SECONDS_1904:
-            raise source.error(
-                f"unit of time column {column.label!r} unknown: whole numbers in steps of {step:g}",
-                "Give --time-unit s, ms or us, or --fs for a sample count.",
-                table.part,
-            )
-        notes.append(Note("info", f"time column {column.label or '(no header)'} states no unit; taken as s"))
-        unit = "s"
-    if unit is not None:
-        conversion = find_unit(unit)
-        if conversion is None or conversion.unit != "s":
-            raise source.error(
-                f"unit {unit!r} of time column {column.label!r} is no time",
-                "Give --time-unit s, ms or us.",
-                table.part,
-            )
-        if conversion.changes:
-            notes.append(Note("info", f"{column.label or 'time'}: {unit} × {conversion.factor:g} = s"))
-            values = values * conversion.factor
-    values, more = time_axis.elapsed(values, clock=column.clock)
-    notes += more
-    return values

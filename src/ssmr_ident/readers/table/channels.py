@@ -1,131 +1,236 @@
-"""Columns to channels: units to SI, names in this package's words."""
+"""Columns to channels: units to SI, names in this package's words; what cannot be known is asked with a best guess."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass, replace
+
 import numpy as np
 
-from ssmr_ident.core.errors import did_you_mean
 from ssmr_ident.core.recording import Channel, Note
-from ssmr_ident.core.units import QUANTITY_OF_UNIT, find_unit
-from ssmr_ident.readers.options import ReadOptions
 from ssmr_ident.readers.source import Source
 from ssmr_ident.readers.table.columns import Column, Table
-from ssmr_ident.readers.table.headings import quantity_of
+from ssmr_ident.readers.table.headings import SI_UNIT
+from ssmr_ident.readers.table.vocabulary import Vocabulary, words_of
 
-SI_UNIT = {quantity: unit for unit, quantity in QUANTITY_OF_UNIT.items()}
-SI_UNIT |= {"ax": "m/s^2", "ay": "m/s^2", "az": "m/s^2", "wx": "rad/s", "wy": "rad/s", "wz": "rad/s"}
-SI_UNIT |= {"acceleration_2": "m/s^2", "position_reference": "m"}
-_EXAMPLES = {"N": "N, kN, lbf or gf", "m": "mm or in", "m/s^2": "m/s^2 or g", "rad": "deg"}
-
-
-def apply_units(source: Source, columns: list[Column], options: ReadOptions) -> None:
-    """Units that the user gave win over the file's.
-
-    Raises
-    ------
-    InputError
-        An unknown unit, or no column of that name.
-    """
-    if options.fs is not None:
-        for column in columns:
-            if quantity_of(column.label, column.unit) == "time" and column.quantity is None:
-                column.quantity = "time"
-    known = {}
-    for column in columns:
-        names = (column.label.lower(), column.quantity or quantity_of(column.label, column.unit) or "")
-        known[id(column)] = names
-    for wanted, unit in options.units.items():
-        if find_unit(unit) is None:
-            raise source.error(
-                f"unit {unit!r} of --units {wanted}={unit} is not known",
-                "Units are written as in N, lbf, mm, in, s, ms, V, m/s^2, g.",
-            )
-        matches = [c for c in columns if wanted.lower() in known[id(c)]]
-        matches = matches or [c for c in columns if any(n.startswith(wanted.lower()) for n in known[id(c)] if n)]
-        if not matches:
-            raise source.error(
-                f"has no column {wanted!r} for --units", did_you_mean(wanted, [column.label for column in columns])
-            )
-        for column in matches:
-            column.unit = unit
+STANDARD_GRAVITY = 9.80665  # m/s^2
+_EXAMPLES = {
+    "N": "N, kN, lbf or gf", "m": "m, mm or in", "m/s^2": "m/s^2 or g", "rad": "rad or deg", "rad/s": "rad/s or deg/s",
+    "m/s": "m/s or mm/s", "N m": "N m", "1": "1 or %", "Pa": "Pa or MPa",
+}  # fmt: skip
+# Lengths that gravity has in what accelerometers count: in units, and in counts per g of cheap converters
+_GRAVITIES = {"m/s^2": STANDARD_GRAVITY, "g": 1.0, "mg": 1e3, "mm/s^2": 1e3 * STANDARD_GRAVITY, "cm/s^2": 980.665}
+_COUNTS = (16384.0, 8192.0, 4096.0, 2048.0, 1024.0, 256.0)
+_NEAR = 0.04
+"""Choice: share of its length by which a mean may miss gravity; tilted sensors keep the length, moving ones nearly."""
+_SUPPLY = (0.0, 5.0)  # V; what a sensor on a common supply gives never leaves it
+_UNSIGNED = 0.3  # V; a resting sensor stands well above zero
 
 
-def channels_of(
-    source: Source, data: list[Column], rows: np.ndarray | None, table: Table, notes: list[Note]
-) -> list[Channel]:
+@dataclass(frozen=True)
+class Guess:
+    """What unitless columns look like: unit, and why."""
+
+    unit: str
+    why: str
+
+
+def channels_of(source: Source, data: list[Column], table: Table, seen: str) -> list[Channel]:
     """Channels in SI with their names; notes for every conversion.
+
+    Parameters
+    ----------
+    data : list of Column
+    seen : str
+        What has been understood of the log, for a question about the rest.
 
     Raises
     ------
     InputError
         A quantity without a unit, or with a unit of something else.
     """
+    data = _without_empty(source, data, table)
+    _name_by_unit(source, data)
+    guess = _gravity(source, data)
+    volts = table.assumed_unit == "V" or _look_like_volts(data)
+    _ask_for_units(source, data, table, guess, volts and table.assumed_unit == "V", seen)
     channels: list[Channel] = []
-    assumed = []
+    assumed: list[str] = []
+    unknown: list[Column] = []
     for column in data:
-        quantity = column.quantity or quantity_of(column.label, column.unit)
-        conversion = find_unit(column.unit) if column.unit else None
-        label = column.label
-        values = column.values if rows is None else column.values[rows]
-        if column.unit is None and table.assumed_unit is not None and quantity in (None, "ax", "ay", "az"):
-            assumed.append(label or f"column {len(channels) + 2}")
-            unit = table.assumed_unit
-        elif column.unit is None and quantity is not None:
-            raise source.error(f"unit of {label} unknown", _given(label, "N, mm, V or g"), table.part)
-        elif conversion is None:
-            unit = column.unit or ""
-            why = f"unit {unit!r} is not known" if unit else "states no unit"
-            if quantity is not None:
-                raise source.error(f"unit {unit!r} of {label} is not known", _given(label, "N, mm or V"), table.part)
-            notes.append(Note("warning", f"{label or 'a column'}: {why}; numbers kept as they are"))
+        quantity = column.quantity
+        if column.unit is None and volts and quantity in (None, "ax", "ay", "az"):
+            assumed.append(column.shown)
+            column.unit = "V"
+        conversion = source.vocabulary.unit(column.unit) if column.unit else None
+        values, unit = column.values, column.unit or ""
+        if conversion is None:
+            if unit:
+                table.warn(f"{column.shown}: unit {unit!r} is not known; numbers kept as they are")
+            else:
+                unknown.append(column)
         else:
             unit = conversion.unit
-            expected = SI_UNIT.get(quantity or "", unit)
-            if unit not in (expected, "V"):
-                raise source.error(
-                    f"{label} is in {column.unit}, which is no unit of {quantity}",
-                    _given(label, _EXAMPLES.get(expected, expected)),
-                    table.part,
-                )
             if conversion.changes:
                 values = values * conversion.factor + conversion.offset
                 shift = f" + {conversion.offset:g}" if conversion.offset else ""
                 level = "warning" if column.unit in ("lb", "lbs", "in", "kgf", "psi", "ksi") else "info"
-                notes.append(Note(level, f"{label}: {column.unit} × {conversion.factor:.8g}{shift} = {unit}"))
-        channels.append(Channel(quantity or label or f"column {len(channels) + 2}", values, unit, label))
+                text = f"{column.shown}: {column.unit} × {conversion.factor:.8g}{shift} = {unit}"
+                table.notes.append(Note(level, text))
+        channels.append(Channel(quantity or column.shown, values, unit, column.label or column.shown))
     if assumed:
-        notes.append(
-            Note(
-                "warning",
-                f"{', '.join(assumed)}: no unit in the file, taken as {table.assumed_unit}; --units changes that",
-            )
+        why = "" if table.assumed_unit else ", as they stay within 0 and 5 like a sensor's supply"
+        table.warn(f"{', '.join(assumed)}: no unit in the file, taken as V{why}; --units changes that")
+    if unknown:
+        _tell_unknown(table, unknown, len(unknown) == len(data))
+    return _named(channels, table)
+
+
+def _without_empty(source: Source, data: list[Column], table: Table) -> list[Column]:
+    full = [c for c in data if np.isfinite(c.values).any()]
+    empty = [c for c in data if not np.isfinite(c.values).any()]
+    asked = next((c for c in empty if c.given), None)
+    if asked is not None or not full:
+        shown = (asked or empty[0]).shown
+        raise source.error(
+            f"column {shown} has no numbers", "Export it again, or leave it out with --columns.", table.part
         )
-    return _named(channels, table, notes)
+    if empty:
+        table.inform(f"column(s) without a number left out: {', '.join(c.shown for c in empty)}")
+    return full
 
 
-def _given(label: str, such_as: str) -> str:
+def _name_by_unit(source: Source, data: list[Column]) -> None:
+    """``X (g)`` is an axis: a letter names what its unit says."""
+    for column in data:
+        conversion = source.vocabulary.unit(column.unit) if column.unit and column.quantity is None else None
+        letter = {"m/s^2": "a", "rad/s": "w"}.get(conversion.unit) if conversion else None
+        if letter and _is_axis(column, source.vocabulary):
+            column.quantity = letter + words_of(column.label)[-1]
+
+
+def _vector(data: list[Column], known: Vocabulary) -> list[Column]:
+    """Three columns without a unit that may be the axes of one sensor: named x, y, z, or without names at all."""
+    bare = [c for c in data if c.unit is None]
+    axes = [c for c in bare if c.quantity in ("ax", "ay", "az")]
+    letters = [c for c in bare if c.quantity is None and _is_axis(c, known)]
+    for found in (axes, letters):
+        if len(found) == 3:
+            return found
+    unnamed = [c for c in data if not c.label]
+    return unnamed if len(unnamed) == 3 and len(data) == 3 and unnamed == [c for c in bare if not c.given] else []
+
+
+def _is_axis(column: Column, known: Vocabulary) -> bool:
+    """A header of an axis' letter and words that say nothing."""
+    words = words_of(column.label)
+    beside = (w for w in words[:-1] if not w.isdigit() and not known.has("modifiers", (w,)))
+    return words[-1:] in (("x",), ("y",), ("z",)) and next(beside, None) is None
+
+
+def _gravity(source: Source, data: list[Column]) -> tuple[list[Column], Guess | None]:
+    """Columns whose mean is as long as gravity, with the unit in which it is."""
+    columns = _vector(data, source.vocabulary)
+    if not columns:
+        return [], None
+    means = [float(np.mean(c.values[np.isfinite(c.values)])) for c in columns]
+    length = float(np.linalg.norm(means))
+    largest = columns[int(np.argmax(np.abs(means)))]
+    what = f"the mean of {largest.shown} is {means[int(np.argmax(np.abs(means)))]:.4g}"
+    if abs(length - abs(max(means, key=abs))) > 0.02 * length:
+        what += f", of the three together {length:.4g} long"
+    for unit, gravity in _GRAVITIES.items():
+        if abs(length - gravity) < _NEAR * gravity:
+            return columns, Guess(unit, f"{what}, as gravity is in {unit}: {unit}?")
+    for count in _COUNTS:
+        if abs(length - count) < _NEAR * count:
+            return columns, Guess("", f"{what}, as gravity is in counts of {count:g} per g: divide, or --units …=mg?")
+    name = source.path.stem.lower()
+    for word, unit in (("gyro", "rad/s"), ("acc", "m/s^2")):
+        if word in name:
+            return columns, Guess(unit, f"the file's name says {word}: {unit}?")
+    return columns, None
+
+
+def _look_like_volts(data: list[Column]) -> bool:
+    """True where no column has a name or a unit and all stay within a sensor's supply, well above zero."""
+    if any(c.label or c.unit or c.given for c in data):
+        return False
+    finite = [c.values[np.isfinite(c.values)] for c in data]
+    return all(v.min() > _UNSIGNED and v.max() <= _SUPPLY[1] for v in finite)
+
+
+def _ask_for_units(
+    source: Source, data: list[Column], table: Table, guess: tuple[list[Column], Guess | None], daq: bool, seen: str
+) -> None:
+    """Stop where a quantity is known and its unit is not, with the best guess and what else was understood."""
+    vector, why = guess
+    asked = []
+    for column in data:
+        conversion = source.vocabulary.unit(column.unit) if column.unit else None
+        expected = SI_UNIT.get(column.quantity or "")
+        if column.unit is None:
+            volts = daq and column.quantity in (None, "ax", "ay", "az")
+            if not volts and (expected or (any(column is c for c in vector) and (column.label or why))):
+                asked.append(column)
+        elif conversion is None and column.quantity is not None:
+            raise source.error(
+                f"unit {column.unit!r} of {column.shown} is not known", _mend([column], "N, mm or V"), table.part
+            )
+        elif conversion is not None and expected and conversion.unit not in (expected, "V"):
+            raise source.error(
+                f"{column.shown} is in {column.unit}, which is no unit of {column.quantity}",
+                _mend([column], _EXAMPLES.get(expected, expected))
+                + f" If it is another quantity: channels: {{QUANTITY: {column.shown}}} beside the file.",
+                table.part,
+            )
+    if not asked:
+        return
+    shown = ", ".join(c.shown for c in asked)
+    reason = f"; {why.why}" if why is not None else ""
+    unit = (why.unit if why else "") or "…"
+    examples = sorted({_EXAMPLES.get(SI_UNIT.get(c.quantity or "", ""), "N, mm, V or g") for c in asked})
+    such = "" if unit != "…" else f"such as {'; '.join(examples)}"
+    raise source.error(f"unit of {shown} unknown{reason} ({seen})", _mend(asked, such, unit), table.part)
+
+
+def _mend(columns: list[Column], such_as: str, unit: str = "…") -> str:
     """How a unit is told: on the command line, or where a session lists the recording."""
-    return f"Give --units {label}=…, such as {such_as}; in session.yaml, units: {{{label}: …}} beside the file."
+    such = f", {such_as}" if such_as else ""
+    if not any(c.label for c in columns):
+        axes = dict(zip(("ax", "ay", "az"), columns, strict=False))
+        pairs = ",".join(f"{a}={c.number}" for a, c in axes.items())
+        return f"Give --columns {pairs} --units {','.join(f'{a}={unit}' for a in axes)}{such}."
+    pairs = ",".join(f"{c.shown}={unit}" for c in columns)
+    keys = ", ".join(f"{c.shown}: {unit}" for c in columns)
+    return f"Give --units {pairs}{such}; in session.yaml, units: {{{keys}}} beside the file."
 
 
-def _named(channels: list[Channel], table: Table, notes: list[Note]) -> list[Channel]:
+def _tell_unknown(table: Table, unknown: list[Column], all_of_them: bool) -> None:
+    """What a column is and in which unit is a question where no channel is known; among known ones it is a remark."""
+    more = f" and {len(unknown) - 8} more" if len(unknown) > 8 else ""
+    shown = ", ".join(c.shown for c in unknown[:8]) + more
+    text = f"{shown}: no unit in the file and no quantity that is known by name; the numbers are kept as they are"
+    if all_of_them:
+        which = unknown[0].label or unknown[0].number
+        table.warn(f"{text}. Say what they are, for example --columns force={which} --units force=N")
+    else:
+        table.inform(text)
+
+
+def _named(channels: list[Channel], table: Table) -> list[Channel]:
     """Names that differ; three voltages of a data-acquisition log are the axes x, y, z."""
     volts = [channel for channel in channels if channel.unit == "V"]
     if table.axes_in_volts and len(channels) == len(volts) == 3 and not {"ax", "ay", "az"} & {c.name for c in channels}:
-        notes.append(
-            Note(
-                "info",
-                "three voltage channels: "
-                + ", ".join(f"{a} = {c.label}" for a, c in zip(("ax", "ay", "az"), volts, strict=True)),
-            )
-        )
-        channels = [
-            Channel(axis, c.samples, c.unit, c.label) for axis, c in zip(("ax", "ay", "az"), volts, strict=True)
-        ]
+        pairs = list(zip(("ax", "ay", "az"), volts, strict=True))
+        table.notes.append(Note("info", "three voltage channels: " + ", ".join(f"{a} = {c.label}" for a, c in pairs)))
+        channels = [replace(c, name=axis) for axis, c in pairs]
     seen: dict[str, int] = {}
+    taken = {channel.name for channel in channels}
     result = []
     for channel in channels:
         seen[channel.name] = seen.get(channel.name, 0) + 1
-        name = channel.name if seen[channel.name] == 1 else f"{channel.name}_{seen[channel.name]}"
-        result.append(Channel(name, channel.samples, channel.unit, channel.label))
+        name = channel.name
+        while seen[channel.name] > 1 and (name := f"{channel.name}_{seen[channel.name]}") in taken:
+            seen[channel.name] += 1
+        result.append(replace(channel, name=name))
     return result

@@ -12,22 +12,57 @@ from ssmr_ident.core.recording import Note
 
 @dataclass
 class Column:
-    """A column as the file has it: label without unit, unit as written (None: not stated), values (n,)."""
+    """A column as the file has it.
+
+    Parameters
+    ----------
+    label : str
+        Header without its unit.
+    unit : str or None
+        As written; None when none is stated.
+    values : (n,) float
+    clock : bool
+        True for times of day and dates, in seconds.
+    quantity : str or None
+        In this package's words, where the reader or the user knows it; else the label says.
+    source : str
+        Where the unit is from, when the header does not write it.
+    start, step : float [s]
+        The column's own clock, where the format states one; a step of 0 is none.
+    number : int
+        Place in the file, from 0.
+    given : bool
+        True when the user named the quantity.
+    role : str
+        ``counter`` or ``ignored`` for what is no measurement.
+    """
 
     label: str
     unit: str | None
     values: np.ndarray
     clock: bool = False
     quantity: str | None = None
+    source: str = ""
+    start: float = 0.0
+    step: float = 0.0
+    number: int = -1
+    given: bool = False
+    role: str = ""
+
+    @property
+    def shown(self) -> str:
+        """What a message calls the column; never empty."""
+        return self.label or f"column {self.number + 1}"
 
 
 @dataclass
 class Table:
-    """Columns of one length with what is known about them.
+    """Columns with what is known about them.
 
     Parameters
     ----------
     columns : list of Column
+        Of one length, unless they have clocks of their own.
     place : function of int to str
         Names a row for the user.
     part : str
@@ -40,8 +75,12 @@ class Table:
         Three voltage columns are x, y, z (logs of a data-acquisition card).
     split : bool
         A restart of time begins another sample.
-    units_given : bool
-        The user's units have been applied already.
+    rate : float [Hz]
+        That facts above the table state, for one without a time column; 0 for none.
+    rate_from : str
+        The fact as written.
+    words : list of str
+        Columns that hold text and are left out.
     """
 
     columns: list[Column]
@@ -52,7 +91,15 @@ class Table:
     assumed_unit: str | None = None
     axes_in_volts: bool = False
     split: bool = False
-    units_given: bool = False
+    rate: float = 0.0
+    rate_from: str = ""
+    words: list[str] = field(default_factory=list)
+
+    def inform(self, text: str) -> None:
+        self.notes.append(Note("info", text, self.part))
+
+    def warn(self, text: str) -> None:
+        self.notes.append(Note("warning", text, self.part))
 
 
 def all_finite(values: np.ndarray) -> bool:

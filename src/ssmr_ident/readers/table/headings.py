@@ -3,90 +3,194 @@
 from __future__ import annotations
 
 import re
+from dataclasses import dataclass
 
-from ssmr_ident.core.units import QUANTITY_OF_UNIT, find_unit
+from ssmr_ident.core.units import QUANTITY_OF_UNIT, Conversion
+from ssmr_ident.readers.table.vocabulary import LONGEST, Vocabulary, shipped, words_of
 
-_WORDS = {
-    "time": "time zeit prüfzeit godzina czas tiempo temps elapsed timestamp x_value tempo t",
-    "force": "load force kraft standardkraft prüfkraft obciążenie siła charge carga fuerza",
-    "position": "position posn pos extension displacement crosshead stroke travel weg standardweg traverse "
-    "traversenweg przemieszczenie déplacement deplacement desplazamiento verformung",
-    "strain": "strain dehnung odkształcenie",
-    "stress": "stress spannung naprężenie",
-    "torque": "torque moment drehmoment",
-    "acceleration": "acceleration accel beschleunigung",
-    "velocity": "velocity speed geschwindigkeit",
-    "angle": "angle winkel",
-    "angular_rate": "angular_rate gyro",
-}
-_QUANTITY = {word: quantity for quantity, words in _WORDS.items() for word in words.split()}
-_AXES = {"ax", "ay", "az", "wx", "wy", "wz"}
-# A letter names a quantity only when the unit agrees
-_SYMBOLS = {
-    "f": "force",
-    "x": "position",
-    "s": "position",
-    "a": "acceleration",
-    "v": "velocity",
-    "t": "time",
-    "p": "force",
-}
-_MODIFIERS = {
-    "axial",
-    "running",
-    "elapsed",
-    "total",
-    "measured",
-    "test",
-    "abs",
-    "channel",
-    "ch",
-    "standard",
-    "the",
-}
-_BRACKETED = re.compile(r"^(.*?)\s*[(\[{]\s*([^()\[\]{}]*)\s*[)\]}]\s*$")
-_ONLY_UNIT = re.compile(r"^\s*[(\[]\s*([^()\[\]]+?)\s*[)\]]\s*$")
-_DASHED = re.compile(r"^(.*\S)\s+-\s+(\S+)$")
+AXES = {"acceleration": "a", "angular_rate": "w"}
+_AXIS_NAMES = ("ax", "ay", "az", "wx", "wy", "wz")
+OWN_NAMES = {*_AXIS_NAMES, "acceleration_2", "position_reference", "angular_rate"}
+SI_UNIT = {quantity: unit for unit, quantity in QUANTITY_OF_UNIT.items()}
+SI_UNIT |= {"ax": "m/s^2", "ay": "m/s^2", "az": "m/s^2", "wx": "rad/s", "wy": "rad/s", "wz": "rad/s"}
+SI_UNIT |= {"acceleration_2": "m/s^2", "position_reference": "m", "base_acceleration": "m/s^2"}
+_CLOSING = {")": "(", "]": "[", "}": "{", ">": "<"}
+_MOST_TOKENS = 3  # of a unit behind an underscore: m_s_2
 
 
-def split_header(header: str) -> tuple[str, str | None]:
+@dataclass(frozen=True)
+class Heading:
+    """A header taken apart.
+
+    Parameters
+    ----------
+    label : str
+        Without a unit in brackets or behind a slash.
+    unit : str or None
+        As written; None when none is.
+    quantity : str or None
+        In this package's words (``ax``, ``force``, ``time``); None when none is named.
+    source : str
+        Where the unit is from when the header does not write it: a published definition.
+    role : str
+        ``counter`` or ``ignored`` for columns that are no measurement, else empty.
+    """
+
+    label: str
+    unit: str | None
+    quantity: str | None
+    source: str = ""
+    role: str = ""
+
+
+def heading_of(header: str, unit: str | None = None, vocabulary: Vocabulary | None = None) -> Heading:
+    """Take a header apart.
+
+    Parameters
+    ----------
+    header : str
+        As the file has it.
+    unit : str or None
+        From a row of units or an attribute; wins over the header's.
+    vocabulary : Vocabulary or None
+        None takes the shipped one.
+    """
+    known = vocabulary or shipped()
+    label, written = split_header(header, known)
+    unit = unit if unit is not None else written
+    if unit is None:
+        unit = unit_in_name(label, known)
+    source = ""
+    if unit is None:
+        for convention in known.conventions:
+            if convention.pattern.match(label.strip()[:LONGEST]):
+                unit, source = convention.unit, convention.source
+                break
+    quantity = quantity_of(label, unit, known)
+    return Heading(label, unit, quantity, source, "" if quantity else _role(label, unit, known))
+
+
+def _role(label: str, unit: str | None, known: Vocabulary) -> str:
+    words = words_of(label)
+    for word in words:
+        if known.has("ignored", (word,)):
+            return "ignored"
+    bare = tuple(w for w in words if not known.has("modifiers", (w,))) or words[-1:]
+    if unit is None and words and (known.has("counters", words) or known.has("counters", bare)):
+        return "counter"
+    return ""
+
+
+def split_header(header: str, vocabulary: Vocabulary | None = None) -> tuple[str, str | None]:
     """Label and unit of a header; the unit is None when none is written.
 
-    >>> split_header("Load (N)"), split_header("Time - sec"), split_header("Amplitude - Plot 0")
-    (('Load', 'N'), ('Time', 'sec'), ('Amplitude - Plot 0', None))
+    >>> split_header("Load (N)"), split_header("Time - sec"), split_header("AngVel/rad/s")
+    (('Load', 'N'), ('Time', 'sec'), ('AngVel', 'rad/s'))
     """
+    known = vocabulary or shipped()
     header = header.strip().strip("\"'").strip()
-    match = _BRACKETED.match(header)
-    if match and match[1]:
-        inside = match[2].strip()
-        if re.fullmatch(r"\d+", inside) or not inside:  # time[0], a count and no unit
+    if len(header) > 4 * LONGEST:
+        return header, None
+    bracketed = _bracketed(header)
+    if bracketed is not None:
+        label, inside = bracketed
+        if not inside or inside.isdigit():  # time[0], a count and no unit
             return header, None
-        return match[1].strip(), inside
-    match = _DASHED.match(header)
-    if match and find_unit(match[2]) is not None:
-        return match[1].strip(), match[2]
-    match = re.match(r"^(.*\S)\s*/\s*(\S+)$", header)
-    if match and find_unit(match[2]) is not None and find_unit(header) is None:
-        return match[1].strip(), match[2]
+        if label.endswith("/"):  # Acc/(m/s^2)
+            label = label[:-1].rstrip()
+        return label, inside
+    for sign in (" - ", ", ", " in "):  # Time - sec; Force, kN; Kraft in kN
+        left, found, right = header.rpartition(sign)
+        if found and left.strip() and known.unit(right) is not None:
+            return left.strip(), right.strip()
+    if not header.startswith(("/", ".")) and known.unit(header) is None:
+        for k, letter in enumerate(header):  # ISO 80000: quantity/unit, and the unit may hold a slash of its own
+            right = header[k + 1 :].strip()
+            if letter == "/" and k and right and known.unit(right) is not None:
+                return header[:k].strip(), right
+    left, _, right = header.rpartition(" ")
+    if left and not right.isdigit() and _agrees(left, right, known):  # Force kN
+        return left.strip(), right
     return header, None
 
 
-def bare_unit(cell: str) -> str | None:
+def _bracketed(header: str) -> tuple[str, str] | None:
+    """``Acc/(m/s^2)`` as ``Acc/`` and ``m/s^2``; None without brackets at the end."""
+    opening = _CLOSING.get(header[-1:])
+    if opening is None:
+        return None
+    depth = 0
+    for k in range(len(header) - 1, -1, -1):
+        depth += (header[k] == header[-1]) - (header[k] == opening)
+        if depth == 0:
+            label = header[:k].strip()
+            return (label, header[k + 1 : -1].strip()) if label else None
+    return None
+
+
+def _agrees(name: str, unit: str, known: Vocabulary) -> bool:
+    """True when a name is of a quantity that has this unit."""
+    conversion = known.unit(unit)
+    if conversion is None or unit in ("1", "-"):
+        return False
+    quantity = _named(name, conversion, known) or _optional(name, known)
+    return (SI_UNIT.get(quantity or "") or known.optional.get(quantity or "")) == conversion.unit
+
+
+def _optional(name: str, known: Vocabulary) -> str | None:
+    words = [w for w in words_of(name) if not known.has("modifiers", (w,))]
+    found = {known.phrases.get((w,)) for w in words}
+    return next((q for q in found if q in known.optional), None)
+
+
+def unit_in_name(label: str, vocabulary: Vocabulary | None = None) -> str | None:
+    """The unit at the end of a name, where the rest names a quantity of that unit.
+
+    >>> unit_in_name("force_N"), unit_in_name("accel_x_g"), unit_in_name("acc_m_s2"), unit_in_name("sensor_a")
+    ('N', 'g', 'm/s^2', None)
+    """
+    known = vocabulary or shipped()
+    label = label.strip()[:LONGEST]
+    parts = re.split(r"[_ ]", label)
+    if len(parts) == 1:
+        hump = re.match(r"(.*[a-zà-ÿ0-9])([A-Z]{1,2}[a-z]{0,2})\Z", label)
+        return hump[2] if hump and _agrees(hump[1], hump[2], known) else None
+    for count in range(min(_MOST_TOKENS, len(parts) - 1), 0, -1):
+        name, tail = " ".join(parts[:-count]), parts[-count:]
+        for unit in _as_units(tail):
+            if _agrees(name, unit, known):
+                return unit
+    return None
+
+
+def _as_units(tail: list[str]) -> list[str]:
+    """Units that underscores may stand for: ``m_s2``, ``rad_s``, ``m_s_2``, ``mps2``, ``N_m``."""
+    if len(tail) == 1:
+        return [tail[0], *(["m/s^2"] if tail[0].lower() in ("ms2", "mss") else [])]
+    powered = re.sub(r"([A-Za-z])-?2\Z", r"\1^2", "/".join(tail[:2]))
+    if len(tail) == 2:
+        return [powered, " ".join(tail)]
+    return [f"{tail[0]}/{tail[1]}^2"] if tail[2] in ("2", "-2") else []
+
+
+def bare_unit(cell: str, vocabulary: Vocabulary | None = None) -> str | None:
     """The unit in a cell of a units row: ``(mm)``, ``[N]`` or plain ``s``; None when the cell is no unit."""
-    match = _ONLY_UNIT.match(cell)
-    text = match[1] if match else cell.strip().strip("\"'")
-    if find_unit(text) is not None:
-        return text
-    return text if match else None
+    text = cell.strip().strip("\"'").strip()
+    opening = _CLOSING.get(text[-1:])
+    bracketed = opening is not None and text[:1] == opening and len(text) > 2
+    inside = text[1:-1].strip() if bracketed else text
+    if (vocabulary or shipped()).unit(inside) is not None:
+        return inside
+    return inside if bracketed else None
 
 
-def is_units_row(cells: list[str]) -> bool:
+def is_units_row(cells: list[str], vocabulary: Vocabulary | None = None) -> bool:
     """True when every filled cell is a unit, and at least one cell is filled."""
     filled = [cell for cell in cells if cell.strip()]
-    return bool(filled) and all(bare_unit(cell) is not None for cell in filled)
+    return bool(filled) and all(bare_unit(cell, vocabulary) is not None for cell in filled)
 
 
-def quantity_of(label: str, unit: str | None) -> str | None:
+def quantity_of(label: str, unit: str | None, vocabulary: Vocabulary | None = None) -> str | None:
     """The quantity that a label names, or None.
 
     Parameters
@@ -94,28 +198,64 @@ def quantity_of(label: str, unit: str | None) -> str | None:
     label : str
         Header without its unit.
     unit : str or None
-        Unit as written; confirms one-letter symbols (``F (N)``) and nothing else.
+        Unit as written; confirms one-letter symbols (``F (N)``) and names among unknown words (``tip acceleration``).
     """
-    folded = label.strip().lower()
+    known = vocabulary or shipped()
+    return _named(label, known.unit(unit) if unit is not None else None, known)
+
+
+def _named(label: str, conversion: Conversion | None, known: Vocabulary) -> str | None:
+    folded = label.strip().lower()[:LONGEST]
     if re.match(r"time(\[\d*\]| - )", folded):  # LabVIEW's exports: time[0], Time - Plot 0
         return "time"
-    if folded in _AXES:
+    if folded in OWN_NAMES:
         return folded
-    if folded in _QUANTITY and len(folded) > 1:
-        return _QUANTITY[folded]
-    if folded in _SYMBOLS and unit is not None:
-        conversion = find_unit(unit)
-        expected = _SYMBOLS[folded]
-        return expected if conversion and QUANTITY_OF_UNIT.get(conversion.unit) == expected else None
-    if folded == "t":
-        return "time"
-    words = [word for word in re.findall(r"[^\W\d_]+", folded) if word not in _MODIFIERS]
-    if words and all(word in _QUANTITY for word in words):
-        named = {_QUANTITY[word] for word in words}
-        if len(named) == 1:
-            return named.pop()
-        if "time" in named and words[-1] in ("timestamp", "time"):
-            return "time"
-    if words and words[-1] in ("timestamp", "time") and len(words) <= 3:
-        return "time"
-    return None
+    words = words_of(label.split(" - ")[0])
+    if len(words) > 12 or not words:
+        return None
+    if words[-1] in _AXIS_NAMES:  # imu.ax, data/wz
+        return words[-1]
+    quantity, rest = _phrase(words, conversion, known)
+    if quantity is None or quantity in known.optional:
+        return None
+    if any(known.has("others", (w,)) for w in rest):
+        return None
+    rest = tuple(w for w in rest if not w.isdigit())
+    axis = next((w for w in rest if w in ("x", "y", "z")), None) if quantity in AXES else None
+    if quantity in AXES and axis is None and len(rest) and any(known.has("lengths", (w,)) for w in rest):
+        return None
+    unknown = [w for w in rest if w != axis and not known.has("modifiers", (w,)) and w not in ("x", "y", "z")]
+    agrees = conversion is not None and SI_UNIT.get(quantity) == conversion.unit
+    # a name among words that nobody knows is believed where the unit says the same; a time at the end always
+    if unknown and not agrees and not (quantity == "time" and words[-1] in ("timestamp", "time", "stamp")):
+        return None
+    return AXES[quantity] + axis if axis is not None else quantity
+
+
+def _phrase(
+    words: tuple[str, ...], conversion: Conversion | None, known: Vocabulary
+) -> tuple[str | None, tuple[str, ...]]:
+    """The quantity that the words name, and the words that are left; the longest phrase, the last of equals."""
+    bare = words if words[-1] not in ("x", "y", "z") or len(words) == 1 else words[:-1]
+    if len(bare) == 1 and len(bare[0]) == 1 and bare[0] in known.symbols:
+        named = known.symbols[bare[0]]
+        for quantity in named:
+            if conversion is not None and SI_UNIT.get(quantity) == conversion.unit:
+                return quantity, words[len(bare) :]
+        return ("time", ()) if named == ("time",) and conversion is None and bare == words else (None, words)
+    for length in range(min(3, len(words)), 0, -1):
+        for begin in range(len(words) - length, -1, -1):
+            quantity = known.phrases.get(words[begin : begin + length])
+            if quantity is not None and not (length == 1 and len(words[begin]) == 1 and words[begin].isascii()):
+                if quantity == "time" and _names_another(words[:begin], known):
+                    return "time", ()  # force_timestamp is a time, whatever it is the time of
+                return quantity, words[:begin] + words[begin + length :]
+    for k in range(len(words) - 1, -1, -1):
+        for ending, quantity in known.endings.items():
+            if words[k].endswith(ending) and len(words[k]) > len(ending):
+                return quantity, words[:k] + words[k + 1 :]
+    return None, words
+
+
+def _names_another(words: tuple[str, ...], known: Vocabulary) -> bool:
+    return any((w,) in known.phrases for w in words)

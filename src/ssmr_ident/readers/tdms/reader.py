@@ -94,38 +94,31 @@ def _group(source: Source, group: Any, incomplete: bool, properties: Any, option
     channels = [channel for channel in group.channels() if len(channel)]
     if not channels:
         return []
-    notes = []
-    lengths = {channel.name: len(channel) for channel in channels}
-    shortest = min(lengths.values())
-    if incomplete:
-        notes.append(
-            Note(
-                "warning",
-                f"the last segment is incomplete (the log was cut off); {shortest} samples per channel are whole",
-                group.name,
-            )
-        )
-    elif len(set(lengths.values())) > 1:
-        shown = ", ".join(f"{name} {count}" for name, count in lengths.items())
-        if not options.trim:
-            raise source.error(f"channels differ: {shown} samples", "Keep what all have with --trim.", group.name)
-        notes.append(Note("warning", f"channels differ ({shown} samples); trimmed to {shortest}", group.name))
-    columns = []
-    for channel in channels:
-        values = np.asarray(channel[:])[:shortest]
-        label, unit = split_header(channel.name)
+    notes: list[Note] = []
+    columns: list[Column] = []
+    starts: list[float] = []
+    for number, channel in enumerate(channels):
+        values = np.asarray(channel[:])
+        label, unit = split_header(channel.name, source.vocabulary)
         stated = str(channel.properties.get("unit_string") or "").strip() or unit
         if np.issubdtype(values.dtype, np.datetime64):
             seconds = (values - values[0]) / np.timedelta64(1, "us") * 1e-6
-            columns.append(Column(label, "s", seconds.astype(float), quantity="time"))
+            columns.append(Column(label, "s", seconds.astype(float), quantity="time", number=number))
         elif np.issubdtype(values.dtype, np.number) and not np.issubdtype(values.dtype, np.complexfloating):
-            columns.append(Column(label, stated, values.astype(float)))
+            column = Column(label, stated, values.astype(float), number=number)
+            starts.append(_own_clock(source, group, channel, column))
+            columns.append(column)
         else:
             notes.append(Note("info", f"channel {channel.name} holds {values.dtype}, no numbers; left out"))
     if not columns:
         return []
-    if not any((c.quantity or quantity_of(c.label, c.unit)) == "time" for c in columns) and options.fs is None:
-        columns.insert(0, _computed_time(source, group, channels, shortest, notes))
+    timed = any((c.quantity or quantity_of(c.label, c.unit, source.vocabulary)) == "time" for c in columns)
+    if timed or options.fs is not None:
+        for column in columns:
+            column.step = 0.0
+    else:
+        _one_zero(source, group, [c for c in columns if c.quantity is None], starts, notes)
+    _lengths(source, group, columns, incomplete, timed or options.fs is not None, options, notes)
     keep = {
         **{str(k): str(v) for k, v in properties.items()},
         **{str(k): str(v) for k, v in group.properties.items()},
@@ -143,19 +136,58 @@ def _group(source: Source, group: Any, incomplete: bool, properties: Any, option
     return recordings_of(source, "tdms", table, options)
 
 
-def _computed_time(source: Source, group: Any, channels: Any, count: int, notes: list[Note]) -> Column:
-    increments = {float(c.properties["wf_increment"]) for c in channels if c.properties.get("wf_increment")}
-    if not increments:
+def _own_clock(source: Source, group: Any, channel: Any, column: Column) -> float:
+    """Step and start of a channel's waveform; the moment of its start in seconds since 1970, 0 where none stands."""
+    properties = channel.properties
+    step = properties.get("wf_increment")
+    if step is not None:
+        column.step = float(step)
+        if not (0 < column.step < float("inf")):
+            raise source.error(f"wf_increment is {column.step:g} s", "Give --fs.", f"group {group.name}")
+    column.start = float(properties.get("wf_start_offset") or 0.0)
+    moment = properties.get("wf_start_time")
+    if moment is None:
+        return 0.0
+    return float((np.datetime64(moment) - np.datetime64("1970-01-01")) / np.timedelta64(1, "us")) * 1e-6
+
+
+def _one_zero(source: Source, group: Any, columns: list[Column], starts: list[float], notes: list[Note]) -> None:
+    """Starts counted from the earliest channel's ``wf_start_time``."""
+    if not any(c.step for c in columns):
         raise source.error("has no time channel and no wf_increment", "Give --fs.", f"group {group.name}")
-    if len(increments) > 1:
-        raise source.error(
-            f"channels have different rates: {sorted(1 / i for i in increments)} Hz",
-            "Put channels of one rate into one group.",
-            f"group {group.name}",
-        )
-    step = increments.pop()
-    if not (0 < step < float("inf")):
-        raise source.error(f"wf_increment is {step:g} s", "Give --fs.", f"group {group.name}")
-    begin = float(channels[0].properties.get("wf_start_offset") or 0.0)
-    notes.append(Note("info", f"time from wf_start_offset and wf_increment: {1 / step:.6g} Hz"))
-    return Column("wf_increment", "s", begin + np.arange(count) * step, quantity="time")
+    first = next(c.step for c in columns if c.step)
+    for column in columns:
+        column.step = column.step or first
+    if min(starts) > 0:
+        earliest = min(starts)
+        for column, start in zip(columns, starts, strict=True):
+            column.start += start - earliest
+    rates = ", ".join(f"{rate:.6g} Hz" for rate in sorted({1 / c.step for c in columns}))
+    notes.append(Note("info", f"time from wf_start_time, wf_start_offset and wf_increment: {rates}"))
+    begins = {c.shown: c.start for c in columns}
+    if max(begins.values()) > min(begins.values()):
+        apart = max(begins.values()) - min(begins.values())
+        shown = ", ".join(f"{label} at {begin:.6g} s" for label, begin in begins.items())
+        text = f"the channels begin {apart:.6g} s apart by wf_start_time: {shown}"
+        notes.append(Note("warning", text, group.name))
+
+
+def _lengths(
+    source: Source, group: Any, columns: list[Column], incomplete: bool, timed: bool, options: ReadOptions,
+    notes: list[Note],
+) -> None:  # fmt: skip
+    """Channels of one clock must be of one length; a cut file is trimmed to what all have."""
+    lengths = {c.shown: len(c.values) for c in columns}
+    shortest = min(lengths.values())
+    alike = timed or len({(c.start, c.step) for c in columns}) == 1
+    if incomplete:
+        text = f"the last segment is incomplete (the log was cut off); {shortest} samples per channel are whole"
+        notes.append(Note("warning", text, group.name))
+    elif len(set(lengths.values())) > 1 and alike:
+        shown = ", ".join(f"{name} {count}" for name, count in lengths.items())
+        if not options.trim:
+            raise source.error(f"channels differ: {shown} samples", "Keep what all have with --trim.", group.name)
+        notes.append(Note("warning", f"channels differ ({shown} samples); trimmed to {shortest}", group.name))
+    if alike:
+        for column in columns:
+            column.values = column.values[:shortest]

@@ -1,14 +1,15 @@
-"""The parts of a text log: facts, headers, runs of numbers, results tables."""
+"""The parts of a text log: facts, headers, runs of numbers, results tables, and rows that belong to none."""
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from ssmr_ident.readers.source import Source
-from ssmr_ident.readers.table.headings import bare_unit, is_units_row, quantity_of, split_header
+from ssmr_ident.readers.table.headings import Heading
+from ssmr_ident.readers.text.dialect import Layout
+from ssmr_ident.readers.text.header_rows import Header, header_of
 from ssmr_ident.readers.text.numeric_run import NumberRun, TextRow
 
 _RESULT_WORDS = (
@@ -26,6 +27,8 @@ _RESULT_WORDS = (
     "variance",
     "coefficient",
 )
+_FEW = 0.01
+"""Choice: share of a table's rows that may have another shape; with more of them the table is not understood."""
 
 
 @dataclass
@@ -34,76 +37,77 @@ class Block:
 
     Parameters
     ----------
-    labels : list of str
-        Without units; empty when the block has no header.
-    units : list of str or None
+    headings : list of Heading
+        With empty labels when the block has no header.
     values : (n, m) float
     lines : (n,) int
+    timed : tuple of int
+        Columns of stamps.
+    short : list of int
+        Lines that lack cells.
+    text : tuple of int
+        Columns of words.
+    broken : list of TextRow
+        Lines among the rows that are none.
+    names : list of str
+        Of a header that does not fit.
+    more : list of NumberRun
+        Runs that go on behind broken lines, until they are put to ``values``.
     """
 
-    labels: list[str]
-    units: list[str | None]
+    headings: list[Heading]
     values: np.ndarray
     lines: np.ndarray
     timed: tuple[int, ...] = ()
     short: list[int] = field(default_factory=list)
+    text: tuple[int, ...] = ()
     facts: dict[str, str] = field(default_factory=dict)
     results: bool = False
+    broken: list[TextRow] = field(default_factory=list)
+    names: list[str] = field(default_factory=list)
+    more: list[NumberRun] = field(default_factory=list)
 
     @property
     def has_time(self) -> bool:
-        return any(quantity_of(label, unit) == "time" for label, unit in zip(self.labels, self.units, strict=True))
+        return any(h.quantity in ("time", "date") for h in self.headings)
+
+    @property
+    def named(self) -> bool:
+        return any(h.label for h in self.headings)
 
 
-def blocks_of(source: Source, items: list[NumberRun | TextRow], on_bad: str) -> list[Block]:
-    """Group the items of a text log into blocks.
-
-    Raises
-    ------
-    InputError
-        Text in the middle of a run of numbers, unless ``on_bad`` is ``nan``.
-    """
+def blocks_of(source: Source, items: list[NumberRun | TextRow], layout: Layout) -> list[Block]:
+    """Group the items of a text log into blocks."""
     blocks: list[Block] = []
     pending: list[TextRow] = []
     facts: dict[str, str] = {}
-    for item in items:
+    for item in _without_strays(items, layout):
         if isinstance(item, TextRow):
             pending.append(item)
             continue
         filled = [row for row in pending if row.cells]
-        if blocks and not pending and item.values.shape[1] != blocks[-1].values.shape[1]:
-            raise source.error(
-                f"row has {item.values.shape[1]} cells, {blocks[-1].values.shape[1]} are expected",
-                "Mend the row.",
-                f"line {item.lines[0]}",
-            )
-        labels, units, used = _header(filled, item.values.shape[1])
-        facts = facts | _facts(filled[: len(filled) - used])
+        header = header_of(filled, item.values.shape[1], layout.dialect, source.vocabulary)
+        facts = facts | header.facts
         previous = blocks[-1] if blocks else None
         results = any(_is_results(row) for row in filled[-4:])
-        if previous is not None and not used and item.values.shape[1] == previous.values.shape[1] and not results:
-            if not filled and not _restarts(previous, item):
-                _join(previous, item)
+        if (
+            previous is not None
+            and not header.used
+            and item.values.shape[1] == previous.values.shape[1]
+            and not results
+        ):
+            if not _restarts(previous, item) and not previous.results:
+                _join(previous, item, filled)
                 pending = []
                 continue
-            if filled and not _restarts(previous, item) and not previous.results:
-                bad = filled[0]
-                if on_bad != "nan":
-                    raise source.error(
-                        f"text {bad.raw.strip()[:60]!r} inside the data",
-                        "Drop such rows with --on-bad nan, or mend the line.",
-                        f"line {bad.line}",
-                    )
-                source.warn(
-                    f"{len(filled)} line(s) of text inside the data dropped: {bad.raw.strip()[:60]!r}",
-                    f"line {bad.line}",
-                )
-                _join(previous, item)
-                pending = []
-                continue
-            labels, units = previous.labels, previous.units
-        blocks.append(Block(labels, units, item.values, item.lines, item.timed, list(item.short), facts, results))
+            header = Header(previous.headings)
+        blocks.append(_block(item, header, facts, results))
         pending = []
+    for block in blocks:
+        if block.more:
+            block.values = np.concatenate([block.values, *(run.values for run in block.more)])
+            block.lines = np.concatenate([block.lines, *(run.lines for run in block.more)])
+            block.more = []
     if pending and blocks:
         filled = [row for row in pending if row.cells]
         if filled and any(_is_results(row) for row in filled):
@@ -113,73 +117,83 @@ def blocks_of(source: Source, items: list[NumberRun | TextRow], on_bad: str) -> 
     return blocks
 
 
+def _block(item: NumberRun, header: Header, facts: dict[str, str], results: bool) -> Block:
+    return Block(header.headings, item.values, item.lines, item.timed, list(item.short), item.text, facts, results,
+                 names=header.names)  # fmt: skip
+
+
+def _without_strays(items: list[NumberRun | TextRow], layout: Layout) -> list[NumberRun | TextRow]:
+    """A row or two of numbers of another width than the log's, with no header of their own, are broken lines."""
+    runs = [item for item in items if isinstance(item, NumberRun)]
+    if not runs:
+        return items
+    main = max(runs, key=lambda run: len(run.values)).values.shape[1]
+    made: list[NumberRun | TextRow] = []
+    for k, item in enumerate(items):
+        if isinstance(item, TextRow) or item.values.shape[1] == main or len(item.values) > 2:
+            made.append(item)
+            continue
+        width = item.values.shape[1]
+        above = items[k - 1] if k else None
+        if isinstance(above, TextRow) and len(above.cells) >= width > 1 and not any(c.isdigit() for c in above.raw):
+            made.append(item)
+            continue
+        for line, row in zip(item.lines, item.values, strict=True):
+            cells = [f"{v:g}" for v in row]
+            made.append(TextRow(int(line), cells, layout.dialect.delimiter.join(cells)))
+    return made
+
+
+def refuse_many_broken(source: Source, block: Block, on_bad: str) -> None:
+    """Leave rows of another shape out, with their lines; or stop where they are many.
+
+    Raises
+    ------
+    InputError
+        More than a hundredth of the rows are broken, unless ``on_bad`` is ``nan``.
+    """
+    lacking = set(block.short)
+    if len(lacking) > max(3, _FEW * len(block.values)):
+        lacking = set()  # the log's own way of writing empty cells at the end of a row
+    if lacking:
+        kept = ~np.isin(block.lines, list(lacking))
+        block.values, block.lines = block.values[kept], block.lines[kept]
+    lines = sorted({row.line for row in block.broken} | lacking)
+    if not lines:
+        return
+    first = next((row.raw.strip()[:60] for row in block.broken if row.line == lines[0]), "cells are missing")
+    if len(lines) > max(3, _FEW * len(block.values)) and on_bad != "nan":
+        raise source.error(
+            f"{len(lines)} lines among {len(block.values)} rows have another shape, the first: {first!r}",
+            "Leave such lines out with --on-bad nan, or mend them.",
+            f"line {lines[0]}",
+        )
+    shown = ", ".join(map(str, lines[:5])) + (f" and {len(lines) - 5} more" if len(lines) > 5 else "")
+    source.warn(
+        f"{len(lines)} line(s) among the rows have another shape and are left out (line {shown}): {first!r}",
+        f"line {lines[0]}",
+    )
+
+
 def _tail(source: Source, rows: list[TextRow]) -> None:
     row = rows[0]
-    source.warn(f"{len(rows)} line(s) of text after the data not read: {row.raw.strip()[:60]!r}", f"line {row.line}")
+    tell = source.inform if all(set(r.raw.strip()) <= set("-=_*+ ") for r in rows) else source.warn
+    tell(f"{len(rows)} line(s) of text after the data not read: {row.raw.strip()[:60]!r}", f"line {row.line}")
 
 
 def _restarts(previous: Block, item: NumberRun) -> bool:
-    index = next(
-        (
-            i
-            for i, (label, unit) in enumerate(zip(previous.labels, previous.units, strict=True))
-            if quantity_of(label, unit) == "time"
-        ),
-        0,
-    )
+    """True when the time of a run falls back to where the block before it began."""
+    index = next((i for i, h in enumerate(previous.headings) if h.quantity == "time"), 0)
     if not len(previous.values) or index >= item.values.shape[1]:
         return False
     return bool(item.values[0, index] <= previous.values[0, index] + 1e-12)
 
 
-def _join(block: Block, item: NumberRun) -> None:
-    block.values = np.concatenate([block.values, item.values])
-    block.lines = np.concatenate([block.lines, item.lines])
+def _join(block: Block, item: NumberRun, between: list[TextRow]) -> None:
+    block.more.append(item)
     block.timed = tuple(sorted({*block.timed, *item.timed}))
     block.short += item.short
-
-
-def _header(rows: list[TextRow], width: int) -> tuple[list[str], list[str | None], int]:
-    """Labels, units and how many of the last text rows they took."""
-    if not rows:
-        return [""] * width, [None] * width, 0
-    last = rows[-1]
-    unit_cells: list[str] | None = None
-    used = 0
-    if is_units_row(last.cells) and len(rows) > 1 and len(last.cells) <= width:
-        unit_cells = last.cells
-        used = 1
-    names = rows[-1 - used] if len(rows) > used else None
-    # one name too many is the Comment column of a table whose comments are empty
-    fits = names is not None and (len(names.cells) == width or (width > 1 and len(names.cells) == width + 1))
-    if names is None or not fits or any(_is_number(cell) for cell in names.cells):
-        return [""] * width, [None] * width, 0
-    split = [split_header(cell) for cell in names.cells[:width]]
-    labels = [label for label, _ in split]
-    units = [unit for _, unit in split]
-    if unit_cells is not None:
-        units = [
-            bare_unit(cell) if cell else unit
-            for cell, unit in zip([*unit_cells, *[""] * (width - len(unit_cells))], units, strict=True)
-        ]
-    return labels, units, used + 1
-
-
-def _is_number(cell: str) -> bool:
-    """True for what begins like a number, even a spoilt one: such a row is damaged data, no header."""
-    return bool(re.match(r"[+-]?[.,]?\d", cell))
-
-
-def _facts(rows: list[TextRow]) -> dict[str, str]:
-    found = {}
-    for row in rows[:200]:
-        cells = [cell for cell in row.cells if cell]
-        if len(cells) == 1 and ":" in cells[0]:
-            key, _, value = cells[0].partition(":")
-            found[key.strip()[:80]] = value.strip()[:400]
-        elif len(cells) >= 2:
-            found[cells[0].rstrip(":")[:80]] = " ".join(cells[1:])[:400]
-    return found
+    block.broken += between
 
 
 def _is_results(row: TextRow) -> bool:

@@ -1,29 +1,31 @@
-"""Delimited text: MTESTQuattro and other testing machines, LabVIEW graph exports, plain CSV.
+"""Delimited text: MTESTQuattro and other testing machines, LabVIEW graph exports, loggers, phones, plain CSV.
 
 No public MTESTQuattro text export fixes a layout, and operators choose columns and units; so nothing here counts
-lines or columns. The longest run of number rows gives delimiter and decimal sign, the text above it labels and
-units.
+lines or columns. The longest run of rows gives delimiter and decimal sign, the text above it labels and units.
 """
 
 from __future__ import annotations
+
+from dataclasses import replace
 
 import numpy as np
 
 from ssmr_ident.core.recording import Note, Recording
 from ssmr_ident.readers.options import ReadOptions
 from ssmr_ident.readers.source import Source
-from ssmr_ident.readers.table import clocks
 from ssmr_ident.readers.table.assemble import recordings_of
 from ssmr_ident.readers.table.columns import Column, Table, facts
-from ssmr_ident.readers.table.headings import quantity_of, split_header
-from ssmr_ident.readers.text.blocks import Block, blocks_of
-from ssmr_ident.readers.text.dialect import sniff
+from ssmr_ident.readers.table.vocabulary import words_of
+from ssmr_ident.readers.text.blocks import Block, blocks_of, refuse_many_broken
+from ssmr_ident.readers.text.dialect import Layout, sniff
 from ssmr_ident.readers.text.encoding import text_of
+from ssmr_ident.readers.text.header_rows import rate_from
 from ssmr_ident.readers.text.last_line import without_cut_line
-from ssmr_ident.readers.text.numeric_run import TextRow, walk
+from ssmr_ident.readers.text.line_forms import plain_rows
+from ssmr_ident.readers.text.numeric_run import NumberRun, TextRow, walk
 
 NAMES = ("csv", "mtestquattro")
-_DAQ_RANGE = 10.0  # V, the widest input range of NI's data-acquisition cards
+MACHINE_WORDS = {"load", "standardkraft", "prüfkraft", "obciążenie", "kraft", "force", "charge", "carga", "fuerza"}
 
 
 def recognises(source: Source) -> bool:
@@ -37,38 +39,37 @@ def read(source: Source, options: ReadOptions) -> list[Recording]:
     Raises
     ------
     InputError
-        No numbers, no time, no unit of a force, ambiguous numbers, text inside the data.
+        No numbers, no time, no unit of a force, ambiguous numbers, too many broken lines.
     """
-    text = text_of(source)
-    dialect = sniff(source, text, options)
-    text = without_cut_line(source, text, dialect.delimiter)
-    items = list(walk(text, dialect))
-    blocks = _data_blocks(source, blocks_of(source, items, options.on_bad))
+    text = plain_rows(source, text_of(source))
+    layout = sniff(source, text, options)
+    text = without_cut_line(source, text, layout.dialect.delimiter)
+    items = list(walk(text, layout))
+    blocks = _data_blocks(source, blocks_of(source, items, layout))
     _refuse_split_decimals(source, items, blocks)
     recordings: list[Recording] = []
     for number, block in enumerate(blocks, start=1):
+        refuse_many_broken(source, block, options.on_bad)
         part = f"lines {block.lines[0]}-{block.lines[-1]}"
         if len(blocks) > 1:
             part = f"block {number} of {len(blocks)}, {part}"
-        recordings += _recordings_of_block(source, block, part, str(dialect), options)
+        recordings += _recordings_of_block(source, block, part, layout, options)
     return recordings
 
 
 def _data_blocks(source: Source, blocks: list[Block]) -> list[Block]:
     """The blocks that are measurements: those with time when any has it, and no results tables."""
     if any(block.has_time for block in blocks):
-        dropped = [block for block in blocks if not block.has_time]
         kept = [block for block in blocks if block.has_time]
     else:
         kept = [block for block in blocks if not block.results] or blocks
         longest = max((len(block.values) for block in kept), default=0)
-        dropped = [block for block in blocks if not any(block is one for one in kept)]
-        short = [block for block in kept if len(block.values) < 0.1 * longest]  # stray numbers in a header
-        dropped += short
-        kept = [block for block in kept if len(block.values) >= 0.1 * longest]
-    for block in dropped:
+        kept = [block for block in kept if len(block.values) >= 0.1 * longest]  # stray numbers in a header
+    for block in blocks:
+        if any(block is one for one in kept):
+            continue
         # a table with a header of its own is a results table; bare numbers may be what the user wanted
-        tell = source.inform if block.results or any(block.labels) else source.warn
+        tell = source.inform if block.results or block.named else source.warn
         tell(
             f"{len(block.values)} row(s) of numbers without a time column (results, not data) left out",
             f"line {block.lines[0]}",
@@ -78,12 +79,19 @@ def _data_blocks(source: Source, blocks: list[Block]) -> list[Block]:
     return kept
 
 
-def _refuse_split_decimals(source: Source, items: list, blocks: list[Block]) -> None:
-    """``1,5,2,5`` below two names is two numbers with decimal commas, cut in four."""
+def _refuse_split_decimals(source: Source, items: list[NumberRun | TextRow], blocks: list[Block]) -> None:
+    """``1,5,2,5`` below two names is two numbers with decimal commas; one number below four names is no channel."""
     for block in blocks:
-        if any(block.labels):
+        if block.named:
             continue
         width = block.values.shape[1]
+        if width == 1 and len(block.names) > 1:
+            raise source.error(
+                f"has {len(block.names)} names in the header ({', '.join(block.names[:6])}) and one number a row: "
+                "no channel was logged",
+                "Log again with the sensors switched on, or export the columns too.",
+                f"line {block.lines[0]}",
+            )
         above = [item for item in items if isinstance(item, TextRow) and item.line < block.lines[0] and item.cells]
         if above and len(above[-1].cells) * 2 == width and not any(v.isdigit() for v in above[-1].cells):
             raise source.error(
@@ -94,38 +102,40 @@ def _refuse_split_decimals(source: Source, items: list, blocks: list[Block]) -> 
 
 
 def _recordings_of_block(
-    source: Source, block: Block, part: str, dialect: str, options: ReadOptions
+    source: Source, block: Block, part: str, layout: Layout, options: ReadOptions
 ) -> list[Recording]:
-    notes = [Note("info", f"{len(block.values)} rows, {dialect}", part)]
+    words = [h.label or f"column {k}" for k, h in enumerate(block.headings) if k in block.text]
     columns = [
-        Column(label, unit, np.ascontiguousarray(block.values[:, index]), index in block.timed)
-        for index, (label, unit) in enumerate(zip(block.labels, block.units, strict=True))
+        Column(h.label, h.unit, np.ascontiguousarray(block.values[:, k]), k in block.timed, source=h.source, number=k)
+        for k, h in enumerate(block.headings)
+        if k not in block.text and not (not h.label and np.isnan(block.values[:, k]).all())
     ]
-    graph = _is_graph_export(block.labels)
+    graph = _is_graph_export([c.label for c in columns])
     if graph:
         for column in columns[::2]:
             column.quantity = "time"  # its label may be edited or in any language
-    headerless = not any(block.labels)
-    assumed = "V" if graph or (headerless and _within_daq_range(columns, options)) else None
+    rate, told = rate_from(block.facts, source.vocabulary) or (0.0, "")
     table = Table(
         columns,
         lambda row: f"line {block.lines[row]}",
         part,
         facts(block.facts),
-        notes,
-        assumed,
-        axes_in_volts=graph or headerless,
+        [Note("info", f"{len(block.values)} rows, {layout.dialect}", part)],
+        "V" if graph else None,
+        axes_in_volts=graph or not block.named,
         split=True,
+        rate=rate,
+        rate_from=told,
+        words=words,
     )
-    if headerless and assumed is None and not options.columns and not options.units:
-        raise source.error(
-            "columns have no header and are not within ±10 V: units unknown",
-            "Give --columns time=0,force=1 --units force=N.",
-            part,
-        )
-    clocks.onto_one_clock(source, table, options)
-    reader = "mtestquattro" if _is_testing_machine(columns) else "csv"
-    return recordings_of(source, reader, table, options)
+    recordings = recordings_of(source, "csv", table, options)
+    if _is_testing_machine(columns):
+        return [_by_machine(recording) for recording in recordings]
+    return recordings
+
+
+def _by_machine(recording: Recording) -> Recording:
+    return replace(recording, provenance=replace(recording.provenance, reader="mtestquattro"))
 
 
 def _is_graph_export(labels: list[str]) -> bool:
@@ -136,18 +146,12 @@ def _is_graph_export(labels: list[str]) -> bool:
         if first.startswith("time[") and second.startswith("Y["):
             continue
         a, b = first.partition(" - "), second.partition(" - ")
-        if not (a[1] and b[1] and a[2] == b[2]):
+        if not (a[1] and b[1] and (a[2] == b[2] or words_of(a[2])[-1:] == words_of(b[0])[-1:])):
             return False
     return True
 
 
-def _within_daq_range(columns: list[Column], options: ReadOptions) -> bool:
-    data = columns if options.fs is not None else columns[1:]
-    return all(np.nanmax(np.abs(column.values), initial=0.0) <= _DAQ_RANGE for column in data)
-
-
 def _is_testing_machine(columns: list[Column]) -> bool:
     """Force over position, with their units spelt out: what a testing machine writes."""
-    words = {split_header(column.label)[0].strip().lower() for column in columns}
-    found = {quantity_of(column.label, column.unit) for column in columns}
-    return {"force", "position"} <= found and bool(words & {"load", "standardkraft", "obciążenie", "kraft", "force"})
+    words = {column.label.strip().lower() for column in columns}
+    return {"force", "position"} <= {c.quantity for c in columns} and bool(words & MACHINE_WORDS)

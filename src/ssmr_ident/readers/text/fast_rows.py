@@ -9,7 +9,9 @@ from ssmr_ident.core.kernel import kernel
 POWERS_OF_TEN = 10.0 ** np.arange(23)  # all exact in double precision
 EXACT = 2**53  # integers up to here are exact in double precision
 LONGEST = 18  # digits that a 64-bit integer holds for certain
-_TAB, _NEWLINE, _RETURN, _BLANK, _PLUS, _MINUS, _ZERO = 9, 10, 13, 32, 43, 45, 48
+LEAST = 10**18  # of 19 digits; a larger one than an integer holds has come round below it, or is not written by clocks
+NUMBER, TEXT, STAMP = 0, 1, 2
+_TAB, _NEWLINE, _RETURN, _BLANK, _QUOTE, _PLUS, _MINUS, _ZERO = 9, 10, 13, 32, 34, 43, 45, 48
 
 
 @kernel
@@ -48,8 +50,33 @@ def count_lines(buffer):
 
 
 @kernel
-def parse_rows(buffer, position, delimiter, decimal, out):
-    """Parse rows until ``out`` is full or a row is not plain numbers.
+def _pass_over(buffer, p, delimiter, blank):
+    """End of a cell that is no number, and its span without quotes; a begin of -1 for an open quote."""
+    end = buffer.size
+    if buffer[p] == _QUOTE:
+        begin = p + 1
+        p += 1
+        while p < end and buffer[p] != _QUOTE and buffer[p] != _NEWLINE:
+            p += 1
+        if p >= end or buffer[p] == _NEWLINE:
+            return p, -1, -1
+        behind = p
+        p += 1
+        while p < end and (buffer[p] == _BLANK or (buffer[p] == _TAB and delimiter != _TAB)):
+            p += 1
+        return p, begin, behind
+    begin = p
+    while p < end and buffer[p] != delimiter and buffer[p] != _NEWLINE and not (blank and buffer[p] == _TAB):
+        p += 1
+    behind = p
+    while behind > begin and buffer[behind - 1] <= _BLANK:
+        behind -= 1
+    return p, begin, behind
+
+
+@kernel
+def parse_rows(buffer, position, delimiter, decimal, kinds, out, spans):
+    """Parse rows until ``out`` is full or a row is not of plain numbers, text and stamps where they belong.
 
     Parameters
     ----------
@@ -58,8 +85,12 @@ def parse_rows(buffer, position, delimiter, decimal, out):
         Start of a line.
     delimiter, decimal : int
         Character codes; a blank as delimiter stands for any run of blanks and tabs.
+    kinds : (width,) int64
+        ``NUMBER``, ``TEXT`` (passed over) or ``STAMP`` (passed over, its place kept).
     out : (width, rows) float
-        Filled from the left, one row of the log per column. An empty first cell becomes NaN.
+        Filled from the left, one row of the log per column. Empty cells and cells that are passed over become NaN.
+    spans : (stamps, rows, 2) int64
+        First byte of each stamp and the byte behind its last.
 
     Returns
     -------
@@ -76,15 +107,40 @@ def parse_rows(buffer, position, delimiter, decimal, out):
     while count < rows and start < end:
         p = start
         good = True
+        stamp = 0
         for column in range(width):
             while p < end and (buffer[p] == _BLANK or (buffer[p] == _TAB and delimiter != _TAB)):
                 p += 1
             if p >= end:
                 good = False
                 break
-            if column == 0 and not blank and buffer[p] == delimiter:
-                out[0, count] = np.nan
+            if kinds[column] != NUMBER:
+                p, begin, behind = _pass_over(buffer, p, delimiter, blank)
+                if begin < 0:
+                    good = False
+                    break
+                out[column, count] = np.nan
+                if kinds[column] == STAMP:
+                    spans[stamp, count, 0] = begin
+                    spans[stamp, count, 1] = behind
+                    stamp += 1
+                if column < width - 1:
+                    if blank:
+                        if p >= end or (buffer[p] <= _RETURN and buffer[p] != _TAB):
+                            good = False
+                            break
+                        continue
+                    if p >= end or buffer[p] != delimiter:
+                        good = False
+                        break
+                    p += 1
+                continue
+            if not blank and buffer[p] == delimiter and column < width - 1:
+                out[column, count] = np.nan
                 p += 1
+                continue
+            if not blank and column == width - 1 and column and buffer[p] <= _RETURN and buffer[p] != _TAB:
+                out[column, count] = np.nan
                 continue
             negative = buffer[p] == _MINUS
             if negative or buffer[p] == _PLUS:
@@ -115,7 +171,9 @@ def parse_rows(buffer, position, delimiter, decimal, out):
                 while buffer[begin] == _ZERO or buffer[begin] == decimal:
                     digits -= buffer[begin] == _ZERO
                     begin += 1
-            if digits == 0 or digits > LONGEST:
+            # a whole number of 19 digits, as nanoseconds since 1970 have, is rounded once when it becomes a float
+            longest = LONGEST + 1 if scale == 0 and mantissa >= LEAST else LONGEST
+            if digits == 0 or digits > longest:
                 good = False
                 break
             if p < end and (buffer[p] == 69 or buffer[p] == 101):  # E, e
@@ -136,6 +194,8 @@ def parse_rows(buffer, position, delimiter, decimal, out):
                 p = q
             if mantissa == 0:
                 value = 0.0
+            elif mantissa > EXACT and scale == 0:
+                value = float(mantissa)
             elif mantissa > EXACT:
                 value, certain = _long_quotient(mantissa, -scale)
                 if not certain:

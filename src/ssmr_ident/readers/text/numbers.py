@@ -6,12 +6,12 @@ import csv
 import math
 import re
 from dataclasses import dataclass
-from datetime import UTC, datetime
 
 from ssmr_ident.core.shown import Shown
 
-_POINT = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][+-]?\d{1,4})?\Z", re.ASCII)
-_COMMA = re.compile(r"[+-]?(?:\d+,?\d*|,\d+)(?:[eEdD][+-]?\d{1,4})?\Z", re.ASCII)
+LONGEST = 400  # characters of a number; a longer cell is text, and no pattern looks at it
+_POINT = re.compile(r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eEdD][+-]?\d{1,4})?\Z", re.ASCII)
+_COMMA = re.compile(r"[+-]?(?:\d+(?:,\d*)?|,\d+)(?:[eEdD][+-]?\d{1,4})?\Z", re.ASCII)
 # a group of thousands never starts with 0: 0,001 is a decimal comma, not one thousandth of thousands
 _GROUPED_POINT = re.compile(
     r"[+-]?[1-9]\d{0,2}(?:(?:,\d{3})+|(?:'\d{3})+|(?:[ \u00a0\u202f]\d{3})+)(?:\.\d*)?\Z", re.ASCII
@@ -35,6 +35,12 @@ _NO_NUMBER = {
     "1,#qnan",
     "-1,#ind",
     "---",
+    "null",
+    "none",
+    "#nv",
+    "#wert!",
+    "#value!",
+    "n.def.",
 }
 _INFINITE = {
     "inf": math.inf,
@@ -45,8 +51,6 @@ _INFINITE = {
     "infinity": math.inf,
     "-infinity": -math.inf,
 }
-_CLOCK = re.compile(r"(\d{1,2}):(\d{2}):(\d{2}(?:[.,]\d+)?)\s*([AaPp][Mm])?\Z", re.ASCII)
-_DATED = re.compile(r"(\S+?)[T\s]+(\d{1,2}:\d{2}:\d{2}(?:[.,]\d+)?(?:\s*[AaPp][Mm])?)Z?\Z", re.ASCII)
 
 
 @dataclass(frozen=True)
@@ -56,7 +60,7 @@ class Dialect(Shown):
     Parameters
     ----------
     delimiter : str
-        ``\\t``, ``;``, ``,`` or a blank (any run of white space).
+        ``\\t``, ``;``, ``,``, ``|`` or a blank (any run of white space).
     decimal : str
         ``.`` or ``,``.
     """
@@ -68,6 +72,8 @@ class Dialect(Shown):
         """Cells of a line, unquoted and stripped; empty cells at the end are dropped."""
         if self.delimiter == " ":
             cells = line.split()
+        elif self.delimiter == "|":
+            cells = line.strip().removeprefix("|").split("|")
         elif '"' in line and len(line) < 100_000:
             try:
                 cells = next(csv.reader([line], delimiter=self.delimiter, skipinitialspace=True), [])
@@ -81,7 +87,7 @@ class Dialect(Shown):
         return cells
 
     def __str__(self) -> str:
-        names = {"\t": "tab", ";": "semicolon", ",": "comma", " ": "blanks"}
+        names = {"\t": "tab", "|": "bar", ";": "semicolon", ",": "comma", " ": "blanks"}
         return f"{names[self.delimiter]} separated, decimal {'point' if self.decimal == '.' else 'comma'}"
 
 
@@ -96,6 +102,8 @@ def number(token: str, decimal: str = ".") -> float:
     >>> number("1.234,5", ",")
     1234.5
     """
+    if len(token) > LONGEST:
+        raise ValueError(token[:40])
     plain, grouped = (_POINT, _GROUPED_POINT) if decimal == "." else (_COMMA, _GROUPED_COMMA)
     if plain.match(token):
         return float(token.replace(",", ".").replace("d", "e").replace("D", "e"))
@@ -110,42 +118,9 @@ def number(token: str, decimal: str = ".") -> float:
     raise ValueError(token)
 
 
-def clock(token: str) -> float | None:
-    """Seconds since midnight of ``14:03:11.5`` or ``2:03:11 PM``; None for anything else.
-
-    >>> clock("2:03:11 PM")
-    50591.0
-    """
-    match = _CLOCK.match(token)
-    if not match:
-        return None
-    hour, minute, second = int(match[1]), int(match[2]), float(match[3].replace(",", "."))
-    if match[4]:
-        if not 1 <= hour <= 12:
-            return None
-        hour = hour % 12 + (12 if match[4].lower() == "pm" else 0)
-    return None if hour > 24 or minute > 59 or second >= 61 else hour * 3600.0 + minute * 60.0 + second
-
-
-def dated(token: str) -> float | None:
-    """Seconds since 1970 of a date with a clock time; None for anything else."""
-    match = _DATED.match(token)
-    seconds = clock(match[2]) if match else None
-    if match is None or seconds is None:
-        return None
-    for pattern in ("%Y-%m-%d", "%Y/%m/%d", "%d.%m.%Y", "%m/%d/%Y", "%d/%m/%Y", "%d-%m-%Y"):
-        # the day does not matter for elapsed seconds unless a recording runs over midnight
-        try:
-            day = datetime.strptime(match[1], pattern).replace(tzinfo=UTC)
-        except ValueError:
-            continue
-        return day.timestamp() + seconds
-    return None
-
-
 def evidence_for_decimal(token: str) -> str:
     """What a token says about the decimal sign: ``.``, ``,`` or '' when it could be read either way."""
-    marks = [mark for mark in token if mark in ".,"]
+    marks = [mark for mark in token[:LONGEST] if mark in ".,"]
     if not marks:
         return ""
     if "." in marks and "," in marks:

@@ -15,6 +15,7 @@ from ssmr_ident.readers.table import time_axis
 from ssmr_ident.readers.table.assemble import recordings_of
 from ssmr_ident.readers.table.columns import Column, Table
 from ssmr_ident.readers.table.headings import split_header
+from ssmr_ident.readers.table.stamp_units import clock_of
 from ssmr_ident.readers.xlsx.sheet_axes import axes_of, is_filled
 from ssmr_ident.readers.xlsx.sheet_numbers import SheetNumbers, numbers_of
 from ssmr_ident.readers.xlsx.workbook import Sheet, open_sheets, what_is_in
@@ -112,8 +113,9 @@ def _axis_numbers(source: Source, sheet: Sheet, axis: str, options: ReadOptions)
         if conversion is None or conversion.unit != "s":
             raise source.error(f"--time-unit {options.time_unit} is no unit of time", "Give s, ms or us.")
         stamps = stamps * conversion.factor
-    found.values[:, 0], notes = time_axis.elapsed(stamps, clock=found.dated)
-    found.notes += notes
+    clock = clock_of(source, Column("time", "s", stamps, found.dated), ReadOptions(), Table([], str))
+    found.values[:, 0] = clock.seconds
+    found.notes += [Note("info", text, sheet.name) for text in clock.notes]
     if found.dated and options.fs is None:
         _check_date_resolution(source, sheet, found)
     return found

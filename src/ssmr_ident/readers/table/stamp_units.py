@@ -1,0 +1,189 @@
+"""From a column of stamps in any unit to seconds: units stated, or told by size and step; stamps in two columns."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from datetime import UTC, datetime
+
+import numpy as np
+
+from ssmr_ident.readers.options import ReadOptions
+from ssmr_ident.readers.source import Source
+from ssmr_ident.readers.table.columns import Column, Table
+from ssmr_ident.readers.table.vocabulary import words_of
+
+DAY = 86400.0
+SECONDS_1904 = 2.0e9  # a LabVIEW stamp after 1967, counted from 1904; a count from 1970 comes there in 2033
+EPOCH = (5.0e8, SECONDS_1904)  # seconds since 1970 from November 1985 on
+LONGEST_STEP = 3600.0  # s; a log of this trade has more than a sample an hour
+FASTEST = 1e5  # Hz; no logger of this trade samples faster
+LARGEST = 1e20  # of a stamp as printed; nanoseconds since 1970 are 2e18, and what is larger is damage
+_SCALES = (("s", 1.0), ("ms", 1e-3), ("us", 1e-6), ("ns", 1e-9))
+_SECOND = {"sec", "secs", "s", "second", "seconds"}
+_BELOW = {
+    **dict.fromkeys(("nanosec", "nanosecs", "nsec", "nsecs", "ns", "nanoseconds", "nanosecond", "nanos"), 1e-9),
+    **dict.fromkeys(("usec", "usecs", "us", "microsec", "microseconds", "micros"), 1e-6),
+    **dict.fromkeys(("msec", "msecs", "ms", "millis", "millisec", "milliseconds"), 1e-3),
+}
+
+
+@dataclass
+class Clock:
+    """Stamps in seconds.
+
+    Parameters
+    ----------
+    label : str
+        Of the column.
+    seconds : (n,) float [s]
+        NaN where there is none.
+    begin : float [s]
+        What was subtracted: the date or the count at which the log begins; 0 for stamps that stay as they are.
+    notes : list of str
+        What was done, for the user.
+    column : Column
+        Where it is from.
+    """
+
+    label: str
+    seconds: np.ndarray
+    begin: float
+    notes: list[str]
+    column: Column
+
+
+def clock_of(source: Source, column: Column, options: ReadOptions, table: Table) -> Clock:
+    """Seconds of a column of stamps.
+
+    Raises
+    ------
+    InputError
+        No numbers in it, a unit that is no time, or whole numbers of which nothing says what they count.
+    """
+    values = np.where(np.abs(column.values) < LARGEST, column.values, np.nan)
+    finite = values[np.isfinite(values)]
+    if not len(finite):
+        raise source.error(f"time column {column.shown} has no numbers", "Give --fs.", table.part)
+    notes: list[str] = []
+    if column.clock and options.time_unit is None:
+        return _time_of_day(column, values, notes)
+    unit = options.time_unit or column.unit
+    if unit is None:
+        unit = _told_by_size(finite, notes, column.shown)
+        if unit is None:
+            _ask_for_whole_numbers(source, column, finite, table)
+            notes.append(f"time column {column.shown} states no unit; taken as s")
+            unit = "s"
+    conversion = source.vocabulary.unit(unit)
+    if conversion is None or conversion.unit != "s":
+        raise source.error(
+            f"unit {unit!r} of time column {column.shown} is no time", "Give --time-unit s, ms or us.", table.part
+        )
+    if conversion.changes and not notes:
+        notes.append(f"{column.shown}: {unit} × {conversion.factor:g} = s")
+    return _from_zero(column, values, conversion.factor, notes)
+
+
+def _from_zero(column: Column, values: np.ndarray, factor: float, notes: list[str]) -> Clock:
+    """Scaled; counts since 1904 or 1970 begin at 0, subtracted before they are scaled to lose no digit."""
+    first = values[np.isfinite(values)][0]
+    begin = float(first) * factor
+    absolute = EPOCH[0] < begin
+    seconds = (values - first) * factor if absolute else values * factor
+    if absolute:
+        resolution = max(float(np.spacing(np.nanmax(np.abs(values)))) * factor, 1e-9)
+        origin = "LabVIEW counts from 1904" if begin > SECONDS_1904 else f"since 1970: {_date(begin)}"
+        notes.append(
+            f"time: absolute seconds ({origin}) became seconds since the first sample "
+            f"(resolution of the stamp {resolution:.1g} s)"
+        )
+    return Clock(column.shown, seconds, begin if absolute else 0.0, notes, column)
+
+
+def _date(seconds: float) -> str:
+    return datetime.fromtimestamp(seconds, tz=UTC).strftime("%Y-%m-%d %H:%M:%S") if seconds < 4e9 else f"{seconds:g} s"
+
+
+def _time_of_day(column: Column, stamps: np.ndarray, notes: list[str]) -> Clock:
+    """Clock times, which begin again at midnight, and dates."""
+    finite = stamps[np.isfinite(stamps)]
+    if finite.max() < DAY + 1:
+        drops = np.flatnonzero(np.diff(stamps) < -DAY / 2)
+        if len(drops):
+            stamps = stamps.copy()
+            for drop in drops:
+                stamps[drop + 1 :] += DAY
+            notes.append("clock times run over midnight; carried on")
+    resolution = max(float(np.spacing(np.abs(finite).max())), 1e-9)
+    kind = "dates" if finite.max() > DAY + 1 else "clock times"
+    notes.append(f"time: {kind} became seconds since the first sample (resolution of the stamp {resolution:.1g} s)")
+    return Clock(column.shown, stamps - finite[0], float(finite[0]), notes, column)
+
+
+def _told_by_size(finite: np.ndarray, notes: list[str], shown: str) -> str | None:
+    """The unit of a count since 1970: with one alone the numbers are a date of this age and the steps short."""
+    step = float(np.median(np.diff(finite))) if len(finite) > 1 else 0.0
+    for unit, factor in _SCALES:
+        begin = float(finite[0]) * factor
+        if EPOCH[0] < begin < SECONDS_1904 and 0 <= step * factor < LONGEST_STEP:
+            if factor < 1.0:
+                notes.append(f"{shown}: {unit} since 1970, as its size and its step of {step * factor:.4g} s say")
+            return unit
+    return "s" if SECONDS_1904 < float(finite[0]) < 2.2 * SECONDS_1904 and 0 <= step < LONGEST_STEP else None
+
+
+def _ask_for_whole_numbers(source: Source, column: Column, finite: np.ndarray, table: Table) -> None:
+    whole = len(finite) > 2 and bool((finite == np.round(finite)).all())
+    step = float(np.median(np.diff(finite))) if len(finite) > 1 else 0.0
+    if not whole or step < 1:
+        return
+    rates = [f"{1 / (step * f):.4g} Hz in {unit}" for unit, f in _SCALES if 0.1 < 1 / (step * f) < FASTEST]
+    raise source.error(
+        f"unit of time column {column.shown} unknown: whole numbers in steps of {step:g} ({', '.join(rates)}?)",
+        "Give --time-unit s, ms or us, or --fs for a sample count.",
+        table.part,
+    )
+
+
+def in_two_columns(columns: list[Column], table: Table) -> list[Column]:
+    """Stamps of two columns put together: seconds and a part of a second, or a date and a time of day."""
+    made = list(columns)
+    for seconds in columns:
+        words = _with_unit(seconds)
+        if seconds.given or not words or words[-1] not in _SECOND:
+            continue
+        for below in columns:
+            parts = _with_unit(below)
+            if not parts or below is seconds or parts[-1] not in _BELOW or parts[:-1] != words[:-1]:
+                continue
+            factor = _BELOW[parts[-1]]
+            if not _whole(seconds.values) or not _whole(below.values) or np.nanmax(below.values) * factor >= 1.0:
+                continue
+            label = " ".join(words[:-1]) or "stamp"
+            first = float(np.nanmin(seconds.values))
+            together = (seconds.values - first) + below.values * factor
+            table.inform(f"time: {seconds.shown} + {factor:g} × {below.shown}, from {_date(first)} on")
+            stamp = Column(label, "s", together, quantity="time", number=seconds.number)
+            made = [stamp if c is seconds else c for c in made if c is not below]
+    dates = [c for c in made if c.clock and _is_date(c)]
+    clocks = [c for c in made if c.clock and not _is_date(c) and np.nanmax(c.values) <= DAY + 1]
+    if dates and clocks and not dates[0].given:
+        day, clock = dates[0], clocks[0]
+        stamp = Column(f"{day.label} {clock.label}", None, day.values + clock.values, True, "time", number=clock.number)
+        made = [stamp if c is clock else c for c in made if c is not day]
+    return made
+
+
+def _with_unit(column: Column) -> tuple[str, ...]:
+    """Words of a header with its unit: ``stamp/secs`` and ``stamp.sec`` alike."""
+    words = words_of(column.label)
+    return (*words, column.unit.lower()) if column.unit and column.unit.lower() not in words[-1:] else words
+
+
+def _is_date(column: Column) -> bool:
+    finite = column.values[np.isfinite(column.values)]
+    return len(finite) > 0 and bool((finite % DAY == 0).all()) and float(finite.max()) > DAY
+
+
+def _whole(values: np.ndarray) -> bool:
+    return bool(np.isfinite(values).all() and (values == np.round(values)).all() and values.min(initial=0) >= 0)

@@ -1,0 +1,158 @@
+"""What columns are called: the words of vocabulary.yaml, and those of a file beside the log."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from ssmr_ident.core.errors import InputError, did_you_mean
+from ssmr_ident.core.units import QUANTITY_OF_UNIT, Conversion, find_unit
+
+SHIPPED = Path(__file__).with_name("vocabulary.yaml")
+BESIDE = "vocabulary.yaml"
+LONGEST = 120  # characters of a header that are looked at; no name is longer
+_SECTIONS = ("modifiers", "others", "lengths", "counters", "ignored", "rates", "steps")
+_KEYS = {"quantities", "symbols", "conventions", "units", *_SECTIONS}
+_TOKEN = re.compile(r"[^\W\d_]+|\d+|[°%µ#]")
+_HUMP = re.compile(r"(?<=[a-zà-öø-ÿ])(?=[A-ZÀ-ÖØ-Þ])|(?<=[A-Z])(?=[A-Z][a-z])")
+
+
+def words_of(text: str) -> tuple[str, ...]:
+    """Words of a header in lower case; camelCase, ``_``, ``.`` and digits separate.
+
+    >>> words_of("FreeAcc_X"), words_of("Station 1 Force")
+    (('free', 'acc', 'x'), ('station', '1', 'force'))
+    """
+    spaced = _HUMP.sub(" ", unicodedata.normalize("NFC", text[:LONGEST]))
+    return tuple(token.lower() for token in _TOKEN.findall(spaced))
+
+
+@dataclass(frozen=True)
+class Convention:
+    """Names whose unit a published definition fixes."""
+
+    pattern: re.Pattern[str]
+    unit: str
+    source: str
+
+
+@dataclass(frozen=True)
+class Vocabulary:
+    """Words by what they mean.
+
+    Parameters
+    ----------
+    phrases : dict of tuple of str to str
+        Quantity by its words.
+    endings : dict of str to str
+        Quantity by the end of a compound (``Prüfkraft``).
+    optional : dict of str to str
+        Quantities that are not asked about, with their SI unit.
+    symbols : dict of str to tuple of str
+    words : dict of str to frozenset of tuple of str
+        By section: modifiers, others, lengths, counters, ignored, rates, steps.
+    conventions : tuple of Convention
+    units : dict of str to Conversion
+        Beyond those of ``core.units``.
+    languages : dict of str to dict of str to list of str
+        As written, for the page on formats.
+    """
+
+    phrases: dict[tuple[str, ...], str]
+    endings: dict[str, str]
+    optional: dict[str, str]
+    symbols: dict[str, tuple[str, ...]]
+    words: dict[str, frozenset[tuple[str, ...]]]
+    conventions: tuple[Convention, ...]
+    units: dict[str, Conversion]
+    languages: dict[str, dict[str, list[str]]] = field(default_factory=dict)
+
+    def unit(self, text: str) -> Conversion | None:
+        """The way to SI of a unit as written."""
+        return self.units.get(text.strip()) or find_unit(text)
+
+    def has(self, section: str, words: tuple[str, ...]) -> bool:
+        return words in self.words[section]
+
+
+def vocabulary_for(folder: Path) -> Vocabulary:
+    """The shipped words, and those of ``vocabulary.yaml`` in a log's folder.
+
+    Raises
+    ------
+    InputError
+        The file beside the log is no vocabulary.
+    """
+    beside = folder / BESIDE
+    try:
+        stamp = beside.stat().st_mtime_ns
+    except (OSError, ValueError):  # ValueError: a NUL in the name
+        return shipped()
+    return _with(beside, stamp)
+
+
+@cache
+def shipped() -> Vocabulary:
+    """The vocabulary of this package."""
+    return _made(_content(SHIPPED))
+
+
+@cache
+def _with(beside: Path, stamp: int) -> Vocabulary:
+    return _made(_content(SHIPPED), _content(beside))
+
+
+def _content(path: Path) -> dict[str, Any]:
+    try:
+        content = yaml.safe_load(path.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
+        raise InputError(str(path), f"is no vocabulary ({' '.join(str(error).split())[:120]})", "Mend it.") from error
+    if not isinstance(content, dict):
+        raise InputError(str(path), "is no vocabulary", "Its keys are " + ", ".join(sorted(_KEYS)) + ".")
+    for key in content:
+        if key not in _KEYS:
+            raise InputError(str(path), f"has an unknown key {key!r}", did_you_mean(str(key), _KEYS))
+    return content
+
+
+def _made(*contents: dict[str, Any]) -> Vocabulary:
+    phrases: dict[tuple[str, ...], str] = {}
+    endings: dict[str, str] = {}
+    optional: dict[str, str] = {}
+    languages: dict[str, dict[str, list[str]]] = {}
+    symbols: dict[str, tuple[str, ...]] = {}
+    sections: dict[str, set[tuple[str, ...]]] = {section: set() for section in _SECTIONS}
+    conventions: list[Convention] = []
+    units: dict[str, Conversion] = {}
+    known = {*QUANTITY_OF_UNIT.values(), "date", "base_acceleration", "position_reference"}
+    for content in contents:
+        for quantity, entry in dict(content.get("quantities") or {}).items():
+            if entry.get("optional"):
+                optional[quantity] = str(entry["unit"])
+            elif quantity not in known:
+                raise InputError(
+                    "vocabulary.yaml", f"quantity {quantity!r} is not known", did_you_mean(quantity, known)
+                )
+            for language, names in dict(entry.get("words") or {}).items():
+                languages.setdefault(quantity, {}).setdefault(language, []).extend(map(str, names))
+                for name in names:
+                    phrases[words_of(str(name))] = quantity
+            endings |= dict.fromkeys(map(str, entry.get("endings") or ()), quantity)
+        symbols |= {str(k): tuple(v) for k, v in dict(content.get("symbols") or {}).items()}
+        for section in _SECTIONS:
+            sections[section] |= {words_of(str(name)) or (str(name),) for name in content.get(section) or ()}
+        for entry in content.get("conventions") or ():
+            name = re.escape(entry["name"]).replace(r"\{axis\}", "[xyz]").replace(r"\.", "[./]")
+            conventions.append(Convention(re.compile(rf"(?:.*[./])?{name}\Z"), entry["unit"], entry["source"]))
+        units |= {
+            str(k): Conversion(str(v["unit"]), float(v["factor"]), float(v.get("offset", 0.0)))
+            for k, v in dict(content.get("units") or {}).items()
+        }
+    frozen = {section: frozenset(names) for section, names in sections.items()}
+    return Vocabulary(phrases, endings, optional, symbols, frozen, tuple(conventions), units, languages)

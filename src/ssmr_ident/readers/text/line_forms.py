@@ -1,0 +1,113 @@
+"""Lines that are a table in another form: a stamp and an arrow before each, or a name before every number.
+
+Serial monitors put ``12:31:05.124 -> `` before what a microcontroller prints, and sketches print ``ax:1.52`` for a
+plotter. Both become plain rows here, line by line, so that line numbers stay those of the file.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+
+from ssmr_ident.readers.source import Source
+from ssmr_ident.readers.text.encoding import Text
+from ssmr_ident.readers.text.stamps import is_stamp
+
+_LOOK = 200  # lines that say which form a log has
+_MOST = 0.6  # share of them that must have it
+_ARROW = re.compile(r"\[?([^\[\]>]{5,40}?)\]?[ \t]{0,3}(?:->|=>|→)[ \t]{0,3}")
+_NAMED = re.compile(r"([^\W\d]\w{0,30})[ \t]?[:=][ \t]?([-+]?[\d.][\w.+-]{0,30})")
+_BETWEEN = re.compile(r"[\s,;|]*")
+
+
+def plain_rows(source: Source, text: Text) -> Text:
+    """The text with every line as a row of cells, and a header where the lines themselves say the names."""
+    lines = text.data.split(b"\n", _LOOK)[:_LOOK]
+    sample = [text.decode(line) for line in lines if line.strip()]
+    if _share(sample, _stamped) >= _MOST:
+        text = _without_arrows(source, text, sample)
+        sample = [text.decode(line) for line in text.data.split(b"\n", _LOOK)[:_LOOK] if line.strip()]
+    return _without_names(source, text, sample)
+
+
+def _share(sample: list[str], has: object) -> float:
+    return sum(bool(has(line)) for line in sample) / max(len(sample), 1) if callable(has) else 0.0
+
+
+def _stamped(line: str) -> re.Match[str] | None:
+    match = _ARROW.match(line)
+    return match if match and is_stamp(match[1].strip()) else None
+
+
+def _without_arrows(source: Source, text: Text, sample: list[str]) -> Text:
+    """The stamp as a cell of its own; before words it is called ``time``, for they are names or a remark."""
+    rest = [line[match.end() :] for line in sample if (match := _stamped(line))]
+    signs = Counter(sign for line in rest for sign in "\t;,|" if sign in line)
+    sign = max("\t;,|", key=lambda s: signs[s]) if signs else "\t"
+    made = []
+    for raw in text.data.split(b"\n"):
+        line = text.decode(raw)
+        match = _stamped(line)
+        if match is None:
+            made.append(line)
+            continue
+        behind = line[match.end() :]
+        numbers = sum(c.isdigit() for c in behind) > sum(c.isalpha() for c in behind) or _NAMED.match(behind)
+        made.append(f"{match[1].strip() if numbers else 'time'}{sign}{behind}")
+    source.inform(
+        "every line has a stamp and an arrow before it, as a serial monitor writes them: the stamp is the time"
+    )
+    return Text("\n".join(made).encode(), "utf-8")
+
+
+def _cells(line: str) -> tuple[str, list[tuple[str, str]]] | None:
+    """What stands before ``name:value`` cells, and the cells; None for a line that holds anything else."""
+    first = _NAMED.search(line[:4000])
+    if first is None:
+        return None
+    head = line[: first.start()].strip(" \t,;|")
+    if head and not is_stamp(head):
+        try:
+            float(head)
+        except ValueError:
+            return None
+    cells = []
+    position = first.start()
+    while position < len(line):
+        match = _NAMED.match(line, position)
+        if match is None:
+            return None
+        cells.append((match[1], match[2]))
+        following = _BETWEEN.match(line, match.end())
+        assert following is not None
+        if following.end() == match.end() < len(line):
+            return None
+        position = following.end()
+    return head, cells
+
+
+def _without_names(source: Source, text: Text, sample: list[str]) -> Text:
+    """``ax:1.52\\tay:0.48`` as numbers below one header."""
+    found = [cells for line in sample if (cells := _cells(line.strip()))]
+    if len(found) < max(3, _MOST * len(sample)):
+        return text
+    names, count = Counter(tuple(name for name, _ in cells) for _, cells in found).most_common(1)[0]
+    if count < _MOST * len(sample):
+        return text
+    stamped = any(head for head, _ in found)
+    header = "\t".join([*(["time"] if stamped else []), *names])
+    made: list[str] = []
+    begun = False
+    for raw in text.data.split(b"\n"):
+        line = text.decode(raw).strip()
+        cells = _cells(line)
+        if cells is None or tuple(name for name, _ in cells[1]) != names:
+            made.append(line.replace("\t", " "))
+            continue
+        if not begun and made:
+            made[-1] = header  # the line before the first row, a remark at best; a header needs a line of its own
+        values = "\t".join([*([cells[0]] if stamped else []), *(value for _, value in cells[1])])
+        made.append(values if begun or made else f"{header}\n{values}")
+        begun = True
+    source.inform(f"every line names its cells: {', '.join(names)}")
+    return Text("\n".join(made).encode(), "utf-8")
