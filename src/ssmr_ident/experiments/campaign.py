@@ -12,7 +12,7 @@ from ssmr_ident.core.recording import Recording
 from ssmr_ident.core.shown import Shown
 from ssmr_ident.experiments import EXPERIMENTS
 from ssmr_ident.experiments.experiment import Experiment
-from ssmr_ident.experiments.quantities import to_quantities
+from ssmr_ident.experiments.quantities import UNITS, to_quantities
 from ssmr_ident.physics.robot import accelerometer_from_parameters
 from ssmr_ident.physics.sensor import Accelerometer
 from ssmr_ident.readers import ReadOptions, read_one
@@ -88,6 +88,7 @@ def load(path: str | Path, progress: Callable[[int, int], None] | None = None) -
 def _measure(session: Session, entry: Entry, accelerometer: Accelerometer) -> Measurement:
     options = read_options(entry)
     recording = to_quantities(read_one(session.path(entry), options), entry, accelerometer)
+    recording = on_its_clock(recording, EXPERIMENTS[entry.experiment])
     for group in EXPERIMENTS[entry.experiment].channels:
         if not any(name in recording for name in group):
             raise InputError(
@@ -101,6 +102,19 @@ def _measure(session: Session, entry: Entry, accelerometer: Accelerometer) -> Me
     return Measurement(entry, recording, wheels)
 
 
+def on_its_clock(recording: Recording, experiment: Experiment) -> Recording:
+    """Where channels have clocks of their own: the recording at the times of the one that answers, so that what is
+    compared is what was sampled and only the drive is taken between its samples."""
+    if not recording.clocks_differ:
+        return recording
+    used = [channel.name for channel in recording.channels if channel.name in UNITS]
+    answers = [name for name in used if name in experiment.channels[-1]]
+    if not answers:
+        return recording
+    slowest = min(answers, key=lambda name: recording.series(name).rate)
+    return recording.on_clock_of(slowest, among=used)
+
+
 def read_options(entry: Entry) -> ReadOptions:
     """What the entry tells the reader."""
     return ReadOptions(
@@ -110,6 +124,7 @@ def read_options(entry: Entry) -> ReadOptions:
         columns=dict(entry.columns),
         skip="auto" if entry.skip_rows is None else entry.skip_rows,
         sheets=dict(entry.sheets),
+        channels=dict(entry.channels),
         time_unit=entry.time_unit,
         on_bad=entry.on_bad,
         trim=entry.trim,

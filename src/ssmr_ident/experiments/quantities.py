@@ -78,16 +78,17 @@ def _from_volts(
     if channel.name in entry.per_volt:
         if unit is None:
             raise InputError(f"session entry {entry.file}: per_volt", f"{channel.name} is no known quantity")
-        samples = channel.samples * entry.per_volt[channel.name]
-        return replace(channel, samples=samples, unit=unit), None
+        factor = entry.per_volt[channel.name]
+        return channel.scaled(lambda volts: volts * factor, unit), None
     if channel.name in ("ax", "ay", "az", "acceleration"):
         axis = max("xyz".find(channel.name[-1]), 0) if channel.name != "acceleration" else 0
-        samples = accelerometer.to_acceleration(channel.samples, axis)
+        scaled = channel.scaled(lambda volts: accelerometer.to_acceleration(volts, axis), "m/s^2")
+        samples = scaled.samples
         scale = f"{accelerometer.volts_zero:g} V + {accelerometer.volts_per_m_s2:.6g} V s^2/m · a"
         note = Note("info", f"{channel.label or channel.name}: volts to m/s^2 by {scale}")
         # counted here, where the volts are still at hand
         low, high = np.sort(accelerometer.to_acceleration(np.array(ends_of_supply(channel.samples)), axis))
-        found = replace(channel, samples=samples, unit="m/s^2", rails=(float(low), float(high)))
+        found = replace(scaled, rails=(float(low), float(high)))
         low, high = found.shows(accelerometer.range_m_s2)
         clipped = (samples <= low) | (samples >= high)
         if clipped.any():

@@ -239,9 +239,9 @@ def _phrase(
     bare = words if words[-1] not in ("x", "y", "z") or len(words) == 1 else words[:-1]
     if len(bare) == 1 and len(bare[0]) == 1 and bare[0] in known.symbols:
         named = known.symbols[bare[0]]
-        for quantity in named:
-            if conversion is not None and SI_UNIT.get(quantity) == conversion.unit:
-                return quantity, words[len(bare) :]
+        for symbol in named:
+            if conversion is not None and SI_UNIT.get(symbol) == conversion.unit:
+                return symbol, words[len(bare) :]
         return ("time", ()) if named == ("time",) and conversion is None and bare == words else (None, words)
     for length in range(min(3, len(words)), 0, -1):
         for begin in range(len(words) - length, -1, -1):

@@ -23,7 +23,8 @@ def named_columns(source: Source, table: Table, options: ReadOptions) -> list[Co
     columns = _chosen(source, table, options)
     for quantity, header in options.channels.items():
         for column in columns:
-            if header in (column.label, column.quantity) and not column.given:
+            # without a unit the session takes the quantity's own, with a warning
+            if header in (column.label, column.quantity) and not column.given and column.unit is not None:
                 column.quantity, column.given, column.role = quantity, True, ""
     _apply_units(source, columns, options)
     if table.words:

@@ -83,9 +83,11 @@ def check(
     kept = stamps if axis.rows is None else stamps[axis.rows]
     rows = np.arange(len(stamps)) if axis.rows is None else axis.rows
     edges = [0, *axis.restarts, len(kept)]
-    times, chosen, restarts = [], [], []
+    times: list[np.ndarray] = []
+    chosen: list[np.ndarray] = []
+    restarts: list[int] = []
     for a, b in itertools.pairwise(edges):
-        restarts.append(sum(map(len, chosen)))
+        restarts.append(sum(len(part) for part in chosen))
         time, mine = _part(kept[a:b], rows[a:b], place, repeats, stamps_are, axis.notes)
         times.append(time)
         chosen.append(mine)

@@ -132,7 +132,8 @@ def _made(*contents: dict[str, Any]) -> Vocabulary:
     units: dict[str, Conversion] = {}
     known = {*QUANTITY_OF_UNIT.values(), "date", "base_acceleration", "position_reference"}
     for content in contents:
-        for quantity, entry in dict(content.get("quantities") or {}).items():
+        entries: dict[str, dict[str, Any]] = dict(content.get("quantities") or {})
+        for quantity, entry in entries.items():
             if entry.get("optional"):
                 optional[quantity] = str(entry["unit"])
             elif quantity not in known:
@@ -143,7 +144,7 @@ def _made(*contents: dict[str, Any]) -> Vocabulary:
                 languages.setdefault(quantity, {}).setdefault(language, []).extend(map(str, names))
                 for name in names:
                     phrases[words_of(str(name))] = quantity
-            endings |= dict.fromkeys(map(str, entry.get("endings") or ()), quantity)
+            endings |= dict.fromkeys(map(str, entry.get("endings") or ()), str(quantity))
         symbols |= {str(k): tuple(v) for k, v in dict(content.get("symbols") or {}).items()}
         for section in _SECTIONS:
             sections[section] |= {words_of(str(name)) or (str(name),) for name in content.get(section) or ()}

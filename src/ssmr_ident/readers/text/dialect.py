@@ -78,7 +78,8 @@ def sniff(source: Source, text: Text, options: ReadOptions, *, delimiters: str =
     InputError
         When there are no rows of numbers, or the numbers can be read with either decimal sign.
     """
-    best, most, rows = None, 0.0, []
+    best: Dialect | None = None
+    rows: list[list[str]] = []
     for count in _HEAD_LINES:
         head = text.data[: count * 400].split(b"\n", count)[:count]
         lines = [text.decode(line) for line in head if len(line) <= LONGEST_LINE]

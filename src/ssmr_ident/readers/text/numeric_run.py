@@ -141,8 +141,8 @@ class _Run:
                     self._flush()
                     self.parts.append(block)
                     self.numbers.append(np.arange(line_number, line_number + len(block)))
-                    for cells, places in zip(self.stamps.values(), spans, strict=True):
-                        cells += [data[a:b] for a, b in places.tolist()]
+                    for stamps, places in zip(self.stamps.values(), spans, strict=True):
+                        stamps += [data[a:b] for a, b in places.tolist()]
                     line_number += len(block)
                     self.filled += len(block)
                     continue
