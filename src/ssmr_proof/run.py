@@ -10,6 +10,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from multiprocessing import get_context
 from pathlib import Path
+from typing import Any
 
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.shown import Shown
@@ -158,7 +159,7 @@ def _opened(
 
 
 @contextmanager
-def processes(jobs: int) -> Iterator[Callable[..., Future]]:
+def processes(jobs: int) -> Iterator[Callable[..., Future[Any]]]:
     """A pool's submit; one job needs no process of its own."""
     if jobs > 1:
         with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:

@@ -61,7 +61,8 @@ class Envelope:
             raise SealBroken(
                 f"{self.case}: truth or recordings have changed since they were sealed: {self.digest} is not {sealed}"
             )
-        return json.loads(self.truth)
+        result: dict[str, Any] = json.loads(self.truth)
+        return result
 
     def unpack(self, folder: Path) -> None:
         """Write truth, nonce and held-out recordings, so that anyone can check the digest again."""

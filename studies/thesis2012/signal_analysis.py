@@ -26,7 +26,8 @@ def signal_rows() -> list[Row]:
 
 
 def _tone(hertz: float, seconds: float = 20.0) -> np.ndarray:
-    return np.sin(2.0 * np.pi * hertz * np.arange(round(seconds * RATE)) / RATE)
+    result: np.ndarray = np.sin(2.0 * np.pi * hertz * np.arange(round(seconds * RATE)) / RATE)
+    return result
 
 
 def _gain(filtered: np.ndarray, hertz: float) -> complex:

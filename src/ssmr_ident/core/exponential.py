@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 from ssmr_ident.core.kernel import kernel
 from ssmr_ident.core.simd import floor, power_of_two, where
@@ -15,7 +16,7 @@ _LARGEST = 708.0
 
 
 @kernel
-def exp(x):
+def exp(x: Any) -> Any:
     """e to the power of x, within 1.5 units in the last place; 0 below -708, infinity above 708.
 
     2ⁿ eʳ with |r| ≤ ½ ln 2, and Taylor's series of eʳ as far as it counts.

@@ -277,7 +277,8 @@ LOWEST = 2
 
 def _s(last: int) -> Array:
     kept = np.arange(LOWEST, last + 1)
-    return 1j * kept / kept[-1]
+    result: Array = 1j * kept / kept[-1]
+    return result
 
 
 def _candidates(pair: _Pair) -> list[float]:
@@ -322,7 +323,8 @@ def _whitened(samples: Array) -> Array:
     spectrum = np.abs(np.fft.rfft(samples, 2 * len(samples))) ** 2
     covariance = np.fft.irfft(spectrum)[: order + 1]
     covariance[0] *= 1.0 + 1e-6
-    return lfilter(np.concatenate([[1.0], -solve_toeplitz(covariance[:-1], covariance[1:])]), [1.0], samples)
+    result: Array = lfilter(np.concatenate([[1.0], -solve_toeplitz(covariance[:-1], covariance[1:])]), [1.0], samples)
+    return result
 
 
 def _scanned(pair: _Pair, centre: float, structure: Structure) -> _Found:

@@ -241,4 +241,5 @@ def _real_least_squares(design: Array, right: Array) -> Array:
     size[size == 0.0] = 1.0
     scaled = design / size
     gram = (scaled.conj().T @ scaled).real
-    return np.linalg.lstsq(gram, (scaled.conj().T @ right).real, rcond=1e-13)[0] / size
+    result: Array = np.linalg.lstsq(gram, (scaled.conj().T @ right).real, rcond=1e-13)[0] / size
+    return result

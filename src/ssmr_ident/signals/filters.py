@@ -67,9 +67,10 @@ class Butterworth(Shown):
         -------
         ndarray, same shape and unit
         """
-        return signal.sosfiltfilt(
+        result: np.ndarray = signal.sosfiltfilt(
             self.sections, samples, axis=0, padtype="odd", padlen=min(self.padding, len(samples) - 1)
         )
+        return result
 
 
 def design(

@@ -92,7 +92,8 @@ def _local_maxima(values: np.ndarray) -> np.ndarray:
     levels = values[starts]
     ends = np.r_[starts[1:], len(values)] - 1
     top = np.flatnonzero((levels[1:-1] > levels[:-2]) & (levels[1:-1] > levels[2:])) + 1
-    return (starts[top] + ends[top]) // 2
+    result: np.ndarray = (starts[top] + ends[top]) // 2
+    return result
 
 
 def log_amplitude(samples: np.ndarray, sample_rate: float, cutoff_hz: float = SWIVEL_LOW_PASS_HZ) -> float | np.ndarray:

@@ -108,7 +108,8 @@ def _period(samples: Array) -> int:
 def _deviation(sums: tuple[Array, Array], width: int) -> Array:
     """Standard deviation over the ``width`` samples from each on."""
     mean = (sums[0][width:] - sums[0][:-width]) / width
-    return np.sqrt(np.maximum((sums[1][width:] - sums[1][:-width]) / width - mean**2, 0.0))
+    result: Array = np.sqrt(np.maximum((sums[1][width:] - sums[1][:-width]) / width - mean**2, 0.0))
+    return result
 
 
 def _continued(samples: Array, first: int, until: int, last: int, period: int) -> Array:
@@ -120,7 +121,8 @@ def _continued(samples: Array, first: int, until: int, last: int, period: int) -
     known = until - first
     if known < 2 * period:
         columns = columns[:, :1]
-    return columns @ np.linalg.lstsq(columns[:known], samples[first:until], rcond=None)[0]
+    result: Array = columns @ np.linalg.lstsq(columns[:known], samples[first:until], rcond=None)[0]
+    return result
 
 
 def _onset(samples: Array, place: int, period: int, noise: float) -> int | None:

@@ -43,7 +43,8 @@ def chassis(robot: Robot, build: Build, mast: Mast | None = None) -> tuple[float
 
 def hubs(robot: Robot, build: Build) -> np.ndarray:
     """Centres of the wheels, or plates, with unloaded tires, from the CoM, (4, 3) float [m]."""
-    return robot.contact_points + np.array([0.0, 0.0, rise(robot, build)])
+    result: np.ndarray = robot.contact_points + np.array([0.0, 0.0, rise(robot, build)])
+    return result
 
 
 def rise(robot: Robot, build: Build) -> float:

@@ -43,7 +43,8 @@ def ties(robot: Robot, build: Build) -> str:
 def stood(robot: Robot) -> np.ndarray:
     """Where the wheels touch the floor at rest, in the world, (4, 3) float [m]."""
     _, roll, pitch = rest_pose(robot)
-    return (robot.contact_points @ tilt(roll, pitch).T) * np.array([1.0, 1.0, 0.0])
+    result: np.ndarray = (robot.contact_points @ tilt(roll, pitch).T) * np.array([1.0, 1.0, 0.0])
+    return result
 
 
 def places(robot: Robot) -> str:

@@ -116,4 +116,5 @@ def _hook_place(robot: Robot, cable: Cable) -> np.ndarray:
 
 def _hook_at_rest(robot: Robot, cable: Cable) -> np.ndarray:
     height, roll, pitch = rest_pose(robot)
-    return tilt(roll, pitch) @ _hook_place(robot, cable) + np.array([0.0, 0.0, height])
+    result: np.ndarray = tilt(roll, pitch) @ _hook_place(robot, cable) + np.array([0.0, 0.0, height])
+    return result

@@ -50,7 +50,8 @@ def forces(run: Run, duration: float, random: np.random.Generator) -> np.ndarray
         low, high = random.uniform(1.0, 2.0), random.uniform(20.0, 30.0)
         signal = 0.55 * FORCE * run.level * chirp(t, low, duration, high, phi=-90.0)
     edge = np.clip(np.minimum(t, duration - t) / 0.1, 0.0, 1.0)
-    return signal * np.sin(0.5 * np.pi * edge) ** 2
+    result: np.ndarray = signal * np.sin(0.5 * np.pi * edge) ** 2
+    return result
 
 
 def rigs(

@@ -139,4 +139,5 @@ def _rotational(stiffness: tuple[float, float, float] | np.ndarray) -> np.ndarra
 def _damped(natural: np.ndarray) -> np.ndarray:
     """Frequencies of the peaks [Hz] with the decay rates that the thesis read off."""
     rates = np.array([DECAY_RATES[motion] for motion in MOTIONS])
-    return np.sqrt(np.maximum(natural**2 - rates**2, 0.0)) / (2.0 * np.pi)
+    result: np.ndarray = np.sqrt(np.maximum(natural**2 - rates**2, 0.0)) / (2.0 * np.pi)
+    return result

@@ -5,7 +5,9 @@ from __future__ import annotations
 import contextlib
 import io
 import time
+from collections.abc import Callable
 from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -92,7 +94,9 @@ def mujoco_sysid(campaign: Campaign) -> PeerAnswer:
     return PeerAnswer("mujoco.sysid", claims, (), bool(claims), time.perf_counter() - begin, table)
 
 
-def _along(sysid, parameters, predicted, measured, model, return_all, state=None, **_):
+def _along(
+    sysid: Any, parameters: Any, predicted: Any, measured: Any, model: Any, return_all: Any, state: Any = None, **_: Any
+) -> tuple[Any, Any, Any]:
     """The toolbox's own residual, on the first axis alone."""
     seen = sysid.apply_delayed_ts_window(measured, predicted, 0.0, 0.0)
     simulated = sysid.TimeSeries(seen.times, predicted.resample(seen.times).data, seen.signal_mapping)
@@ -102,10 +106,10 @@ def _along(sysid, parameters, predicted, measured, model, return_all, state=None
     return sysid.normalize_residual(rest, seen.data[:, :1]), simulated, seen
 
 
-def _set(name: str):
+def _set(name: str) -> Callable[[Any, Any], None]:
     """How a parameter gets into MuJoCo's model."""
 
-    def modify(spec, parameter):
+    def modify(spec: Any, parameter: Any) -> None:
         value = float(parameter.value[0])
         if name == "mass":
             spec.body("mass").mass = value

@@ -93,7 +93,8 @@ def _band(signal: np.ndarray, rate: float) -> np.ndarray:
 
 def _filtered(signal: np.ndarray, rate: float) -> np.ndarray:
     low = low_pass(signal - signal.mean(), rate, min(BAND_HZ[1], 0.45 * rate))
-    return low - low_pass(low, rate, BAND_HZ[0])
+    result: np.ndarray = low - low_pass(low, rate, BAND_HZ[0])
+    return result
 
 
 def _ends_off(signal: np.ndarray, rate: float) -> np.ndarray:

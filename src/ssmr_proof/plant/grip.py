@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from ssmr_ident.core.kernel import kernel
 from ssmr_proof.plant.spring_laws import GAP_SHARE_X, advance, beside
 
@@ -12,7 +14,7 @@ FRICTIONS = 5
 
 
 @kernel
-def friction_coefficient(slip, load, friction):
+def friction_coefficient(slip: float, load: float, friction: np.ndarray) -> float:
     """mu_s·(r + (1 - r)·exp(-(u/v_s)²))·(N/N_0)^-n; slip u [m/s], load N [N]."""
     mu = friction[MU]
     if friction[MU_SHARE] != 1.0:
@@ -24,7 +26,21 @@ def friction_coefficient(slip, load, friction):
 
 
 @kernel
-def tires(length, velocity, control, anchor, slip, hidden, stiffness, damping, laws, friction, gripping, t, step):
+def tires(
+    length: np.ndarray,
+    velocity: np.ndarray,
+    control: np.ndarray,
+    anchor: np.ndarray,
+    slip: np.ndarray,
+    hidden: np.ndarray,
+    stiffness: np.ndarray,
+    damping: np.ndarray,
+    laws: np.ndarray,
+    friction: np.ndarray,
+    gripping: np.ndarray,
+    t: float,
+    step: float,
+) -> float:
     """Set the engine's twelve tire actuators so that each tire's force is the plant's.
 
     The engine already applies -(K·length + D·velocity) along the floor's axes; ``control`` is what has to be added:
@@ -103,7 +119,7 @@ def tires(length, velocity, control, anchor, slip, hidden, stiffness, damping, l
 
 
 @kernel
-def cable(length, velocity, head, speed, stiffness, damping):
+def cable(length: float, velocity: float, head: float, speed: float, stiffness: float, damping: float) -> float:
     """Tension of a cable that pulls and never pushes [N]; lengths along the pull [m]."""
     stretch = head - length
     tension = stiffness * stretch + damping * (speed - velocity)

@@ -93,7 +93,17 @@ def drive(rig: RigPlant, force: np.ndarray) -> np.ndarray:
 
 
 @kernel
-def _control(place, speed, control, force, n, hidden, stiffness, damping, laws):
+def _control(
+    place: np.ndarray,
+    speed: np.ndarray,
+    control: np.ndarray,
+    force: np.ndarray,
+    n: int,
+    hidden: np.ndarray,
+    stiffness: float,
+    damping: float,
+    laws: np.ndarray,
+) -> None:
     s, v = place[0], speed[0]
     advance(s, hidden, STEP, True, laws)
     control[0] = force[n] - beside(s, v, n * STEP, hidden, stiffness, damping, 1.0, 1.0, True, laws)

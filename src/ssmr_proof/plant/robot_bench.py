@@ -181,10 +181,11 @@ class Bench:
 
     def _tires(self, t: float) -> float:
         data, robot = self.data, self.plant.robot
-        return tires(
+        result: float = tires(
             data.actuator_length, data.actuator_velocity, data.ctrl, self.anchor, self.slip, self.hidden,
             robot.stiffness, robot.damping, self.plant.laws, self.friction, self.gripping, t, self.step,
         )  # fmt: skip
+        return result
 
     def _check(self, log: np.ndarray) -> None:
         if not np.isfinite(log).all() or any(warning.number for warning in self.data.warning):

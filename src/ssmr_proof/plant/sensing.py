@@ -45,7 +45,8 @@ class Chain:
         if self.zero_drift or self.gain_drift:
             t = np.arange(len(samples)) * stride / fine_rate
             samples = samples * (1.0 + self.gain_drift * t) + self.zero_drift * t
-        return samples
+        result: np.ndarray = samples
+        return result
 
     def noisy(self, clean: np.ndarray, rate: float, random: np.random.Generator) -> np.ndarray:
         """The same with white noise and a mains line of its own phase on each channel."""
@@ -59,4 +60,5 @@ class Chain:
 def converted(volts: np.ndarray, span: float = 5.0, bits: int = 12) -> np.ndarray:
     """What a converter over 0 … ``span`` V makes of volts."""
     quantum = span / 2**bits
-    return np.round(np.clip(volts, 0.0, span - quantum) / quantum) * quantum
+    result: np.ndarray = np.round(np.clip(volts, 0.0, span - quantum) / quantum) * quantum
+    return result

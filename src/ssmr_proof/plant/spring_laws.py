@@ -37,7 +37,18 @@ def law_vector(**values: float) -> np.ndarray:
 
 
 @kernel
-def beside(s, v, t, hidden, stiffness, damping, ratio, gap_share, tangential, laws):
+def beside(
+    s: float,
+    v: float,
+    t: float,
+    hidden: np.ndarray,
+    stiffness: float,
+    damping: float,
+    ratio: float,
+    gap_share: float,
+    tangential: bool,
+    laws: np.ndarray,
+) -> float:
     """Force beside K·s + D·v [N].
 
     Parameters
@@ -76,7 +87,7 @@ def beside(s, v, t, hidden, stiffness, damping, ratio, gap_share, tangential, la
 
 
 @kernel
-def advance(s, hidden, step, tangential, laws):
+def advance(s: float, hidden: np.ndarray, step: float, tangential: bool, laws: np.ndarray) -> None:
     """Hidden lengths brought up to the deflection ``s`` [m], in place.
 
     They follow the way that was gone since the last step, not the speed at its beginning: the engine moves places with

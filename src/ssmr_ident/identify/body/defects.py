@@ -47,18 +47,20 @@ def defect(decay: BodyDecay, robot: Robot, start: Array, effects: Effects | None
     run = simulate(robot, scenario, 1.0 / step, step=STEP, effects=effects).values[:, axes]
     difference = decay.averaged((run - small_motion(robot, start, samples, step)[:, axes])[None])[0]
     # The resting values differ (gravity, zero); each channel has its own offset, so the end is taken as zero.
-    return difference - difference[-1]
+    result: Array = difference - difference[-1]
+    return result
 
 
 def small_motion(robot: Robot, start: Array, samples: int, step: float) -> Array:
     """Closed form behind the accelerometer's low-pass, (n, 3) float [m/s^2]."""
     linear = linear_robot(robot)
     rows = accelerometer_rows(linear, robot.accelerometer.position, GRAVITY)
-    course = responses(linear.state_matrix, rows, step * np.arange(samples)) @ start
+    course: Array = responses(linear.state_matrix, rows, step * np.arange(samples)) @ start
     c = low_pass_coefficients(robot.accelerometer.bandwidth_hz, step)
     if c[0] == 1.0:
         return course
     forward, feedback = c[:3], np.array([1.0, c[3], c[4]])
     # as the simulator's: as if the first value had always been there
     settled = lfilter_zi(forward, feedback)[:, None] * course[:1]
-    return lfilter(forward, feedback, course, axis=0, zi=settled)[0]
+    result: Array = lfilter(forward, feedback, course, axis=0, zi=settled)[0]
+    return result

@@ -122,7 +122,8 @@ class BodyDecay:
     def averaging(self, poles: Array) -> Array:
         """What block averaging makes of e^(st), (k,) complex."""
         lags = self.record.step * (np.arange(self.block) - (self.block - 1) / 2)
-        return np.exp(np.outer(poles, lags)).mean(axis=1)
+        result: Array = np.exp(np.outer(poles, lags)).mean(axis=1)
+        return result
 
     def whitening(self, poles: Array) -> Array:
         """What the whitening filters make of e^(st), (c, k) complex."""
@@ -189,7 +190,7 @@ def body_decay(
 
 
 @kernel
-def _block_means(signals, rows, gains, skip, block, means):
+def _block_means(signals: Array, rows: Array, gains: Array, skip: int, block: int, means: Array) -> None:
     """What ``mean`` gives of ``gains * signals[rows]`` over its blocks, whose short last axis numpy takes many times as
     long for."""
     for k in range(len(rows)):

@@ -203,4 +203,5 @@ class _Evaluated:
     def signal(self, index: int, start: Array) -> Array:
         """All channels one after the other for a given start, nuisances still in, (n c,)."""
         waves, gains = self._parts(index)
-        return (waves @ self.response.weights_of(gains, self.samples.decays[index].axes, start)).T.ravel()
+        result: Array = (waves @ self.response.weights_of(gains, self.samples.decays[index].axes, start)).T.ravel()
+        return result

@@ -84,4 +84,5 @@ def sensor_gains(poles: Array, bandwidth_hz: float, step: float) -> Array:
     """What the accelerometer's low-pass makes of e^(st) once its own transient is over, (k,) complex."""
     b0, b1, b2, a1, a2 = low_pass_coefficients(bandwidth_hz, step)
     delay = np.exp(-np.asarray(poles) * step)
-    return (b0 + b1 * delay + b2 * delay**2) / (1 + a1 * delay + a2 * delay**2)
+    result: Array = (b0 + b1 * delay + b2 * delay**2) / (1 + a1 * delay + a2 * delay**2)
+    return result

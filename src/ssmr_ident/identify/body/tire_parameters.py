@@ -64,12 +64,14 @@ def natural_frequency(frequency_hz: float | np.ndarray, decay_rate: float | np.n
     >>> natural_frequency(np.array([6.04, 3.05, 7.51]), np.array([2, 3.5, 4.5])).round(4)
     array([38.0031, 19.4807, 47.4008])
     """
-    return np.sqrt(4 * math.pi**2 * np.asarray(frequency_hz) ** 2 + np.asarray(decay_rate) ** 2)
+    result: np.ndarray = np.sqrt(4 * math.pi**2 * np.asarray(frequency_hz) ** 2 + np.asarray(decay_rate) ** 2)
+    return result
 
 
 def damping_ratio(frequency_hz: float | np.ndarray, decay_rate: float | np.ndarray) -> np.ndarray:
     """ξ = λ/ω_n (5.9)."""
-    return np.asarray(decay_rate) / natural_frequency(frequency_hz, decay_rate)
+    result: np.ndarray = np.asarray(decay_rate) / natural_frequency(frequency_hz, decay_rate)
+    return result
 
 
 def rotation_matrix(geometry: Geometry) -> np.ndarray:
@@ -99,7 +101,8 @@ def rotation_modes(
 
 def rotation_inertia(natural: np.ndarray, stiffness: np.ndarray, geometry: Geometry) -> np.ndarray:
     """I = stiffness/ω_n² (5.10), (3,) float [kg m^2]."""
-    return rotation_matrix(geometry) @ stiffness / np.asarray(natural) ** 2
+    result: np.ndarray = rotation_matrix(geometry) @ stiffness / np.asarray(natural) ** 2
+    return result
 
 
 def damping_as_printed(

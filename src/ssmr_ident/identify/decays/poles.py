@@ -93,7 +93,8 @@ def exponentials(block: Block, rates: Array, frequencies: Array) -> Array:
     coarse = -(-count // fine)
     inner = np.exp(np.outer(np.arange(fine) * block.step, poles))
     outer = np.exp(np.outer(block.start + np.arange(coarse) * (fine * block.step), poles))
-    return (outer[:, None, :] * inner[None, :, :]).reshape(-1, len(poles))[:count]
+    result: Array = (outer[:, None, :] * inner[None, :, :]).reshape(-1, len(poles))[:count]
+    return result
 
 
 def solve_symmetric(matrix: Array, right: Array) -> Array:
@@ -222,4 +223,5 @@ def fit_poles(
 def modelled(block: Block, fit: PoleFit, index: int) -> Array:
     """Fitted signal of block ``index``, (n, c)."""
     waves = exponentials(block, fit.rates, fit.frequencies)
-    return np.hstack([waves.real, waves.imag, block.nuisances]) @ fit.coefficients[index]
+    result: Array = np.hstack([waves.real, waves.imag, block.nuisances]) @ fit.coefficients[index]
+    return result

@@ -82,14 +82,16 @@ def _something_left(residual: Array) -> bool:
 
 def _lines_only(block: Block) -> Array:
     """Lines and offset as the whole record shows them: good enough for starting values."""
-    return block.nuisances @ np.linalg.lstsq(block.nuisances, block.samples, rcond=None)[0]
+    result: Array = block.nuisances @ np.linalg.lstsq(block.nuisances, block.samples, rcond=None)[0]
+    return result
 
 
 def _inside(poles: Array, block: Block) -> Array:
     """Start poles moved to where a mode can be: it decays, and it oscillates."""
     frequency = np.clip(np.abs(poles.imag), 2 * np.pi / (len(block.samples) * block.step), 0.9 * np.pi / block.step)
     rate = np.clip(-poles.real, 2e-3 * frequency, 0.5 * frequency)
-    return -rate + 1j * frequency
+    result: Array = -rate + 1j * frequency
+    return result
 
 
 def evidence(records: Sequence[Record], noises: Noises, fits: dict[int, PoleFit]) -> dict[int, float]:

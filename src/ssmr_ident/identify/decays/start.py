@@ -86,4 +86,5 @@ def matrix_pencil(samples: Array, step: float, modes: int, pencil: int | None = 
     poles = np.log(values[np.abs(values) > 1e-12].astype(complex)) / step
     # The right singular vectors span conjugated exponentials as well, so the sign of ω is free.
     poles = poles[poles.imag > 0]
-    return poles[np.argsort(-np.abs(poles.imag))][:modes]
+    result: Array = poles[np.argsort(-np.abs(poles.imag))][:modes]
+    return result

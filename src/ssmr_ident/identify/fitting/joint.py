@@ -115,7 +115,8 @@ class JointFit:
     @property
     def weights(self) -> Array:
         """(t,) float by which squares of each trial count, its own misfit being the measure."""
-        return self.counted / self.parts
+        result: Array = self.counted / self.parts
+        return result
 
     @property
     def penalty(self) -> float:

@@ -42,7 +42,8 @@ def scatter_of(fit: JointFit) -> Array:
         return local
     # what is known beforehand is known whatever recordings hide
     sizes, axes = np.linalg.eigh(sandwich(planes))
-    return (axes * np.maximum(sizes, np.minimum(sizes * (1.0 + depth), 1.0))) @ axes.T
+    result: Array = (axes * np.maximum(sizes, np.minimum(sizes * (1.0 + depth), 1.0))) @ axes.T
+    return result
 
 
 def _planes(fit: JointFit, wide: Array) -> tuple[JointFit | None, float]:

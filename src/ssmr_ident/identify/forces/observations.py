@@ -79,7 +79,8 @@ def with_shifts_unknown(
     own = np.diag([float(o.covariance[0, 0]) for o in rises])
 
     def predict(parameters: Mapping[str, float]) -> np.ndarray:
-        return mean * np.array([float(o.predict(parameters)[0]) for o in rises])
+        result: np.ndarray = mean * np.array([float(o.predict(parameters)[0]) for o in rises])
+        return result
 
     joint = Observation(
         "first rises", tuple(o.name for o in rises), values, own + spread * np.outer(values, values), predict

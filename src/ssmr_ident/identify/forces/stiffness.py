@@ -117,7 +117,8 @@ def _cubic(x: Array, force_zero: float, stiffness: float, k3: float) -> Array:
 
 
 def _two_slopes(x: Array, force_zero: float, stiffness: float, stiffness_2: float, knee: float) -> Array:
-    return force_zero + stiffness * np.minimum(x, knee) + stiffness_2 * np.maximum(x - knee, 0.0)
+    result: Array = force_zero + stiffness * np.minimum(x, knee) + stiffness_2 * np.maximum(x - knee, 0.0)
+    return result
 
 
 LAWS: dict[str, Callable[..., Array]] = {"linear": _linear, "cubic": _cubic, "two slopes": _two_slopes}

@@ -78,7 +78,8 @@ class Unknown:
     def scaled(self, value: float) -> float:
         """Back from a value to the scaled coordinate."""
         within = (math.log(value / self.prior) if self.logarithmic else value - self.prior) / self.spread
-        return within / max(1.0 - (within / self.reach) ** 4, 1e-8) ** 0.25
+        result: float = within / max(1.0 - (within / self.reach) ** 4, 1e-8) ** 0.25
+        return result
 
     def std(self, scaled: float, scaled_std: float) -> float:
         return scaled_std * self.slope(scaled)

@@ -290,4 +290,5 @@ def _spread(
     scale = np.maximum(1.0, widen * np.sqrt(np.diag(between) / own))
     # Chance alone makes the scatter of a few records look wide; only what is beyond it counts.
     scale = np.where(np.diag(between) / own > chi2.isf(0.01, count - 1) / (count - 1), scale, 1.0)
-    return spread * np.outer(scale, scale)
+    result: Array = spread * np.outer(scale, scale)
+    return result

@@ -28,7 +28,8 @@ def _by_lmfit(start: Array, table: Array, target: Array) -> Array:
         parameters.add(name, value=float(value), min=0.0 if name in ("mass", "friction") and value > 0 else -np.inf)
 
     def residual(now: lmfit.Parameters) -> Array:
-        return target - table @ np.array(list(now.valuesdict().values()))
+        result: Array = target - table @ np.array(list(now.valuesdict().values()))
+        return result
 
     result = lmfit.Minimizer(residual, parameters, calc_covar=False).least_squares(jac="2-point", x_scale="jac")
     return np.array(list(result.params.valuesdict().values()))

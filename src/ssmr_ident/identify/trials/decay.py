@@ -159,19 +159,22 @@ def _trial(whole: BodyDecay, kept: int, facts: _Facts) -> Trial:
 
     def read(asked: Sequence[Asked], samples: int, step: float) -> Array:
         found, rows, gain = simulated(asked, samples, step)
-        return found[rows] * gain[:, None, :]
+        result: Array = found[rows] * gain[:, None, :]
+        return result
 
     def rotated(values: Values, effects: Effects, nuisance: Array, samples: int, step: float) -> Array:
         assert model is not None
         others = {name: effect for name, effect in effects.items() if name != "translation_coupling"}
         if "translation_coupling" in effects:
-            return read([(values, others, nuisance)], samples, step)[0]
-        pure = model.responses(builder(values), samples, decay.record.step) @ nuisance[:12]
+            coupled: Array = read([(values, others, nuisance)], samples, step)[0]
+            return coupled
+        pure: Array = model.responses(builder(values), samples, decay.record.step) @ nuisance[:12]
         if not others:
             return pure
         # what an effect adds to the six degrees of freedom, added to the pure rotation
         more, plain = read([(values, e, nuisance) for e in (others, {})], samples, step)
-        return pure + more - plain
+        result: Array = pure + more - plain
+        return result
 
     def followed(asked: Sequence[Asked], samples: int, step: float) -> Array:
         if model is None:
@@ -184,7 +187,8 @@ def _trial(whole: BodyDecay, kept: int, facts: _Facts) -> Trial:
         return decay.averaged(followed(asked, length, facts.step))
 
     def run(values: Values, effects: Effects, nuisance: Array) -> Array:
-        return many([(values, effects, nuisance)])[0]
+        result: Array = many([(values, effects, nuisance)])[0]
+        return result
 
     everything = decay.record.samples
 
@@ -263,7 +267,8 @@ def _columns(robot: Robot, decay: BodyDecay) -> Array:
         waves = response.waves(times)
         weights = response.weights(np.broadcast_to(gains, (len(decay.axes), len(gains))), decay.axes)
         seen = np.stack([waves @ weight for weight in weights], axis=1) * START_SCALES
-    return seen * robot.accelerometer.gain[list(decay.axes), None]
+    result: Array = seen * robot.accelerometer.gain[list(decay.axes), None]
+    return result
 
 
 def _linear_start(trial: Trial, columns: Array) -> Array:

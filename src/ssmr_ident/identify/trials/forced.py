@@ -7,6 +7,7 @@ taken for one that is stiffer to one side. The path of a mass that nothing holds
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -139,7 +140,8 @@ def forced_trial(measurement: Measurement, parameters: ParameterSet) -> Trial:
         factor, fine = finer(steps_a_period * natural / rate, samples)
 
         def averaged(signal: Array) -> Array:
-            return signal[:samples].reshape(count, block, -1).mean(axis=1)
+            result: Array = signal[:samples].reshape(count, block, -1).mean(axis=1)
+            return result
 
         def run(values: Values, effects: Effects, nuisance: Array) -> Array:
             return averaged(motion(values, effects, nuisance, factor, fine, samples))
@@ -190,7 +192,7 @@ def _noise(samples: Array, unheld: bool, least: float) -> AutoregressiveNoise:
     return white_noise(samples, least, bend)
 
 
-def linear_start(trial: Trial, run, second: int | None = None) -> Array:
+def linear_start(trial: Trial, run: Callable[[Array], Array], second: int | None = None) -> Array:
     """Nuisances that enter linearly, by least squares with their priors."""
     size = len(trial.scales)
     base = np.zeros(size)

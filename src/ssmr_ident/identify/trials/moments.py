@@ -31,7 +31,8 @@ def tightening(force: Array, block: int) -> int:
         below, above = smooth[after - 1], smooth[after]
         crossings.append(after - (above - level) / (above - below))
     onset = crossings[0] - (crossings[1] - crossings[0]) * RISE[0] / (RISE[1] - RISE[0])
-    return max(round(block * (onset + 0.5)), 0)
+    result: int = max(round(block * (onset + 0.5)), 0)
+    return result
 
 
 def lets_go(averages: Array) -> int:

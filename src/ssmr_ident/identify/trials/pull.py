@@ -111,7 +111,8 @@ def _trial(measurement: Measurement, parameters: ParameterSet, unseen: tuple[str
 
     def averaged(signal: Array) -> Array:
         averages = signal[: count * block].reshape(count, block).mean(axis=1)[:, None]
-        return share * (averages if teeth is None else teeth.ordered(averages))
+        result: Array = share * (averages if teeth is None else teeth.ordered(averages))
+        return result
 
     def simulated(asked: Sequence[Asked], inner: float | None = QUICK) -> Array:
         heads = [
@@ -121,13 +122,15 @@ def _trial(measurement: Measurement, parameters: ParameterSet, unseen: tuple[str
         return forces(heads, step, inner)[:, :-1]
 
     def whole(values: Values, effects: Effects, nuisance: Array) -> Array:
-        return simulated([(values, effects, nuisance)], None)[0][:, None]
+        result: Array = simulated([(values, effects, nuisance)], None)[0][:, None]
+        return result
 
     def many(asked: Sequence[Asked]) -> Array:
         return np.array([averaged(one) for one in simulated(asked)])
 
     def run(values: Values, effects: Effects, nuisance: Array) -> Array:
-        return many([(values, effects, nuisance)])[0]
+        result: Array = many([(values, effects, nuisance)])[0]
+        return result
 
     def begin(values: Values, effects: Effects) -> Array:
         tight = simulated([(values, effects, np.zeros(1))])[0]

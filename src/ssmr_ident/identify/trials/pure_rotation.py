@@ -37,11 +37,12 @@ class PureRotation:
         """Over the scaled starting state, (samples, 1, 12) float [m/s^2]."""
         model = pure_rotations(robot)
         rows = accelerometer_rows(model, robot.accelerometer.position, GRAVITY)[[AXES.index(self.channel)]]
-        course = responses(model.state_matrix, rows, step * np.arange(samples)) * (_TURNING * START_SCALES)
+        course: np.ndarray = responses(model.state_matrix, rows, step * np.arange(samples)) * (_TURNING * START_SCALES)
         c = low_pass_coefficients(robot.accelerometer.bandwidth_hz, step)
         if c[0] == 1.0:  # a sensor that passes everything
             return course
         forward, feedback = c[:3], np.array([1.0, c[3], c[4]])
         # the simulator's low-pass starts as if the first value had always been there
         settled = lfilter_zi(forward, feedback)[:, None, None] * course[:1]
-        return lfilter(forward, feedback, course, axis=0, zi=settled)[0]
+        result: np.ndarray = lfilter(forward, feedback, course, axis=0, zi=settled)[0]
+        return result

@@ -55,7 +55,8 @@ class Teeth:
         result = averages.copy()
         for begin, end in zip(self.edges[:-1], self.edges[1:], strict=True):
             result[begin:end] = np.sort(averages[begin:end], axis=0)
-        return result * self.weight[:, None]
+        returned: Array = result * self.weight[:, None]
+        return returned
 
 
 def find_teeth(force: Array, travel: Array, block: int) -> Teeth | None:

@@ -255,4 +255,5 @@ class Trial:
         """Unwhitened residual, (n, c), its share of the basis taken out by least squares."""
         rest = self.target - simulated
         q = np.linalg.qr(self.basis)[0]
-        return rest - q @ (q.T @ rest)
+        result: Array = rest - q @ (q.T @ rest)
+        return result

@@ -47,7 +47,8 @@ class AutoregressiveNoise:
         """
         if not self.order:
             return samples / self.std
-        return lfilter(self.filter, [1.0], samples, axis=0)[self.order :] / self.std
+        result: Array = lfilter(self.filter, [1.0], samples, axis=0)[self.order :] / self.std
+        return result
 
     def louder(self, factor: float) -> AutoregressiveNoise:
         """The same, ``factor`` times as large."""
@@ -62,7 +63,8 @@ class AutoregressiveNoise:
         step : float [s]
         """
         lags = np.arange(len(self.filter))
-        return np.exp(-np.outer(np.asarray(poles), lags) * step) @ self.filter
+        result: Array = np.exp(-np.outer(np.asarray(poles), lags) * step) @ self.filter
+        return result
 
     def density(self, frequency: Array, step: float) -> Array:
         """One-sided power spectral density at frequencies [Hz], (n,) float [unit²/Hz]."""

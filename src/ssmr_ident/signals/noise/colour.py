@@ -48,7 +48,8 @@ def long_run_variance(scores: Array, bandwidth: int) -> Array:
         weight = 1.0 - lag / (bandwidth + 1.0)
         product = scores[lag:].T @ scores[:-lag]
         total += weight * (product + product.T)
-    return total
+    result: Array = total
+    return result
 
 
 def independent_samples(residual: Array) -> float:

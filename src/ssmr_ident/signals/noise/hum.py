@@ -38,7 +38,10 @@ class Line(Shown):
 
     def samples(self, n: int, sample_rate: float) -> np.ndarray:
         """The sine itself, (n,) float in the unit of the samples."""
-        return self.amplitude * np.cos(2 * np.pi * self.frequency * np.arange(n) / sample_rate + self.phase)
+        result: np.ndarray = self.amplitude * np.cos(
+            2 * np.pi * self.frequency * np.arange(n) / sample_rate + self.phase
+        )
+        return result
 
 
 def offset(samples: np.ndarray, sample_rate: float, until: float = math.inf) -> float | np.ndarray:

@@ -96,7 +96,8 @@ def block_noises(recordings: Sequence[Blocks]) -> Array:
 
 def _averages(left: Array, k: int) -> Array:
     count = len(left) // k
-    return left[: count * k].reshape(count, k).mean(axis=1)
+    result: Array = left[: count * k].reshape(count, k).mean(axis=1)
+    return result
 
 
 def _level(rest: Array, weights: Array) -> tuple[float, float]:
@@ -114,7 +115,8 @@ def _level(rest: Array, weights: Array) -> tuple[float, float]:
 
 def _variance(length: Array, share: float, time: float) -> Array:
     """Variance of an average over a length, for white noise of density 1."""
-    return 1.0 / length + share * _together(length, time) / length**2
+    result: Array = 1.0 / length + share * _together(length, time) / length**2
+    return result
 
 
 def _differences(length: Array, share: float, time: float) -> Array:
@@ -122,7 +124,8 @@ def _differences(length: Array, share: float, time: float) -> Array:
     and with the one after."""
     once, twice, thrice = (_together(n * length, time) for n in (1, 2, 3))
     neighbour, next_but_one = 0.5 * (twice - 2.0 * once), 0.5 * (thrice - 2.0 * twice + once)
-    return 1.0 / length + share * (6.0 * once - 8.0 * neighbour + 2.0 * next_but_one) / (6.0 * length**2)
+    result: Array = 1.0 / length + share * (6.0 * once - 8.0 * neighbour + 2.0 * next_but_one) / (6.0 * length**2)
+    return result
 
 
 def _together(length: Array, time: float) -> Array:

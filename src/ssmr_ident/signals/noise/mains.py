@@ -134,7 +134,8 @@ def rest_after(samples: Array, times: Array, lines_hz: tuple[float, ...], share:
     columns = nuisance_columns(times, lines_hz)
     tail = slice(int(len(times) * (1 - share)), None)
     solution = np.linalg.lstsq(columns[tail], samples[tail], rcond=None)[0]
-    return samples - columns @ solution
+    result: Array = samples - columns @ solution
+    return result
 
 
 def without_mains(rest: Array, time: Array) -> tuple[Array, Array, Array]:

@@ -31,7 +31,8 @@ def white_std(samples: Array, least: float | None = None) -> float:
     """
     spread = NORMAL * float(np.median(np.abs(np.diff(samples, 2)))) / np.sqrt(6.0)
     if least is not None:
-        return max(spread, least)
+        result: float = max(spread, least)
+        return result
     return spread if spread > 0 else max(float(np.std(samples)), 1e-300) * 1e-6
 
 
@@ -42,7 +43,8 @@ def force_noise(force: Array) -> float:
 
 def median_std(residual: Array) -> Array:
     """Standard deviation by the median of absolute values, few large ones notwithstanding; of each column, (…,)."""
-    return NORMAL * np.median(np.abs(residual), axis=0)
+    result: Array = NORMAL * np.median(np.abs(residual), axis=0)
+    return result
 
 
 def quietest_density(samples: Array, sample_rate: float) -> Array:

@@ -259,7 +259,8 @@ def _course(samples: np.ndarray, recording: Recording) -> np.ndarray:
     samples = np.nan_to_num(np.asarray(samples, float), nan=float(np.nanmedian(samples)))
     if recording.sample_rate > 250.0 and len(samples) > 200:
         samples = low_pass(samples, recording.sample_rate, 50.0)
-    return (samples - np.median(samples[3 * len(samples) // 4 :])) ** 2
+    result: np.ndarray = (samples - np.median(samples[3 * len(samples) // 4 :])) ** 2
+    return result
 
 
 def _energy_share(energy: np.ndarray) -> float:
