@@ -18,6 +18,7 @@ from ssmr_ident.simulate.bench import drag_wheel
 from thesis2012.pulls import even_axles
 from thesis2012.scoreboard import Scoreboard, thesis_scoreboard
 from thesis2012.swivels import SPEEDS, turn
+from thesis2012.two_models import section
 
 FOLDER = Path(__file__).resolve().parents[2] / "docs" / "theory"
 LIMITS = ((1.0, "without"), (0.1, "with"), (0.01, "more"))  # λ_max and the colour of its curve
@@ -94,7 +95,7 @@ def _mean_friction(robot: Robot, speed: float) -> float:
 
 def page(board: Scoreboard) -> str:
     """The whole page."""
-    return f"{PREFACE}**{board.summary}.**\n\n{board.markdown()}\n{TURNING}"
+    return f"{PREFACE}**{board.summary}.**\n\n{board.markdown()}\n{TURNING}\n{section()}"
 
 
 if __name__ == "__main__":

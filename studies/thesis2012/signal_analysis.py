@@ -7,13 +7,13 @@ import math
 import numpy as np
 
 from ssmr_ident.experiments import SWIVEL
-from ssmr_ident.identify.body.thesis_table import TABLE_5_2
 from ssmr_ident.signals.analysis import analyse
 from ssmr_ident.signals.filters import band_pass, low_pass
 from ssmr_ident.signals.peaks import find_peaks, log_amplitude
 from ssmr_ident.signals.spectra import amplitude_spectrum, select_range
 from ssmr_ident.workflows.spectrum.table import RecordingLabel, SpectrumRow, average_swivels
 from thesis2012.rows import Row
+from thesis2012.table_5_2 import TABLE_5_2
 
 RATE = 1000.0
 FREE_RESPONSE_LENGTH = 2**11

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from ssmr_ident.identify.body.coupled import plane_modes
-from ssmr_ident.identify.body.thesis_table import TABLE_5_2, resolve_table
 from ssmr_ident.identify.body.tire_parameters import (
     Geometry,
     damping_as_printed,
@@ -16,6 +15,7 @@ from ssmr_ident.identify.body.tire_parameters import (
     rotation_modes,
     solve_damping,
 )
+from thesis2012.table_5_2 import TABLE_5_2, resolve_table
 
 FREQUENCY = np.array([6.04, 3.05, 7.51])
 RATE = np.array([2.0, 3.5, 4.5])

@@ -10,7 +10,6 @@ import numpy as np
 from ssmr_ident.report.html import Fact, Page, Picture, Section, Table, Verdict, picture, write_page
 from ssmr_proof.page.figures import concealment_figure, confusion_figure, heldout_figure, power_figure
 from ssmr_proof.page.gallery import chosen, overlay
-from ssmr_proof.page.thesis import thesis_section
 from ssmr_proof.run import Proof
 from ssmr_proof.scores.intervals import between, share_interval
 from ssmr_proof.scores.power import power
@@ -38,7 +37,6 @@ def write_proof_page(proof: Proof, command: str, further: tuple[Section, ...] = 
         _power(proof),
         _gallery(proof),
         _all(proof),
-        thesis_section(),
         _seals(proof),
     )
     page = Page(

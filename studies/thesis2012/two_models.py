@@ -1,4 +1,4 @@
-"""The showcase on the thesis' own table: pure rotations put the frequencies down to an inertia that nobody believes.
+"""Table 5.2 by two models: pure rotations put the frequencies down to an inertia that nobody believes.
 
 Baseline `decoupled` (5.3) against the same with `translation_coupling` (the derived form of 5.11), both at their best
 under the same knowledge: CAD inertias to 10 %, section 3.3's stiffnesses to 15 %, Table 5.2's means to what eight
@@ -15,7 +15,7 @@ from scipy.optimize import least_squares
 
 from ssmr_ident.core.shown import Shown
 from ssmr_ident.identify.body.coupled import plane_modes
-from ssmr_ident.identify.body.thesis_table import (
+from thesis2012.table_5_2 import (
     CAD_INERTIA,
     CAD_SPREAD,
     DECAY_RATES,
@@ -23,7 +23,6 @@ from ssmr_ident.identify.body.thesis_table import (
     STIFFNESS_SPREAD,
     TABLE_5_2,
 )
-from ssmr_ident.report.html import Section, Table
 
 HALF_WHEELBASE, HALF_TRACK, HEIGHT = 0.14, 0.18, 0.23  # m; chapter 5 and Table 5.1
 MASS, MASS_SPREAD = 32.0, 0.25  # kg; as broad as an unprinted number deserves, a share of it
@@ -31,7 +30,7 @@ MOTIONS = ("roll", "pitch", "yaw")
 
 
 @dataclass(frozen=True)
-class Showcase(Shown):
+class TwoModels(Shown):
     """Both explanations of Table 5.2.
 
     Parameters
@@ -81,7 +80,7 @@ class Showcase(Shown):
         return "\n".join(lines)
 
 
-def showcase() -> Showcase:
+def two_models() -> TwoModels:
     """Fit both models to the published numbers."""
     trials = np.array([TABLE_5_2[motion] for motion in MOTIONS])
     measured = trials.mean(axis=1)
@@ -106,27 +105,30 @@ def showcase() -> Showcase:
     before = least_squares(residual(decoupled), np.zeros(7))
     after = least_squares(residual(coupled), np.zeros(7))
     natural = np.hypot(2.0 * np.pi * measured, [DECAY_RATES[motion] for motion in MOTIONS])
-    return Showcase(
+    return TwoModels(
         measured, uncertain, _rotational(stiffness) / natural**2 / inertia, decoupled(before.x), coupled(after.x),
         before.x[:3] / CAD_SPREAD, 2.0 * float(before.cost), 2.0 * float(after.cost), MASS * float(np.exp(after.x[6])),
     )  # fmt: skip
 
 
-def thesis_section() -> Section:
-    """For the page."""
-    found = showcase()
+def section() -> str:
+    """For the page of the scoreboard, in Markdown."""
+    found = two_models()
+    roll, pitch = found.needed[:2]
     header = (
-        "motion", "measured Hz", "inertia that (5.3) needs, over CAD", "decoupled, at its best, Hz",
-        "its inertia's shift, std", "with translation coupling, Hz",
+        "motion", "measured Hz", "inertia that (5.3) needs, over CAD", "pure rotations, at their best, Hz",
+        "their inertia's shift, std", "with translation coupling, Hz",
     )  # fmt: skip
-    text = (
-        "The thesis' published numbers, no recording: with pure rotations (baseline decoupled) its frequencies ask for "
-        f"inertias {found.needed[0]:.0f} and {found.needed[1]:.0f} times the CAD model's in roll and pitch. Fitted "
-        "under what is known of inertia and stiffness, the conflict stays: the squared misfit is "
-        f"{found.before:.0f}. Let roll drag lateral motion along and pitch longitudinal motion, and the CAD inertia, "
-        f"the measured stiffnesses and a mass of {found.mass:.0f} kg give all three: {found.after:.1f}."
-    )
-    return Section("The thesis' own table", (text,), (Table("Table 5.2 by both models.", header, found.rows()),))
+    rows = "\n".join(f"| {' | '.join(row)} |" for row in (header, ("---",) * len(header), *found.rows()))
+    return f"""## Table 5.2 by both models
+
+With pure rotations (5.3) the frequencies of Table 5.2 ask for inertias {roll:.0f} and {pitch:.0f} times
+the CAD model's in roll and pitch. Fitted under what is known of inertia and stiffness, the conflict stays: the squared
+misfit is {found.before:.0f}. Let roll drag lateral motion along and pitch longitudinal motion, and the CAD inertia, the measured
+stiffnesses and a mass of {found.mass:.0f} kg give all three: {found.after:.1f}.
+
+{rows}
+"""
 
 
 def _rotational(stiffness: tuple[float, float, float] | np.ndarray) -> np.ndarray:
