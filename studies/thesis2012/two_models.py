@@ -123,9 +123,9 @@ def section() -> str:
     return f"""## Table 5.2 by both models
 
 With pure rotations (5.3) the frequencies of Table 5.2 ask for inertias {roll:.0f} and {pitch:.0f} times
-the CAD model's in roll and pitch. Fitted under what is known of inertia and stiffness, the conflict stays: the squared
-misfit is {found.before:.0f}. Let roll drag lateral motion along and pitch longitudinal motion, and the CAD inertia, the measured
-stiffnesses and a mass of {found.mass:.0f} kg give all three: {found.after:.1f}.
+the CAD model's in roll and pitch. Fitted under what is known of inertia and stiffness, the conflict stays: the
+squared misfit is {found.before:.0f}. Let roll drag lateral motion along and pitch longitudinal motion, and the CAD
+inertia, the measured stiffnesses and a mass of {found.mass:.0f} kg give all three: {found.after:.1f}.
 
 {rows}
 """
