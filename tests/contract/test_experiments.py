@@ -39,6 +39,7 @@ def test_one_file_says_all(kind: Experiment) -> None:
     assert set(kind.baselines) <= set(session_file.BASELINES)
     assert {name for group in kind.channels for name in group} <= set(UNITS)
     assert (kind.likelihood is Likelihood.FORCE) == (kind.drive is Drive.HEAD)
+    assert not kind.on_a_testing_machine or kind.channels[-1] == ("force",)  # what answers comes last
     assert any(kind.shows(effect) for effect in CATALOGUE.values())
     assert str(kind).startswith(kind.name)
 

@@ -32,7 +32,7 @@ class Drive(Enum):
 
 
 class Likelihood(Enum):
-    """By what a model is held against a recording."""
+    """By what a model is held against a recording, and what pages draw of the two."""
 
     WAVEFORM = "the motion, sample by sample"
     FORCE = "the force in averages over short blocks, and the teeth of stick-slip by their sizes"
@@ -53,7 +53,7 @@ class Experiment(Shown):
         The same as an order, in one word.
     drive : Drive
     channels : tuple of tuple of str
-        What has to be logged: of each group at least one.
+        What has to be logged: of each group at least one. The last group is what answers, drives stand before it.
     likelihood : Likelihood
     baselines : tuple of str
         Baselines of a session that predict it.
