@@ -19,11 +19,11 @@ import numpy as np
 from ssmr_ident.experiments.scenario import Scenario
 from ssmr_ident.identify.body.builder import RobotBuilder
 from ssmr_ident.identify.body.coupled import body_modes
-from ssmr_ident.identify.body.fit import BodyFit, fit_body
 from ssmr_ident.identify.body.free_decays import BodyDecay, body_decay
 from ssmr_ident.identify.body.tire_parameters import MOTIONS
-from ssmr_ident.identify.body.unknowns import robot_unknowns
 from ssmr_ident.identify.posterior.most_probable import Unknown
+from ssmr_ident.identify.robot.fit import BodyFit, fit_body
+from ssmr_ident.identify.robot.unknowns import robot_unknowns
 from ssmr_ident.physics.linear import COORDINATES, accelerometer_rows, linear_robot
 from ssmr_ident.physics.robot import GRAVITY, Robot
 from ssmr_ident.session import read_parameters

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ssmr_ident.core.parameter import Estimate, ParameterSet
-from ssmr_ident.identify.posterior.lmfit_report import Variable
+from ssmr_ident.identify.lmfit_report import Variable
 from ssmr_ident.workflows.fit.result import SessionFit
 
 

@@ -16,7 +16,7 @@ from ssmr_ident.experiments.free_response import free_response
 from ssmr_ident.experiments.pull import pull
 from ssmr_ident.experiments.straight import straight
 from ssmr_ident.experiments.swivel import swivel
-from ssmr_ident.identify.body.unknowns import predicted_modes
+from ssmr_ident.identify.robot.unknowns import predicted_modes
 from ssmr_ident.physics import slots
 from ssmr_ident.physics.effect import Effect, Site
 from ssmr_ident.physics.effects import CATALOGUE, unlisted

@@ -10,13 +10,13 @@ import pytest
 from ssmr_ident.experiments.scenario import Scenario
 from ssmr_ident.identify.body.builder import RobotBuilder
 from ssmr_ident.identify.body.defects import defect, small_motion
-from ssmr_ident.identify.body.fit import fit_body
 from ssmr_ident.identify.body.free_decays import BodyDecay, body_decay
 from ssmr_ident.identify.body.output_error import START_SCALES, DecaySamples
 from ssmr_ident.identify.body.response import body_response, sensor_gains
-from ssmr_ident.identify.body.unknowns import robot_unknowns
 from ssmr_ident.identify.posterior.identifiability import flat_directions
 from ssmr_ident.identify.posterior.most_probable import most_probable
+from ssmr_ident.identify.robot.fit import fit_body
+from ssmr_ident.identify.robot.unknowns import robot_unknowns
 from ssmr_ident.physics.linear import linear_robot, responses
 from ssmr_ident.session import read_parameters
 from ssmr_ident.signals.noise import AutoregressiveNoise

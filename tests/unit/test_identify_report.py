@@ -9,7 +9,7 @@ import pytest
 from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.identify.decays.fit import fit_decay
 from ssmr_ident.identify.decays.result import whitened_residual
-from ssmr_ident.identify.posterior.lmfit_report import Variable, variables_report
+from ssmr_ident.identify.lmfit_report import Variable, variables_report
 from ssmr_ident.report.text_fit import fit_report
 from ssmr_ident.workflows.fit.speeds import AtSpeed, rate_findings, slip_findings
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import grimp
 import pytest
 
-PACKAGES = ("ssmr_ident", "ssmr_proof")
+PACKAGES = ("ssmr_ident", "ssmr_proof", "thesis2012")
 
 
 def _circle(*packages: str) -> list[str]:

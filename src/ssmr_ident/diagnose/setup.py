@@ -12,10 +12,10 @@ from ssmr_ident.diagnose.arranged import loudness
 from ssmr_ident.experiments import EXPERIMENTS
 from ssmr_ident.experiments.campaign import Campaign, Measurement
 from ssmr_ident.identify.body.builder import GAINS
-from ssmr_ident.identify.body.unknowns import robot_unknowns
 from ssmr_ident.identify.fitting.coordinates import Model
 from ssmr_ident.identify.fitting.joint import JointFit
 from ssmr_ident.identify.posterior.objective import Unknown
+from ssmr_ident.identify.robot.unknowns import robot_unknowns
 from ssmr_ident.identify.trials import Trial, trial_of
 from ssmr_ident.physics.rig import RIG_KEYS
 from ssmr_ident.physics.slots import effect_values

@@ -11,7 +11,6 @@ from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.setup import Setup
 from ssmr_ident.experiments.campaign import Campaign, Measurement
 from ssmr_ident.identify.body.builder import RobotBuilder
-from ssmr_ident.identify.body.unknowns import match_further, modal_observations, pick_mode, predicted_modes
 from ssmr_ident.identify.decays.fit import fit_decay
 from ssmr_ident.identify.decays.result import Mode
 from ssmr_ident.identify.fitting.coordinates import scaled_at
@@ -20,6 +19,7 @@ from ssmr_ident.identify.fitting.descent import search_again
 from ssmr_ident.identify.fitting.joint import JointFit, differentiate, evaluate
 from ssmr_ident.identify.posterior.most_probable import most_probable
 from ssmr_ident.identify.rigs.frequency_domain import DERIVATIVES, ForcedRecord, fit_rig
+from ssmr_ident.identify.robot.unknowns import match_further, modal_observations, pick_mode, predicted_modes
 from ssmr_ident.identify.trials import Trial
 from ssmr_ident.physics.rig import RIG_KEYS, rig_from_parameters
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from textwrap import fill
 
 from ssmr_ident.core.parameter import ParameterSet
-from ssmr_ident.identify.posterior.lmfit_report import Variable, variables_report
+from ssmr_ident.identify.lmfit_report import Variable, variables_report
 
 
 def file_variables(before: ParameterSet, after: ParameterSet, changed: Sequence[str]) -> tuple[Variable, ...]:

@@ -1,1 +1,1 @@
-"""A robot's body and tires from its free responses."""
+"""What a robot's accelerometers show of its body and tires in a free response."""

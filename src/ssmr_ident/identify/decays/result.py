@@ -11,7 +11,7 @@ import numpy as np
 
 from ssmr_ident.core.shown import Shown
 from ssmr_ident.identify.decays.poles import Block, PoleFit, fit_poles, modelled
-from ssmr_ident.identify.posterior.lmfit_report import Variable, matrix_correlations, variables_report
+from ssmr_ident.identify.lmfit_report import Variable, matrix_correlations, variables_report
 
 if TYPE_CHECKING:
     import lmfit

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import lmfit
 import numpy as np
 
-from ssmr_ident.identify.posterior.lmfit_report import Variable, variables_report
+from ssmr_ident.identify.lmfit_report import Variable, variables_report
 
 Array = np.ndarray
 

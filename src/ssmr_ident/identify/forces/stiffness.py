@@ -9,7 +9,7 @@ import lmfit
 import numpy as np
 
 from ssmr_ident.core.shown import Shown
-from ssmr_ident.identify.posterior.lmfit_report import Variable, variables_report
+from ssmr_ident.identify.lmfit_report import Variable, variables_report
 
 Array = np.ndarray
 

@@ -19,7 +19,7 @@ from ssmr_ident.identify.geometry.mass_properties import (
     from_two_weighings,
     height_from_tilting,
 )
-from ssmr_ident.identify.posterior.lmfit_report import Variable, variables_report
+from ssmr_ident.identify.lmfit_report import Variable, variables_report
 
 Array = np.ndarray
 

@@ -16,7 +16,7 @@ from scipy.stats import chi2
 from scipy.stats import t as student
 
 from ssmr_ident.core.shown import Shown
-from ssmr_ident.identify.posterior.lmfit_report import Variable, matrix_correlations, variables_report
+from ssmr_ident.identify.lmfit_report import Variable, matrix_correlations, variables_report
 from ssmr_ident.signals.noise import long_run_variance, whiteness
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from pathlib import Path
 
-from ssmr_ident.identify.posterior.lmfit_report import Variable
+from ssmr_ident.identify.lmfit_report import Variable
 from ssmr_ident.report.figures_fit import backbone_figure, sawtooth_figure
 from ssmr_ident.report.html import (
     Cell,

@@ -9,7 +9,7 @@ from typing import Any
 
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.core.shown import Shown
-from ssmr_ident.identify.posterior.lmfit_report import Variable
+from ssmr_ident.identify.lmfit_report import Variable
 from ssmr_ident.report.figures_fit import NamedBackbone, NamedPull, backbone_figure, sawtooth_figure
 from ssmr_ident.report.style import save
 from ssmr_ident.report.text_fit import fit_report

@@ -11,7 +11,12 @@ from ssmr_ident.core.errors import InputError
 from ssmr_ident.experiments.campaign import Campaign, Measurement
 from ssmr_ident.experiments.pull import ROPE_STIFFNESS
 from ssmr_ident.identify.body.builder import RobotBuilder
-from ssmr_ident.identify.body.unknowns import (
+from ssmr_ident.identify.decays.backbone import backbone
+from ssmr_ident.identify.decays.fit import fit_decay
+from ssmr_ident.identify.forces.observations import SHARES, with_shifts_unknown
+from ssmr_ident.identify.posterior.findings import amplitude_findings, conflicts, posterior_findings
+from ssmr_ident.identify.posterior.most_probable import Unknown, most_probable
+from ssmr_ident.identify.robot.unknowns import (
     match_further,
     modal_observations,
     pick_mode,
@@ -19,11 +24,6 @@ from ssmr_ident.identify.body.unknowns import (
     robot_unknowns,
     set_aside,
 )
-from ssmr_ident.identify.decays.backbone import backbone
-from ssmr_ident.identify.decays.fit import fit_decay
-from ssmr_ident.identify.forces.observations import SHARES, with_shifts_unknown
-from ssmr_ident.identify.posterior.findings import amplitude_findings, conflicts, posterior_findings
-from ssmr_ident.identify.posterior.most_probable import Unknown, most_probable
 from ssmr_ident.report.figures_fit import NamedBackbone
 from ssmr_ident.workflows.fit.result import SessionFit
 from ssmr_ident.workflows.fit.robot_decays import body_statistics, fit_samples

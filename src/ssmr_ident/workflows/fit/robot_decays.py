@@ -8,9 +8,9 @@ import numpy as np
 
 from ssmr_ident.experiments.campaign import Campaign, Measurement
 from ssmr_ident.identify.body.builder import RobotBuilder
-from ssmr_ident.identify.body.fit import BodyFit, fit_body
 from ssmr_ident.identify.body.free_decays import BodyDecay, body_decay
 from ssmr_ident.identify.posterior.most_probable import Posterior, Unknown
+from ssmr_ident.identify.robot.fit import BodyFit, fit_body
 from ssmr_ident.physics.slots import effect_values
 from ssmr_ident.signals.noise import whiteness
 from ssmr_ident.workflows.fit.robot_forces import Gathered

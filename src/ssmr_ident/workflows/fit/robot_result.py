@@ -10,12 +10,12 @@ import numpy as np
 from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.identify.body.builder import HEIGHT, SENSOR, SHIFTS, RobotBuilder
 from ssmr_ident.identify.body.tire_parameters import MOTIONS, damping_as_printed, solve_damping
-from ssmr_ident.identify.body.unknowns import geometry_of
 from ssmr_ident.identify.decays.result import Mode
 from ssmr_ident.identify.forces.observations import SHARES
+from ssmr_ident.identify.lmfit_report import Variable
 from ssmr_ident.identify.posterior.findings import at_bound, table_5_2
-from ssmr_ident.identify.posterior.lmfit_report import Variable
 from ssmr_ident.identify.posterior.most_probable import Posterior, Unknown
+from ssmr_ident.identify.robot.unknowns import geometry_of
 
 UNINFORMED = 0.19
 """Share of information below which the posterior std is above 0.9 of the prior's: then the source is the prior."""
