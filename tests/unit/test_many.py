@@ -131,7 +131,7 @@ def test_slopes_of_many_at_once_are_those_of_one_after_the_other(robot: Robot, m
     point = np.concatenate([[0.1, -0.2], point])
     nuisance = 0.1 * np.random.default_rng(5).standard_normal(len(trial.scales))
     fits = [evaluate([one], model, point, [nuisance]) for one in (trial, replace(trial, many=None))]
-    monkeypatch.setattr(threads, "_threads", lambda: None)  # a single processor takes one trial after the other
+    monkeypatch.setattr(threads, "_pool", lambda: threads.Pool(1))  # a single processor takes one trial after the other
     together, apart = (differentiate(fit).slopes[0] for fit in fits)
     # matrices are multiplied in another order, and differences of 1e-3 magnify that
     np.testing.assert_allclose(together.shared, apart.shared, atol=1e-11 * np.abs(apart.shared).max())

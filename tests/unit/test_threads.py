@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import threading
 import time
-from concurrent.futures import ThreadPoolExecutor
 from contextvars import ContextVar
 
 import pytest
 
 from ssmr_ident.core import threads
-from ssmr_ident.core.threads import side_by_side
+from ssmr_ident.core.threads import Pool, side_by_side
 
 SETTING: ContextVar[int] = ContextVar("setting", default=0)
 
@@ -22,8 +21,8 @@ def workers(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> 
 
 
 def _with(workers: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    pool = ThreadPoolExecutor(workers) if workers > 1 else None
-    monkeypatch.setattr(threads, "_threads", lambda: pool)
+    pool = Pool(workers)
+    monkeypatch.setattr(threads, "_pool", lambda: pool)
 
 
 def _who(_: object) -> str:
@@ -70,6 +69,19 @@ def test_who_has_nothing_to_do_helps_with_what_is_asked_from_within(monkeypatch:
 
     (names, _) = side_by_side(long_or_short, [True, False])
     assert len(names) == 2
+
+
+def test_while_all_have_work_what_is_asked_from_within_stays_where_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    _with(2, monkeypatch)
+    together = threading.Barrier(2)
+
+    def own(_: int) -> bool:
+        together.wait(10.0)
+        names = set(side_by_side(_who, range(3)))
+        together.wait(10.0)
+        return names == {threading.current_thread().name}
+
+    assert list(side_by_side(own, range(2))) == [True, True]
 
 
 def test_what_nobody_wants_any_more_ends_where_it_asks_for_more(monkeypatch: pytest.MonkeyPatch) -> None:
