@@ -1,12 +1,12 @@
-# Two commands do everything: `make demo` and `make test`. Both make their own environment in .venv,
-# so an externally managed system Python (PEP 668) is left alone.
+# Two commands do everything: `make demo` and `make test`, which leaves the slow tests to `make test-all`. Each makes its
+# own environment in .venv, so an externally managed system Python (PEP 668) is left alone.
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 # small matrices: threads of the linear algebra only get into each other's way
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: demo test check docs bench bench-doctor data clean
+.PHONY: demo test test-all check docs bench bench-doctor data clean
 
 demo: $(VENV)/.runtime
 	$(BIN)/ident demo -o out
@@ -15,7 +15,10 @@ test: $(VENV)/.test
 	$(BIN)/ruff check . && $(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
-	$(BIN)/pytest -n 2 --dist worksteal
+	$(BIN)/pytest -n 2 --dist worksteal -m "not slow"
+
+test-all: test
+	$(BIN)/pytest -n 2 --dist worksteal -m slow
 
 check: $(VENV)/.test
 	$(BIN)/ruff check --fix . && $(BIN)/ruff format . && $(BIN)/mypy && $(BIN)/lint-imports

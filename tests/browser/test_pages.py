@@ -9,6 +9,8 @@ from typing import Any
 
 import pytest
 
+pytestmark = pytest.mark.slow
+
 NAMES = ("hardening", "nothing", "undetermined", "swivel", "comparison", "spectrum", "fit")
 Opened = Callable[..., Any]
 

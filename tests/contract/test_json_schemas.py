@@ -63,11 +63,13 @@ def test_geometry() -> None:
     check("geometry", answer_of("geometry", str(SCHEMAS.parent / "howto" / "measurements.yaml")))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("call", [["pulls/carpet.yaml"], ["free_response", "--method", "modal"]])
 def test_fit_of_a_robot(call: list[str]) -> None:
     check("fit", answer_of("fit", str(RAW / call[0]), *call[1:]))
 
 
+@pytest.mark.slow
 def test_the_whole_way_of_a_rig(tmp_path: Path) -> None:
     """A rig's log simulated, described by ``ident new``, fitted, compared, diagnosed: five answers."""
     (tmp_path / "rig.yaml").write_text(
@@ -102,6 +104,7 @@ def test_effects(tmp_path: Path) -> None:
     check("effects", answer_of("effects", "dry_friction"))
 
 
+@pytest.mark.slow
 def test_demo() -> None:
     """The two forms that the verb prints, from the values that it prints (the whole job takes half a minute)."""
     table = DemoTable((DemoRow("roll: natural frequency", "rad/s", "38.0", 38.8, None, 38.8),))

@@ -13,6 +13,8 @@ from ssmr_ident.diagnose.sizes import sizes_of
 from ssmr_ident.physics.effects import CATALOGUE
 from ssmr_ident.workflows.diagnose import diagnose
 
+pytestmark = pytest.mark.slow
+
 SEED, LIMIT = 500006, 10.315
 
 

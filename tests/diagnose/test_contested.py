@@ -21,6 +21,8 @@ from ssmr_ident.identify.fitting.descent import descend
 from ssmr_ident.identify.fitting.joint import evaluate
 from ssmr_ident.physics.effects import CATALOGUE
 
+pytestmark = pytest.mark.slow
+
 LENGTHS = (float("inf"),)
 
 

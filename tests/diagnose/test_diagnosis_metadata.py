@@ -14,6 +14,8 @@ from ssmr_ident.diagnose.diagnosis import Diagnosis
 from ssmr_ident.experiments.campaign import Campaign
 from ssmr_ident.workflows.diagnose import diagnose
 
+pytestmark = pytest.mark.slow
+
 LIES = ("free_play", "null", "dry-friction-heavy", "nothing-missing", "sensor_saturation", "zz", "a", "hysteresis-loop")
 
 

@@ -19,6 +19,8 @@ from ssmr_ident.session import Entry, Session
 from ssmr_ident.simulate.bench import pull_block
 from ssmr_ident.workflows.diagnose import diagnose
 
+pytestmark = pytest.mark.slow
+
 RATE, MASS, MU = 100.0, 2.0, 0.4
 KNOWN = ParameterSet(
     "block",

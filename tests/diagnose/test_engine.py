@@ -18,6 +18,8 @@ from ssmr_ident.identify.fitting.joint import differentiate, evaluate
 from ssmr_ident.session import Entry, Session
 from ssmr_ident.workflows.diagnose import diagnose
 
+pytestmark = pytest.mark.slow
+
 RATE, SECONDS, LEVELS = 500.0, 6.0, (1.0, 3.0, 6.0)
 MASS, DAMPING, STIFFNESS = 6.0, 40.0, 15000.0
 NOISE = 2e-5

@@ -23,6 +23,8 @@ from ssmr_ident.identify.fitting.descent import descend
 from ssmr_ident.identify.fitting.horizons import horizon_fit
 from ssmr_ident.identify.fitting.joint import JointFit, evaluate
 
+pytestmark = pytest.mark.slow
+
 TRUE = {"F_c_N": 6.0, "rounding_m_s": 0.06}
 
 

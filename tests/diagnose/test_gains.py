@@ -14,6 +14,8 @@ from ssmr_ident.experiments.campaign import Campaign
 from ssmr_ident.identify.body.builder import GAINS
 from ssmr_ident.workflows.diagnose import diagnose
 
+pytestmark = pytest.mark.slow
+
 SEED = 187486
 """Gains of 1.026, 0.966 and 1.014. A first descent ends with the centre of mass seven deviations off."""
 

@@ -17,6 +17,8 @@ from ssmr_ident.diagnose.weigh import Explanation
 from ssmr_ident.identify.fitting.descent import descend
 from ssmr_ident.identify.fitting.joint import JointFit, evaluate
 
+pytestmark = pytest.mark.slow
+
 PULLS = (("lateral", 1.0, 6e-3), ("lateral", 0.5, 6e-3))
 
 

@@ -24,6 +24,8 @@ from ssmr_ident.session import Entry, Session
 from ssmr_ident.session.parameters_file import read_parameters
 from ssmr_ident.simulate import simulate
 
+pytestmark = pytest.mark.slow
+
 RATE, NOISE = 50.0, 0.3
 PULLS = ((1.0, (1, 2, 3, 4)), (1.0, (1, 2)), (0.6, (1, 2, 3, 4)), (1.5, (3, 4)))
 AXLES = ((1.0, (1, 2, 3, 4)), (1.0, (1, 4)), (0.6, (1, 2, 3, 4)), (1.5, (2, 3)))

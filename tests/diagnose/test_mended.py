@@ -16,6 +16,8 @@ from ssmr_ident.diagnose.setup import set_up
 from ssmr_ident.identify.fitting.descent import LOUD
 from ssmr_ident.identify.fitting.joint import JointFit, each_best, evaluate, together
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def released() -> JointFit:

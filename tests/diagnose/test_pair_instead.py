@@ -19,6 +19,8 @@ from ssmr_ident.identify.fitting.descent import descend
 from ssmr_ident.identify.fitting.joint import differentiate, evaluate
 from ssmr_ident.identify.trials import Trial
 
+pytestmark = pytest.mark.slow
+
 BOTH = {"nonlinear_stiffness": {"k3_N_m3": 2e6}, "quadratic_damping": {"d2_N_s2_m2": 300.0}}
 RUNS = [Run(force=60.0), Run(force=30.0), Run(force=90.0)]
 BEGUN = {

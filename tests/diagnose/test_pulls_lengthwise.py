@@ -13,6 +13,8 @@ from ssmr_ident.diagnose.scan import Suspect, both_ways
 from ssmr_ident.diagnose.setup import Setup
 from ssmr_ident.diagnose.sizes import sizes_of
 
+pytestmark = pytest.mark.slow
+
 K3 = 1.2e6
 """N/m^3: a third of the tire's stiffness at 30 mm, nothing at the 4 mm of a lateral pull."""
 

@@ -8,6 +8,8 @@ from made_pulls import made_pulls
 
 from ssmr_ident.diagnose.baseline import best_baseline
 
+pytestmark = pytest.mark.slow
+
 PULLS = (("lateral", 1.0, 6e-3), ("lateral", 2.0, 7e-3), ("longitudinal", 2.0, 30e-3), ("longitudinal", 3.0, 30e-3))
 
 

@@ -9,6 +9,8 @@ from made_pulls import made_pulls
 from ssmr_ident.diagnose.baseline import alike_in, best_baseline
 from ssmr_ident.identify.fitting.joint import evaluate
 
+pytestmark = pytest.mark.slow
+
 ASIDE = 0.012
 """m: 2.4 deviations of what a robot's file says."""
 

@@ -19,6 +19,8 @@ from ssmr_ident.identify.fitting.joint import differentiate, evaluate
 from ssmr_ident.physics.effects import CATALOGUE
 from ssmr_ident.workflows.diagnose import diagnose
 
+pytestmark = pytest.mark.slow
+
 RELEASES = (4e-3, 3e-3, 2e-3, 1.5e-3)
 FORCE, SLOW = 3.0, 2e-3
 

@@ -17,6 +17,8 @@ from ssmr_ident.diagnose.weigh import CERTAIN, Explanation
 from ssmr_ident.identify.fitting.joint import differentiate, evaluate
 from ssmr_ident.workflows.diagnose import diagnose
 
+pytestmark = pytest.mark.slow
+
 LOUD_ONCE = [Run(force=30.0), Run(force=34.0), Run(force=26.0), Run(force=3.0)]
 """The last one is kept back as well."""
 

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from made_pulls import made_pulls
 
 from ssmr_ident.diagnose.baseline import fit_baseline
 from ssmr_ident.diagnose.race import combined, ranked
 from ssmr_ident.diagnose.scan import Suspect
+
+pytestmark = pytest.mark.slow
 
 TRUE = {"kinetic_share": 0.72, "stribeck_velocity_m_s": 3e-3}
 PULLS = (("longitudinal", 1.5, 21e-3), ("lateral", 1.0, 7e-3))

@@ -16,6 +16,8 @@ from ssmr_ident.identify.fitting.joint import JointFit, differentiate, evaluate
 from ssmr_ident.physics.effects import CATALOGUE
 from ssmr_ident.workflows.diagnose import diagnose
 
+pytestmark = pytest.mark.slow
+
 SEED, K3 = 6264, -4.222e7
 OF_ANY_SIZE = ("flexible_mast", "com_offset", "motor_belt", "sensor_bandwidth")
 

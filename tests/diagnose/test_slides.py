@@ -18,6 +18,8 @@ from ssmr_ident.identify.trials.moments import lets_go
 from ssmr_ident.identify.trials.trial import Array, Course, Trial, Values
 from ssmr_ident.signals.noise import AutoregressiveNoise
 
+pytestmark = pytest.mark.slow
+
 TIMES = 0.05 * np.arange(400)
 LETS_GO, NOISE = 6.0, 0.6
 BEAT = 15.0

@@ -11,6 +11,8 @@ from ssmr_ident.diagnose.scan import scan
 from ssmr_ident.identify.fitting.descent import descend
 from ssmr_ident.physics.effects import CATALOGUE
 
+pytestmark = pytest.mark.slow
+
 TRUE = {"weight": 0.4, "lambda_max": 0.15}
 PULLS = (("lateral", 1.0, 6e-3),) * 4
 

@@ -16,6 +16,8 @@ from ssmr_ident.identify.fitting.descent import LOUD
 from ssmr_ident.physics.effects import CATALOGUE
 from ssmr_ident.workflows.diagnose import diagnose
 
+pytestmark = pytest.mark.slow
+
 RUNS = [Run(force=20.0), Run(force=40.0), Run(force=10.0)]
 RIDER = {"rider_share": 0.08, "rider_Hz": 6.0, "rider_ratio": 0.04}
 STOP = {"c_abs_s_N_m": 2500.0, "place_m": 6e-4}

@@ -16,6 +16,8 @@ from ssmr_ident.identify.fitting.descent import descend
 from ssmr_ident.identify.fitting.joint import JointFit, differentiate, evaluate
 from ssmr_ident.identify.trials import Trial
 
+pytestmark = pytest.mark.slow
+
 RUNS = [Run(force=60.0), Run(force=30.0), Run(force=90.0)]
 FRICTION = Suspect("dry_friction", {"F_c_N": 0.05, "element_stiffness_N_m": 2e5}, {}, {}, 0.0)
 HARDENING = Suspect("nonlinear_stiffness", {"k3_N_m3": 1e5}, {}, {"k3_N_m3": 1e6}, 0.0)

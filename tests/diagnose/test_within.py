@@ -15,6 +15,8 @@ from ssmr_ident.diagnose.within import REACH, measure_of
 from ssmr_ident.identify.fitting.descent import descend
 from ssmr_ident.identify.fitting.joint import differentiate, evaluate
 
+pytestmark = pytest.mark.slow
+
 RUNS = [Run(force=20.0), Run(force=40.0)]
 
 

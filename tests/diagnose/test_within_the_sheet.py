@@ -11,6 +11,8 @@ from small_rigs import NOISE, Run, campaign
 from ssmr_ident.experiments.campaign import Campaign
 from ssmr_ident.workflows.diagnose import diagnose
 
+pytestmark = pytest.mark.slow
+
 RELEASES = (1e-3, -8e-4, 6e-4, -4e-4, 9e-4)
 
 

@@ -24,6 +24,8 @@ from ssmr_ident.physics.robot import robot_from_parameters
 from ssmr_ident.session import Entry, Session, read_parameters
 from ssmr_ident.simulate.simulation import simulate
 
+pytestmark = pytest.mark.slow
+
 JOINTS = {"ground_joints": {"pitch_m": 0.03, "depth_m": 6e-4, "width_m": 6e-3}}
 
 

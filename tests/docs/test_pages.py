@@ -72,6 +72,7 @@ def test_the_example_of_an_effect_does_what_it_says() -> None:
     assert effect.is_off({"corner_Hz": 0.0})
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(find_spec("mkdocs") is None, reason="mkdocs is in the extra docs")
 def test_the_site_builds_without_a_warning(tmp_path: Path) -> None:
     call = [sys.executable, "-m", "mkdocs", "build", "--strict", "-d", str(tmp_path / "site")]

@@ -19,6 +19,8 @@ import typer
 
 from ssmr_ident import cli
 
+pytestmark = pytest.mark.slow
+
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "tutorial" / "first-hour.md"
 
 

@@ -9,6 +9,8 @@ import pytest
 
 from thesis2012.scoreboard import Scoreboard, thesis_scoreboard
 
+pytestmark = pytest.mark.slow
+
 HOLD = {
     "filter", "mains", "low_pass_20", "band_pass", "middle", "one_sided", "peaks", "log_amplitude", "ranges",
     "averages", "grid",

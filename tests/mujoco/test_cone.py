@@ -12,6 +12,8 @@ from numba import njit
 
 from ssmr_ident.physics.robot import GRAVITY, Robot
 
+pytestmark = pytest.mark.slow
+
 STEP = 5e-6  # s
 SMOOTH = 1e-4  # m/s
 

@@ -15,7 +15,7 @@ from ssmr_ident.simulate import Simulation, simulate
 from ssmr_proof.engine.build import Build, Mast
 from ssmr_proof.engine.run import MujocoRun, run_mujoco
 
-pytestmark = pytest.mark.usefixtures("engine")
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("engine")]
 CHANNELS = {"roll": ("roll", "y"), "pitch": ("pitch", "x"), "yaw": ("yaw",)}
 MODES = {"roll": 2, "pitch": 2, "yaw": 1}
 AMPLITUDE = 2e-4  # m at the wheels: small against the sinking of 1 mm

@@ -13,7 +13,7 @@ from ssmr_ident.simulate import simulate
 from ssmr_proof.engine.build import Build
 from ssmr_proof.engine.run import run_mujoco
 
-pytestmark = pytest.mark.usefixtures("engine")
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("engine")]
 
 
 def _rolling(friction: str) -> Build:

@@ -11,7 +11,7 @@ from ssmr_ident.simulate import Simulation, simulate
 from ssmr_proof.engine.build import Build, Cable
 from ssmr_proof.engine.run import MujocoRun, run_mujoco
 
-pytestmark = pytest.mark.usefixtures("engine")
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("engine")]
 
 
 def _cable(robot: Robot, direction: str, height: float, speed_mm_s: float) -> Cable:

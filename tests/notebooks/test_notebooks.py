@@ -16,6 +16,7 @@ def test_outputs_are_stripped(path: Path) -> None:
     assert all(not cell.get("outputs") and cell.get("execution_count") is None for cell in cells)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=[path.stem for path in NOTEBOOKS])
 def test_it_runs(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Cells are run in order in one name space, from the notebook's own folder."""

@@ -17,6 +17,8 @@ from ssmr_ident.experiments.campaign import load
 from ssmr_ident.session import read_parameters
 from ssmr_ident.workflows.fit.run import fit_session
 
+pytestmark = pytest.mark.slow
+
 KEYS = {
     "m": "mass_kg", "Ixx": "inertia_kg_m2.xx", "Iyy": "inertia_kg_m2.yy", "Izz": "inertia_kg_m2.zz",
     "Ixz": "inertia_kg_m2.xz", "h": "height_m", "Kx": "tire.stiffness_x_N_m", "Ky": "tire.stiffness_y_N_m",

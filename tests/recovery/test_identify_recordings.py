@@ -8,7 +8,7 @@ import pytest
 
 from ssmr_ident.workflows.fit.run import fit_session
 
-pytestmark = pytest.mark.shared
+pytestmark = [pytest.mark.slow, pytest.mark.shared]
 
 
 def test_pendulum_small_angles(shared: Path) -> None:

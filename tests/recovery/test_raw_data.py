@@ -146,6 +146,7 @@ def test_truth_leaves_noise_and_mains_and_nothing_else(raw: Path, decays: Campai
     np.testing.assert_allclose(rest.std(axis=0), expected, rtol=0.03)
 
 
+@pytest.mark.slow
 def test_the_generator_still_makes_these_files(raw: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.syspath_prepend(raw.parent)
     releases = importlib.import_module("generator.releases")
@@ -224,6 +225,7 @@ def test_vertical_tire_stiffness_comes_back_from_compression(pulls: Campaign, ro
         assert curve.stiffness_std < 1e-3 * robot.stiffness[2]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("floor", ["concrete", "carpet"])
 def test_ident_fit_gives_stiffness_and_friction_back(raw: Path, floor: str) -> None:
     fit = fit_session(raw / "pulls" / f"{floor}.yaml")

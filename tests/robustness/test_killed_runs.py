@@ -29,6 +29,7 @@ def _kill(command: list[str], folder: Path, enough: int, how: signal.Signals) ->
         return process.wait(timeout=60)
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")
 @pytest.mark.parametrize("enough", [1, 3])
 @pytest.mark.parametrize("how", ["SIGKILL", "SIGTERM"])

@@ -14,6 +14,8 @@ from ssmr_ident.physics.rig import rig_from_parameters
 from ssmr_ident.simulate.rig import simulate_rig
 from ssmr_proof.peers import grey_box, mujoco_sysid, sindy
 
+pytestmark = pytest.mark.slow
+
 
 def quiet(campaign: Campaign, noise: float = 0.01) -> Campaign:
     """The same drives through the file's own linear rig, with white noise."""
