@@ -91,8 +91,9 @@ def _on_rows(
         def repeats(of: np.ndarray) -> np.ndarray:
             places = of if here is None else here[of]
             before = of - 1 if here is None else here[of - 1]
-            return np.all([(c.values[places] == c.values[before]) | np.isnan(c.values[places]) for c in group.columns],
-                          axis=0)  # fmt: skip
+            alike = [(c.values[places] == c.values[before]) | np.isnan(c.values[places]) for c in group.columns]
+            same: np.ndarray = np.all(alike, axis=0)
+            return same
 
         try:
             axis = time_axis.check(

@@ -15,7 +15,7 @@ _TAB, _NEWLINE, _RETURN, _BLANK, _QUOTE, _PLUS, _MINUS, _ZERO = 9, 10, 13, 32, 3
 
 
 @kernel
-def _long_quotient(mantissa, places):
+def _long_quotient(mantissa: np.int64, places: np.int64) -> tuple[float, bool]:
     """``mantissa / 10**places`` for a mantissa beyond 2**53, and whether its rounding is certain.
 
     The quotient of the leading part is corrected by its remainder (Dekker 1971), which is known to 2**-52 of
@@ -41,7 +41,7 @@ def _long_quotient(mantissa, places):
 
 
 @kernel
-def count_lines(buffer):
+def count_lines(buffer: np.ndarray) -> int:
     """Line ends in (n,) uint8."""
     count = 0
     for i in range(buffer.size):
@@ -50,7 +50,7 @@ def count_lines(buffer):
 
 
 @kernel
-def _pass_over(buffer, p, delimiter, blank):
+def _pass_over(buffer: np.ndarray, p: int, delimiter: int, blank: bool) -> tuple[int, int, int]:
     """End of a cell that is no number, and its span without quotes; a begin of -1 for an open quote."""
     end = buffer.size
     if buffer[p] == _QUOTE:
@@ -75,7 +75,15 @@ def _pass_over(buffer, p, delimiter, blank):
 
 
 @kernel
-def parse_rows(buffer, position, delimiter, decimal, kinds, out, spans):
+def parse_rows(
+    buffer: np.ndarray,
+    position: int,
+    delimiter: int,
+    decimal: int,
+    kinds: np.ndarray,
+    out: np.ndarray,
+    spans: np.ndarray,
+) -> tuple[int, int]:
     """Parse rows until ``out`` is full or a row is not of plain numbers, text and stamps where they belong.
 
     Parameters
@@ -164,8 +172,8 @@ def parse_rows(buffer, position, delimiter, decimal, kinds, out, spans):
                         break
                     mantissa = mantissa * 10 + digit
                     p += 1
-                scale = begin - p
-                digits -= scale
+                scale = np.int64(begin - p)
+                digits -= int(scale)
             if digits > LONGEST:  # zeros in front do not count: 0.00012 has two digits
                 begin = p - digits - (1 if scale < 0 else 0)
                 while buffer[begin] == _ZERO or buffer[begin] == decimal:

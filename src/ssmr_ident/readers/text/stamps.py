@@ -147,7 +147,8 @@ def _together(parts: dict[str, np.ndarray], count: int) -> np.ndarray:
     """Seconds from the parts of the stamps."""
 
     def part(name: str) -> np.ndarray:
-        return np.nan_to_num(parts.get(name, np.zeros(count)))
+        column: np.ndarray = np.nan_to_num(parts.get(name, np.zeros(count)))
+        return column
 
     hour = part("hour")
     if "half" in parts:

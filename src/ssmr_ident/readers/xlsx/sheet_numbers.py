@@ -230,7 +230,7 @@ def _mixed(
     return np.array(values, dtype=float).reshape(len(values), len(columns)), np.array(kept, dtype=int), dated
 
 
-def _seconds(cell: Any) -> float:
+def _seconds(cell: date | time | timedelta) -> float:
     if isinstance(cell, date):  # midnight to the millisecond arrives as a bare date
         moment = cell if isinstance(cell, datetime) else datetime(cell.year, cell.month, cell.day)
         return moment.replace(tzinfo=UTC).timestamp()

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from ssmr_ident.core.kernel import kernel
 
 
 @kernel
-def scan(text):
+def scan(text: np.ndarray) -> tuple[bool, int, int]:
     """Bounding corner of the cells, for XML written as nearly all of it is: ``<row r="1"…><c r="A1"…>``.
 
     Parameters
