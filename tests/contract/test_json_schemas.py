@@ -73,7 +73,7 @@ def test_fit_of_a_robot(call: list[str]) -> None:
 def test_the_whole_way_of_a_rig(tmp_path: Path) -> None:
     """A rig's log simulated, described by ``ident new``, fitted, compared, diagnosed: five answers."""
     (tmp_path / "rig.yaml").write_text(
-        "mass_kg: {value: 8.0, unit: kg}\nstiffness_N_m: {value: 20000, unit: N/m}\n"
+        "schema: ssmr-ident/parameters/1\nmass_kg: {value: 8.0, unit: kg}\nstiffness_N_m: {value: 20000, unit: N/m}\n"
         "damping_N_s_m: {value: 50, unit: N s/m}\n"
     )
     push = "".join(f"{i / 1000},{50.0 if i % 97 < 40 else -30.0}\n" for i in range(4000))

@@ -71,7 +71,7 @@ def test_a_missing_parameter_and_a_wrong_unit_are_named(folder: Path) -> None:
     done = _ident("compare", ".", cwd=folder)
     assert done.returncode == 2
     assert "contact_points_m: is missing" in done.stderr
-    (folder / "robot.yaml").write_text("mass_kg: {value: 30, unit: lb}\n")
+    (folder / "robot.yaml").write_text("schema: ssmr-ident/parameters/1\nmass_kg: {value: 30, unit: lb}\n")
     done = _ident("compare", ".", cwd=folder)
     assert done.returncode == 2
     assert "expected 'kg'" in done.stderr

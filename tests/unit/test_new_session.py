@@ -162,7 +162,7 @@ def test_an_open_question_is_named_with_its_line(robot_logs: Path, tmp_path: Pat
 def test_a_rig_gets_its_first_values_from_the_logs(tmp_path: Path) -> None:
     """8 kg, 20 kN/m, 50 N s/m, pushed by noise: found within a few percent, without a word from the user."""
     (tmp_path / "rig.yaml").write_text(
-        "mass_kg: {value: 8.0, unit: kg}\nstiffness_N_m: {value: 20000, unit: N/m}\n"
+        "schema: ssmr-ident/parameters/1\nmass_kg: {value: 8.0, unit: kg}\nstiffness_N_m: {value: 20000, unit: N/m}\n"
         "damping_N_s_m: {value: 50, unit: N s/m}\n"
     )
     random = np.random.default_rng(5)

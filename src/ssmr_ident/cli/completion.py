@@ -30,12 +30,12 @@ def bundled(incomplete: str) -> Iterator[str]:
 
 
 def experiments(incomplete: str) -> Iterator[str]:
-    from ssmr_ident.session.session_file import EXPERIMENTS
+    from ssmr_ident.session.entry import EXPERIMENTS
 
     yield from (name for name in EXPERIMENTS if name.startswith(incomplete))
 
 
 def baselines(incomplete: str) -> Iterator[str]:
-    from ssmr_ident.session.session_file import BASELINES
+    from ssmr_ident.session.entry import BASELINES
 
     yield from (name for name in BASELINES if name.startswith(incomplete))

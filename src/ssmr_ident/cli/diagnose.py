@@ -25,7 +25,7 @@ def command(
     ] = "",
     as_json: Annotated[bool, typer.Option("--json", help="Print the diagnosis as JSON.")] = False,
     quiet: Annotated[bool, typer.Option("-q", "--quiet", help="Print nothing but errors.")] = False,
-    seed: Annotated[int, typer.Option(help="Of permutation tests and simulated floors.")] = 0,
+    seed: Annotated[int, typer.Option(min=0, help="Of permutation tests and simulated floors.")] = 0,
 ) -> None:
     """Say what physics the simulation leaves out, model it, and show it on recordings that were never fitted."""
     from ssmr_ident.cli.called import called

@@ -21,7 +21,7 @@ def command(
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
     quiet: Annotated[bool, typer.Option("-q", "--quiet", help="Print nothing.")] = False,
-    seed: Annotated[int, typer.Option(help="Of the random starts of output error.")] = 0,
+    seed: Annotated[int, typer.Option(min=0, help="Of the random starts of output error.")] = 0,
     method: Annotated[
         str | None,
         typer.Option(

@@ -20,7 +20,9 @@ def command(
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
     quiet: Annotated[bool, typer.Option("-q", "--quiet", help="Print nothing.")] = False,
-    seed: Annotated[int, typer.Option(help="Of the draws that carry the parts' uncertainty to the inertia.")] = 0,
+    seed: Annotated[
+        int, typer.Option(min=0, help="Of the draws that carry the parts' uncertainty to the inertia.")
+    ] = 0,
 ) -> None:
     """Centre of mass, contact points and inertia from weighing, tilting and a list of parts."""
     import json

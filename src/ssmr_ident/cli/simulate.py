@@ -65,7 +65,7 @@ def command(
     noise: Annotated[bool, typer.Option(help="Add the noise of the parameter file's noise block.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print what was written as JSON.")] = False,
     quiet: Annotated[bool, typer.Option("-q", "--quiet", help="Print nothing.")] = False,
-    seed: Annotated[int, typer.Option(help="Of the noise.")] = 0,
+    seed: Annotated[int, typer.Option(min=0, help="Of the noise.")] = 0,
 ) -> None:
     """Simulate one experiment and write it as a log."""
     from ssmr_ident.cli.progress import doing

@@ -4,6 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Annotated
+
+from ssmr_ident.core.domain import Number, declared
+from ssmr_ident.session.entry import Entry
+
+_ENTRY = declared(Entry)
 
 
 @dataclass(frozen=True)
@@ -38,15 +44,15 @@ class Conditions:
         Wanted of a straight run.
     """
 
-    motion: str = "roll"
-    amplitude_mm: float = 0.3
-    push_N: float = 0.0
-    direction: str = "lateral"
-    speed_mm_s: float = 1.0
-    height_m: float = 0.05
-    wheels_gripping: tuple[int, ...] = (1, 2, 3, 4)
-    cable: str | Mapping[str, float] | None = "steel"
-    wheel_rate_rad_s: float = 0.0
+    motion: Annotated[str, _ENTRY["motion"][0]] = "roll"
+    amplitude_mm: Annotated[float, Number("mm", least=-1e4, most=1e4)] = 0.3
+    push_N: Annotated[float, Number("N", least=-1e9, most=1e9)] = 0.0
+    direction: Annotated[str, _ENTRY["direction"][0]] = "lateral"
+    speed_mm_s: Annotated[float, _ENTRY["speed_mm_s"][0]] = 1.0
+    height_m: Annotated[float, _ENTRY["height_m"][0]] = 0.05
+    wheels_gripping: Annotated[tuple[int, ...], _ENTRY["wheels_gripping"][0]] = (1, 2, 3, 4)
+    cable: Annotated[str | Mapping[str, float] | None, _ENTRY["cable"][0]] = "steel"
+    wheel_rate_rad_s: Annotated[float, _ENTRY["wheel_rate_rad_s"][0]] = 0.0
     free_normal: bool = True
-    yaw_rate_deg_s: float = 45.0
-    speed_m_s: float = 0.3
+    yaw_rate_deg_s: Annotated[float, _ENTRY["yaw_rate_deg_s"][0]] = 45.0
+    speed_m_s: Annotated[float, _ENTRY["wheel_speed_m_s"][0]] = 0.3

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
 import yaml
 
 from ssmr_ident.core.errors import InputError
+from ssmr_ident.core.place import Place, Way, shown
 
 _SIZE_LIMIT = 4_000_000  # bytes; a hand-written file is a thousand times smaller
 
@@ -46,7 +48,18 @@ _Loader.add_implicit_resolver(
 
 
 def load_mapping(path: Path) -> dict[str, Any]:
+    """The mapping that a YAML file holds; see ``load_with_lines``."""
+    return load_with_lines(path)[1]
+
+
+def load_with_lines(path: Path) -> tuple[Place, dict[str, Any]]:
     """Read a YAML file that holds a mapping.
+
+    Returns
+    -------
+    place : Place
+        Of the file, which knows the line of every key.
+    content : dict
 
     Raises
     ------
@@ -62,7 +75,8 @@ def load_mapping(path: Path) -> dict[str, Any]:
         _refuse_questions(path, text)
         loader = _Loader(text)
         try:
-            content = loader.get_single_data()
+            node = loader.get_single_node()
+            content = loader.construct_document(node) if node is not None else None
         finally:
             loader.dispose()
     except UnicodeDecodeError as error:
@@ -73,9 +87,37 @@ def load_mapping(path: Path) -> dict[str, Any]:
         raise InputError(place, f"is not valid YAML: {error.problem}", "Mend this line") from error
     except (yaml.YAMLError, RecursionError, ValueError) as error:
         raise InputError(str(path), f"is not valid YAML: {error}") from error
-    if not isinstance(content, dict):
+    if node is None or not isinstance(content, dict):
         raise InputError(str(path), f"holds a {type(content).__name__}, expected a mapping of keys")
-    return content
+    return Place(str(path), lines=dict(_lines(node, ()))), content
+
+
+def expect_schema(place: Place, content: Mapping[str, Any], schema: str) -> None:
+    """Refuse a file of another kind before its keys are looked at.
+
+    Raises
+    ------
+    InputError
+        The key ``schema`` is missing or names something else.
+    """
+    found = content.get("schema")
+    if found != schema:
+        got = "is missing" if found is None else f"is {shown(found)}"
+        raise place.at("schema").error(
+            f"{got}, expected {schema}", f"Write schema: {schema}, if this is the right file"
+        )
+
+
+def _lines(node: yaml.Node, way: Way) -> Iterator[tuple[Way, int]]:
+    """Each key's way and its line, those of list items by their number."""
+    if isinstance(node, yaml.MappingNode):
+        for key, value in node.value:
+            yield (*way, str(key.value)), key.start_mark.line + 1
+            yield from _lines(value, (*way, str(key.value)))
+    elif isinstance(node, yaml.SequenceNode):
+        for index, value in enumerate(node.value):
+            yield (*way, index), value.start_mark.line + 1
+            yield from _lines(value, (*way, index))
 
 
 def _refuse_questions(path: Path, text: str) -> None:

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Annotated
 
 import numpy as np
 
+from ssmr_ident.core.domain import Number, declared
 from ssmr_ident.core.errors import InputError, did_you_mean
 from ssmr_ident.core.parameter import Estimate, ParameterSet
+from ssmr_ident.core.place import Place, shown
 from ssmr_ident.core.recording import Channel, Provenance, Recording
 from ssmr_ident.experiments import EXPERIMENTS, Conditions, Experiment
 from ssmr_ident.experiments.experiment import ACCELERATIONS
@@ -18,11 +21,10 @@ from ssmr_ident.physics.sensor import Noise
 from ssmr_ident.physics.slots import effect_values
 from ssmr_ident.readers import ReadOptions, read_one, writers
 from ssmr_ident.session import read_parameters
+from ssmr_ident.session.entry import RATE, WHEELS
 from ssmr_ident.simulate.bench import load_wheel
 from ssmr_ident.simulate.rig import simulate_rig
 from ssmr_ident.simulate.simulation import simulate
-
-CHOICES = {"motion": ("roll", "pitch", "yaw"), "direction": ("lateral", "longitudinal"), "cable": ("steel", "rope")}
 
 
 @dataclass(frozen=True)
@@ -47,8 +49,8 @@ class Request:
     experiment: Experiment
     conditions: Conditions = field(default_factory=Conditions)
     force: str = ""
-    duration_s: float | None = None
-    rate_hz: float | None = None
+    duration_s: Annotated[float | None, Number("s", least=1e-6, most=1e6)] = None
+    rate_hz: Annotated[float | None, RATE] = None
     noise: bool = False
     seed: int = 0
     effects: tuple[str, ...] = ()
@@ -73,11 +75,12 @@ def simulate_to_file(params: str, request: Request, output: Path) -> Recording:
         A missing parameter, an ending without a writer.
     """
     duration, rate = request.duration, request.rate
-    for option, known in CHOICES.items():
-        value = getattr(request.conditions, option)
-        if value not in known:
-            raise InputError(f"--{option}", f"is {value!r}", did_you_mean(value, known))
-    if duration <= 0 or rate <= 0 or duration * rate > 5e7:
+    for asked in (request, request.conditions):
+        for option, (domain, _) in declared(type(asked)).items():
+            value = getattr(asked, option)
+            if value is not None:
+                domain.check(Place(f"--{option.replace('_', '-')}"), value)
+    if duration * rate > 5e7:
         raise InputError("--duration-s, --rate-hz", f"ask for {duration * rate:g} samples")
     parameters = _with_effects(read_parameters(params), request.effects)
     recording = _run(parameters, request)
@@ -98,7 +101,8 @@ def _with_effects(parameters: ParameterSet, wanted: tuple[str, ...]) -> Paramete
             try:
                 given[key] = Estimate(float(value))
             except ValueError:
-                raise InputError("--effect", f"{pair!r} is no KEY=VALUE", "Such as dry_friction:F_c_N=2") from None
+                problem = f"{shown(pair)} is no KEY=VALUE"
+                raise InputError("--effect", problem, "Such as dry_friction:F_c_N=2") from None
         effects[effect_id] = given
     return replace(parameters, effects=effects)
 
@@ -196,10 +200,6 @@ def wheels_of(text: str) -> tuple[int, ...]:
     >>> wheels_of("2, 1")
     (1, 2)
     """
-    try:
-        wheels = tuple(sorted({int(part) for part in text.split(",") if part.strip()}))
-    except ValueError:
-        wheels = (0,)
-    if not set(wheels) <= {1, 2, 3, 4}:
-        raise InputError("--wheels-gripping", f"is {text!r}, expected numbers out of 1, 2, 3, 4", "Such as 1,2")
-    return wheels
+    parts = [part.strip() for part in text.split(",") if part.strip()]
+    wheels = [int(part) if part in "1234" else part for part in parts]
+    return tuple(sorted(WHEELS.check(Place("--wheels-gripping"), wheels)))

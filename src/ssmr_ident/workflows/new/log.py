@@ -16,7 +16,7 @@ import numpy as np
 from ssmr_ident.core.recording import Recording
 from ssmr_ident.core.units import QUANTITY_OF_UNIT
 from ssmr_ident.experiments import EXPERIMENTS, FORCED, FREE_RESPONSE, PULL, SWIVEL, VERTICAL_COMPRESSION, Experiment
-from ssmr_ident.session.session_file import QUANTITIES
+from ssmr_ident.session.entry import QUANTITIES
 from ssmr_ident.signals.filters import low_pass
 from ssmr_ident.workflows.new.names import NameHints, hints_of
 

@@ -17,7 +17,8 @@ from ssmr_ident.core.shown import Shown
 from ssmr_ident.readers import read
 from ssmr_ident.readers.folder import logs_in
 from ssmr_ident.session import bundled_robots
-from ssmr_ident.session.session_file import BASELINES, SCHEMA
+from ssmr_ident.session.entry import BASELINES
+from ssmr_ident.session.session_file import SCHEMA
 from ssmr_ident.workflows.new.log import TODO, LogGuess, guess_log
 from ssmr_ident.workflows.new.robot import block_text, rig_text, robot_text
 

@@ -1,0 +1,82 @@
+"""What session.yaml may say of a recording: each key with its values and its meaning, declared once."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Annotated
+
+from ssmr_ident.core.domain import Choice, Either, FileName, Keyed, Listed, Mapped, Number, Pointer, Text, Whole, YesNo
+
+BASELINES = ("rigid6", "decoupled", "sdof", "drag")
+EXPERIMENTS = ("free_response", "swivel", "straight", "pull", "wheel_drag", "vertical_compression", "forced")
+ROLES = ("target", "calibration", "heldout")
+READERS = ("labview-xlsx", "lvm", "tdms", "mtestquattro", "csv")
+CABLES = ("steel", "rope")
+QUANTITIES = (
+    *("force", "torque", "acceleration", "acceleration_2", "velocity", "position", "position_reference"),
+    *("angle", "angular_rate", "ax", "ay", "az", "wx", "wy", "wz", "time"),
+)
+
+CABLE = Keyed(
+    {
+        "stiffness_N_m": (Number("N/m", least=1e-12, infinite=True), ""),
+        "damping_N_s_m": (Number("N s/m", above=0.0, most=1e12), ""),
+    }
+)
+RATE = Number("Hz", least=1e-6, most=1e10)
+SPEED = Number("mm/s", least=1e-9, most=1e7)
+HEIGHT = Number("m", least=-1e3, most=1e3)
+TURN = Number("deg/s", least=-1e6, most=1e6)
+WHEELS = Listed(Choice((1, 2, 3, 4)), distinct=True)
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One recording of a session, as session.yaml describes it (units are in the names)."""
+
+    file: Annotated[str, FileName(), "log, relative to this file's folder"]
+    experiment: Annotated[str, Choice(EXPERIMENTS), "how it was made"]
+    role: Annotated[str, Choice(ROLES), "calibration: made without the puzzling condition; heldout: never fitted"] = (
+        "target"
+    )
+    reader: Annotated[str | None, Choice(READERS), "left out, the content decides"] = None
+    trial: Annotated[int | None, Whole(least=-(2**31)), "number of the repetition"] = None
+    motion: Annotated[str | None, Choice(("roll", "pitch", "yaw")), "of a robot's free response"] = None
+    yaw_rate_deg_s: Annotated[float | None, TURN, "wanted yaw rate of a swivel"] = None
+    wheel_speed_m_s: Annotated[float | None, Number("m/s", least=-1e4, most=1e4), "(right - left)/2 of a swivel"] = None
+    wheel_log: Annotated[str | None, FileName(), "log of the wheels: time, v_left, v_right"] = None
+    floor: Annotated[str | None, Text(), "label"] = None
+    frame: Annotated[str | None, Text(), "label"] = None
+    direction: Annotated[str | None, Choice(("lateral", "longitudinal")), "of a pull"] = None
+    speed_mm_s: Annotated[float | None, SPEED, "of the machine's head"] = None
+    height_m: Annotated[float | None, HEIGHT, "of the cable above the floor"] = None
+    wheels_gripping: Annotated[tuple[int, ...], WHEELS, "the others stand on oiled plates"] = (1, 2, 3, 4)
+    wheel_rate_rad_s: Annotated[float | None, Number("rad/s", least=-1e6, most=1e6), "of wheels spun in a pull"] = None
+    cable: Annotated[str | Mapping[str, float] | None, Either(Choice(CABLES), CABLE), "of a pull"] = None
+    free_normal: Annotated[bool, YesNo(), "whether a dragged wheel can move off the surface"] = True
+    channels: Annotated[Mapping[str, str], Mapped(Choice(QUANTITIES), Text()), "quantity: header without unit"] = field(
+        default_factory=dict
+    )
+    per_volt: Annotated[
+        Mapping[str, float],
+        Mapped(Choice(QUANTITIES), Number(least=-1e15, most=1e15, nonzero=True)),
+        "quantity: SI units per volt",
+    ] = field(default_factory=dict)
+    columns: Annotated[
+        Mapping[str, int | str], Mapped(Text(), Pointer()), "quantity: column by its number from 0, or its header"
+    ] = field(default_factory=dict)
+    units: Annotated[Mapping[str, str], Mapped(Text(), Text()), "header: unit"] = field(default_factory=dict)
+    sheets: Annotated[
+        Mapping[str, int | str], Mapped(Text(), Pointer(1)), "axis: worksheet by its number from 1, or its name"
+    ] = field(default_factory=dict)
+    sample_rate_hz: Annotated[float | None, RATE, "where the log has no time"] = None
+    sample: Annotated[int | None, Whole(least=1), "which part of a log that holds several, from 1"] = None
+    skip_rows: Annotated[int | None, Whole(), "rows before the numbers"] = None
+    time_unit: Annotated[str | None, Text(), "of the time column"] = None
+    decimal: Annotated[str | None, Choice((".", ",")), "decimal sign"] = None
+    on_bad: Annotated[str, Choice(("error", "nan")), "what becomes of a cell that is no number"] = "error"
+    trim: Annotated[bool, YesNo(), "whether rows before the first whole one are cut"] = False
+    load_scale: Annotated[float | None, Number("N", least=1e-12, most=1e12), "newtons per unit of a machine's load"] = (
+        None
+    )
