@@ -15,12 +15,15 @@ from typing import Any
 
 import typer
 from latex2mathml.converter import convert
+from mkdocs.structure.files import File, Files
 
 from ssmr_ident import cli
 from ssmr_ident.experiments import EXPERIMENTS
 from ssmr_ident.physics.effects import CATALOGUE
+from ssmr_ident.session.json_schema import MADE, schema_file
 
 SCHEMAS = Path(__file__).parent / "schemas"
+INPUTS = tuple(schema_file(name) for name in MADE)
 _TEX = re.compile(r'<(span|div) class="arithmatex">\\([(\[])(.*?)\\[)\]]</\1>', re.DOTALL)
 
 
@@ -68,9 +71,9 @@ def where_effects_show() -> str:
 
 
 def schemas() -> str:
-    """The published schemas with their titles."""
+    """The published schemas with their titles, those of the two files that people write first."""
     lines = ["| schema | |", "| --- | --- |"]
-    for path in sorted(SCHEMAS.glob("*.json")):
+    for path in [*INPUTS, *sorted(SCHEMAS.glob("*.json"))]:
         title = json.loads(path.read_text(encoding="utf-8"))["title"]
         lines.append(f"| [{path.name.removesuffix('.schema.json')}](../schemas/{path.name}) | {title} |")
     return "\n".join(lines)
@@ -82,6 +85,13 @@ MARKS: dict[str, Callable[[], str]] = {
     "<!-- where effects show -->": where_effects_show,
     "<!-- schemas -->": schemas,
 }
+
+
+def on_files(files: Files, config: Any) -> Files:
+    """The shipped schemas among the published ones."""
+    for path in INPUTS:
+        files.append(File.generated(config, f"schemas/{path.name}", abs_src_path=str(path)))
+    return files
 
 
 def on_page_markdown(markdown: str, **_: Any) -> str:

@@ -16,12 +16,12 @@ from ssmr_ident.experiments import EXPERIMENTS, Conditions, Drive, Experiment, L
 from ssmr_ident.experiments.quantities import UNITS
 from ssmr_ident.physics.effects import CATALOGUE
 from ssmr_ident.physics.robot import robot_from_parameters
-from ssmr_ident.session import read_parameters, session_file
+from ssmr_ident.session import entry, read_parameters
 
 ALL = [pytest.param(kind, id=name) for name, kind in EXPERIMENTS.items()]
 CONSTANTS = {name.upper() for name in EXPERIMENTS} | {"EXPERIMENTS"}
 COMPARING = {
-    "ssmr_ident/session/session_file.py": "the names that session.yaml may hold: a file format, below this room",
+    "ssmr_ident/session/entry.py": "the names that session.yaml may hold: a file format, below this room",
     "ssmr_ident/workflows/simulate.py": "the name that a person typed, looked up once",
     "ssmr_ident/workflows/effects/panels.py": "what a page draws of an effect in each kind of experiment",
     "ssmr_ident/diagnose/turning/anchor.py": "two runs of one kind are compared with each other, not with a name",
@@ -36,7 +36,7 @@ def test_one_file_says_all(kind: Experiment) -> None:
     assert kind.sentence.endswith(".")
     assert kind.verb.istitle()
     assert kind.nuisances
-    assert set(kind.baselines) <= set(session_file.BASELINES)
+    assert set(kind.baselines) <= set(entry.BASELINES)
     assert {name for group in kind.channels for name in group} <= set(UNITS)
     assert (kind.likelihood is Likelihood.FORCE) == (kind.drive is Drive.HEAD)
     assert not kind.on_a_testing_machine or kind.channels[-1] == ("force",)  # what answers comes last
@@ -59,7 +59,7 @@ def test_the_robots_simulator_runs_what_is_done_to_the_robot(kind: Experiment) -
 
 
 def test_lists_of_names_agree() -> None:
-    assert tuple(EXPERIMENTS) == session_file.EXPERIMENTS
+    assert tuple(EXPERIMENTS) == entry.EXPERIMENTS
     assert set(CHOICES.split(", ")) == set(EXPERIMENTS)
 
 
