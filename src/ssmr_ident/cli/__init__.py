@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import difflib
 import importlib
+import io
 import os
 import signal
 import sys
-from typing import Annotated, Any
+from typing import Annotated, Any, NoReturn
 
 import typer
 
 from ssmr_ident.core.errors import InputError, SimulationError
+from ssmr_ident.core.stopping import STOPPED
 
 # Matrices here are small, and threads of the linear algebra only wait for each other: on a busy machine a decay fit
 # takes twenty times as long. Set before numpy is first imported, which each verb does on its own.
@@ -57,27 +59,32 @@ for _verb in VERBS:
 
 
 def main() -> None:
-    """Run ``ident``: exit 0 done, 2 the input or the call is wrong, 1 the tool failed, 130 stopped by the user."""
-    before = signal.signal(signal.SIGTERM, _stop)
+    """Run ``ident``: exit 0 done, 2 the input or the call is wrong, 1 the tool failed, 130 or 143 stopped."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):  # a terminal that knows ASCII alone gets numbers for other letters
+            stream.reconfigure(errors="backslashreplace")
     try:
-        sys.exit(app(prog_name="ident", standalone_mode=False) or 0)
+        status = app(prog_name="ident", standalone_mode=False) or 0
+        if sys.stdout is not None:
+            sys.stdout.flush()
+        sys.exit(status)
     except UsageError as error:
         _complain(*_usage(error))
     except InputError as error:
         _complain(str(error))
     except SimulationError as error:
-        print(f"ident: simulation failed: {error}", file=sys.stderr)
+        _complain(f"simulation failed: {error}", status=1)
+    except (typer.Abort, KeyboardInterrupt) as error:
+        asked = error.__cause__ if isinstance(error, typer.Abort) else error
+        print(STOPPED, file=sys.stderr)
+        sys.exit(128 + getattr(asked, "number", signal.SIGINT))
+    except BrokenPipeError:  # who read has read enough
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         sys.exit(1)
-    except (typer.Abort, KeyboardInterrupt):
-        print("ident: stopped; what was being written is not there", file=sys.stderr)
-        sys.exit(130)
-    finally:
-        signal.signal(signal.SIGTERM, before)
-
-
-def _stop(number: int, frame: Any) -> None:
-    """A polite kill ends like Ctrl-C: temporary files are taken away."""
-    raise KeyboardInterrupt
+    except OSError as error:  # a disk that is full, a file that may not be read
+        _complain(f"{error.filename or 'standard output'}: {error.strerror or error}", status=1)
+    except MemoryError:
+        _complain("out of memory: give it fewer or shorter recordings", status=1)
 
 
 def _usage(error: Any) -> tuple[str, str]:
@@ -95,6 +102,11 @@ def _usage(error: Any) -> tuple[str, str]:
     return text + mark, f"See {context.command_path if context else 'ident'} --help."
 
 
-def _complain(*parts: str) -> None:
+def _complain(*parts: str, status: int = 2) -> NoReturn:
+    """One line on standard error, and the end; what is left for standard output goes nowhere if it cannot."""
     print(f"ident: {' '.join(' '.join(parts).split())}", file=sys.stderr)
-    sys.exit(2)
+    try:
+        sys.stdout.flush()
+    except (OSError, AttributeError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+    sys.exit(status)

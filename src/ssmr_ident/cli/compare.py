@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from ssmr_ident.cli import completion
+from ssmr_ident.cli.answer import print_json
 from ssmr_ident.cli.called import called
 
 EXAMPLES = (
@@ -35,14 +36,15 @@ def command(
 ) -> None:
     """Simulate every recording of a session with given parameters and say how far they are apart."""
     from ssmr_ident.cli.progress import stages
+    from ssmr_ident.core.atomic import refuse_unwritable
     from ssmr_ident.workflows.compare import compare_session
 
+    if output is not None:
+        refuse_unwritable(output)
     with stages(hidden=quiet or as_json) as step:
         result = compare_session(session, params, output, step, called())
     if as_json:
-        import json
-
-        print(json.dumps(result.as_dict(), ensure_ascii=False, allow_nan=False))
+        print_json(result.as_dict())
     elif not quiet:
         print(result)
         if output:

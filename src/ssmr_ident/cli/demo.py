@@ -27,8 +27,7 @@ def command(
     quiet: Annotated[bool, typer.Option("-q", "--quiet", help="Print nothing.")] = False,
 ) -> None:
     """Raw logs to spectra, to parameters, to a simulation, and back to the logs."""
-    import json
-
+    from ssmr_ident.cli.answer import print_json
     from ssmr_ident.cli.called import called
     from ssmr_ident.cli.progress import doing, stages
 
@@ -38,7 +37,7 @@ def command(
         with doing(hidden=quiet or as_json) as tell:
             board = thesis_scoreboard().thesis_scoreboard(tell)
         if as_json:
-            print(json.dumps(board.as_dict(), ensure_ascii=False))
+            print_json(board.as_dict())
         elif not quiet:
             print(board)
         return
@@ -51,7 +50,7 @@ def command(
         report = write_demo_report(demo, called())
         step("report", 1, 1)
     if as_json:
-        print(json.dumps({"table": demo.table.as_list(), "report": str(report)}, ensure_ascii=False))
+        print_json({"table": demo.table.as_list(), "report": str(report)})
     elif not quiet:
         print(demo.table)
         print()

@@ -28,8 +28,10 @@ def command(
     seed: Annotated[int, typer.Option(min=0, help="Of permutation tests and simulated floors.")] = 0,
 ) -> None:
     """Say what physics the simulation leaves out, model it, and show it on recordings that were never fitted."""
+    from ssmr_ident.cli.answer import print_json
     from ssmr_ident.cli.called import called
     from ssmr_ident.cli.progress import stages
+    from ssmr_ident.core.atomic import refuse_unwritable
     from ssmr_ident.core.errors import InputError
     from ssmr_ident.experiments.campaign import load
     from ssmr_ident.session import read_parameters
@@ -38,17 +40,14 @@ def command(
 
     if output.exists() and not output.is_dir():
         raise InputError(str(output), "is a file, expected a folder", "Give another name with -o")
-    if not output.absolute().parent.is_dir():
-        raise InputError(str(output), "its folder does not exist", "Make the folder, or write elsewhere with -o")
+    refuse_unwritable(output)
     known = read_parameters(params) if params else None
     with stages(hidden=quiet or as_json) as step:
         campaign = load(session, lambda done, total: step("reading the logs", done, total))
         diagnosis = diagnose(campaign, known, seed, step)
     write_diagnosis(diagnosis, campaign, output, called(), seed, files_read(session, params))
     if as_json:
-        import json
-
-        typer.echo(json.dumps(diagnosis.as_dict(), ensure_ascii=False, indent=1, allow_nan=False))
+        print_json(diagnosis.as_dict(), indent=1)
     elif not quiet:
         print(diagnosis)
         print(f"report: {output / 'report.html'}")

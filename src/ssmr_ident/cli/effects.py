@@ -33,6 +33,7 @@ def command(
     quiet: Annotated[bool, typer.Option("-q", "--quiet", help="Print nothing but errors.")] = False,
 ) -> None:
     """Physics that a model may have left out: equation, parameters, signature, and what each does to a recording."""
+    from ssmr_ident.cli.answer import print_json
     from ssmr_ident.cli.progress import doing
     from ssmr_ident.core.errors import InputError
     from ssmr_ident.physics.effects import CATALOGUE
@@ -42,7 +43,7 @@ def command(
         if output is not None:
             raise InputError("--output", "a figure shows one effect", "Name it: ident effects ID -o FIGURE.png")
         if as_json:
-            _print_json([effect_values(effect) for effect in CATALOGUE.values()])
+            print_json([effect_values(effect) for effect in CATALOGUE.values()])
         elif not quiet:
             typer.echo(catalogue_text())
         return
@@ -52,14 +53,8 @@ def command(
         with doing(f"simulating with and without {effect.id}", hidden=quiet or as_json):
             written = draw(effect, output)
     if as_json:
-        _print_json({**effect_values(effect), "figure": None if written is None else str(written)})
+        print_json({**effect_values(effect), "figure": None if written is None else str(written)})
     elif not quiet:
         typer.echo(effect_text(effect))
         hint = f"figure: {written}" if written else f"a figure of it: ident effects {effect.id} -o {effect.id}.png"
         typer.echo(f"\n  {hint}")
-
-
-def _print_json(answer: object) -> None:
-    import json
-
-    typer.echo(json.dumps(answer, ensure_ascii=False, allow_nan=False))

@@ -38,31 +38,35 @@ def command(
     ] = True,
 ) -> None:
     """Frequencies, damping, stiffness, inertia, friction from the recordings, with uncertainties."""
-    import json
-
+    from ssmr_ident.cli.answer import print_json
     from ssmr_ident.cli.called import called
     from ssmr_ident.cli.progress import stages
-    from ssmr_ident.core.errors import InputError
+    from ssmr_ident.core.atomic import make_folder, refuse_unwritable
     from ssmr_ident.session import write_parameters
     from ssmr_ident.workflows.fit.page import write_fit_page
     from ssmr_ident.workflows.fit.run import fit_session
 
-    if output is not None and not output.absolute().parent.is_dir():
-        raise InputError(str(output), "its folder does not exist", "Make the folder, or write elsewhere with -o")
+    for wanted in (output, figures):
+        if wanted is not None:
+            refuse_unwritable(wanted)
     with stages(hidden=quiet or as_json) as step:
         fit = fit_session(session, seed=seed, coulomb=coulomb, method=method, progress=step)
         if output is not None:
+            make_folder(output.absolute().parent)
             write_parameters(output, fit.parameters)
-        if figures is not None:
-            step("drawing", 0, 1)
-            drawn = fit.write_figures(figures)
-            write_fit_page(fit, figures, called(), seed, session)
-            step("drawing", 1, 1)
+    # what was found is said before anything is drawn of it
     if as_json:
-        typer.echo(json.dumps(fit.as_dict(), ensure_ascii=False, indent=1, allow_nan=False))
+        print_json(fit.as_dict(), indent=1)
     elif not quiet:
         typer.echo(str(fit))
         if output is not None:
             typer.echo(f"written: {output}")
-        if figures is not None:
-            typer.echo(f"report.html in {figures}, figures: {len(drawn) or 'none, for there was nothing to draw'}")
+    if figures is None:
+        return
+    with stages(hidden=quiet or as_json) as step:
+        step("drawing", 0, 1)
+        drawn = fit.write_figures(figures)
+        write_fit_page(fit, figures, called(), seed, session)
+        step("drawing", 1, 1)
+    if not (quiet or as_json):
+        typer.echo(f"report.html in {figures}, figures: {len(drawn) or 'none, for there was nothing to draw'}")

@@ -25,10 +25,9 @@ def command(
     ] = 0,
 ) -> None:
     """Centre of mass, contact points and inertia from weighing, tilting and a list of parts."""
-    import json
-
     import numpy as np
 
+    from ssmr_ident.cli.answer import print_json
     from ssmr_ident.core.errors import InputError
     from ssmr_ident.identify.geometry.sheet import robot_geometry
     from ssmr_ident.session import write_parameters
@@ -45,7 +44,7 @@ def command(
             path: {"value": np.asarray(entry.value).tolist(), "std": entry.std, "unit": entry.unit}
             for path, entry in parameters.estimates.items()
         }
-        typer.echo(json.dumps(rows, ensure_ascii=False, indent=1, allow_nan=False))
+        print_json(rows, indent=1)
     elif not quiet:
         typer.echo(str(geometry))
         if output is not None:

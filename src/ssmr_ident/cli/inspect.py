@@ -108,13 +108,13 @@ def command(
         if not quiet and not as_json:
             typer.echo(f"saved in {save}")
     if as_json:
-        import json
+        from ssmr_ident.cli.answer import print_json
 
         answer = {
             "logs": [summary.as_dict() for summary in summaries],
             "errors": [{"where": e.where, "problem": e.problem, "mend": e.mend} for e in errors],
         }
-        typer.echo(json.dumps(answer, ensure_ascii=False, allow_nan=False))
+        print_json(answer)
     if len(errors) == 1:
         raise errors[0]
     for problem in errors:

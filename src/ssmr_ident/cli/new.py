@@ -44,8 +44,7 @@ def command(
     quiet: Annotated[bool, typer.Option("-q", "--quiet", help="Print nothing but errors.")] = False,
 ) -> None:
     """Look at a folder of logs and write a commented session.yaml and robot.yaml; never overwrites."""
-    import json
-
+    from ssmr_ident.cli.answer import print_json
     from ssmr_ident.cli.progress import progress
     from ssmr_ident.workflows.new.run import draft_session, refuse_existing
 
@@ -54,7 +53,7 @@ def command(
         draft = draft_session(session, robot, mass_kg, baseline, _pairs(answers or []), step)
     paths = draft.write()
     if as_json:
-        typer.echo(json.dumps(draft.as_dict(), ensure_ascii=False, allow_nan=False))
+        print_json(draft.as_dict())
     elif not quiet:
         typer.echo(str(draft))
         typer.echo(f"written: {paths[0]}, {paths[1]}")

@@ -34,9 +34,9 @@ def command(
     quiet: Annotated[bool, typer.Option("-q", "--quiet", help="Print nothing but errors.")] = False,
 ) -> None:
     """Hide physics in another engine's recordings, seal it, diagnose blind, open the seals and count."""
-    import json
     from importlib.util import find_spec
 
+    from ssmr_ident.cli.answer import print_json
     from ssmr_ident.core.errors import InputError
 
     if find_spec("ssmr_proof") is None:
@@ -53,7 +53,7 @@ def command(
         typer.echo(f"ident: SEAL BROKEN: {error}", err=True)
         raise typer.Exit(1) from error
     if as_json:
-        typer.echo(json.dumps(result, ensure_ascii=False))
+        print_json(result)
     elif not quiet:
         typer.echo(text)
 

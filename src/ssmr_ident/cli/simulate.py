@@ -68,7 +68,9 @@ def command(
     seed: Annotated[int, typer.Option(min=0, help="Of the noise.")] = 0,
 ) -> None:
     """Simulate one experiment and write it as a log."""
+    from ssmr_ident.cli.answer import print_json
     from ssmr_ident.cli.progress import doing
+    from ssmr_ident.core.atomic import refuse_unwritable
     from ssmr_ident.experiments import Conditions
     from ssmr_ident.workflows.simulate import Request, experiment_of, simulate_to_file, wheels_of
 
@@ -82,13 +84,12 @@ def command(
         experiment_of(experiment), conditions, force=force, duration_s=duration_s, rate_hz=rate_hz, noise=noise,
         seed=seed, effects=tuple(effect or ()),
     )  # fmt: skip
+    refuse_unwritable(output)
     with doing(FIRST_RUN, hidden=quiet or as_json):
         recording = simulate_to_file(params, request, output)
     if as_json:
-        import json
-
-        print(json.dumps({"file": str(output), "experiment": experiment, "samples": len(recording.time),
-                          "rate_hz": recording.sample_rate, "channels": list(recording.names)}))  # fmt: skip
+        print_json({"file": str(output), "experiment": experiment, "samples": len(recording.time),
+                          "rate_hz": recording.sample_rate, "channels": list(recording.names)})  # fmt: skip
     elif not quiet:
         print(recording)
         print(f"written to {output}")

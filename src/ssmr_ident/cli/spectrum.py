@@ -115,7 +115,7 @@ def _units(pairs: list[str]) -> dict[str, str]:
 
 
 def _print_json(report: SpectrumReport) -> None:
-    import json
+    from ssmr_ident.cli.answer import print_json
 
     answer = {
         "source": report.source,
@@ -124,4 +124,4 @@ def _print_json(report: SpectrumReport) -> None:
         "notes": [{"file": file, "level": note.level, "text": note.text} for file, note in report.notes],
         "files": [str(path) for path in report.files],
     }
-    typer.echo(json.dumps(answer, ensure_ascii=False, allow_nan=False))
+    print_json(answer)

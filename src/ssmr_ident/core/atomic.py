@@ -2,11 +2,23 @@
 
 from __future__ import annotations
 
+import errno
+import os
 import secrets
+from contextlib import suppress
 from pathlib import Path
-from typing import BinaryIO
 
 from ssmr_ident.core.errors import InputError
+
+_BEGUN: set[Path] = set()
+"""Files that are not yet in their place."""
+
+_MENDS = {
+    errno.ENOSPC: "Make room, or write elsewhere with -o",
+    errno.EDQUOT: "Make room, or write elsewhere with -o",
+    errno.EFBIG: "Files may not be larger here: write elsewhere with -o",
+    errno.ENOENT: "Make the folder first",
+}
 
 
 def write_bytes(path: str | Path, data: bytes) -> Path:
@@ -15,36 +27,79 @@ def write_bytes(path: str | Path, data: bytes) -> Path:
     Raises
     ------
     InputError
-        When the folder is missing or may not be written to.
+        When the folder is missing or may not be written to, or the disk is full.
     """
     path = Path(path)
     # Named before it is made: a signal between its making and its name would leave it lying.
-    temporary = path.with_name(f".{path.name}.{secrets.token_hex(4)}")
+    temporary = path.with_name(f".{path.name[:60]}.{secrets.token_hex(4)}")
+    _BEGUN.add(temporary)
     try:
-        with _made(temporary, path) as stream:
+        with temporary.open("xb") as stream:
             stream.write(data)
         temporary.replace(path)
-    except InputError:
+    except BaseException as error:
+        with suppress(OSError):
+            temporary.unlink(missing_ok=True)
+        if isinstance(error, OSError):
+            raise _unwritable(path, error) from error
         raise
-    except BaseException:
-        temporary.unlink(missing_ok=True)
-        raise
+    finally:
+        _BEGUN.discard(temporary)
     return path
 
 
-def _made(temporary: Path, path: Path) -> BinaryIO:
-    try:
-        return temporary.open("xb")
-    except OSError as error:
-        raise InputError(str(path), f"cannot be written ({error.strerror})", "Make the folder first.") from error
-
-
 def write_text(path: str | Path, text: str) -> Path:
-    """Write UTF-8 text with plain line ends at once.
+    """Write UTF-8 text with plain line ends at once; letters of a file name that are no text become their numbers.
 
     Raises
     ------
     InputError
-        When the folder is missing or may not be written to.
+        When the folder is missing or may not be written to, or the disk is full.
     """
-    return write_bytes(path, text.encode())
+    return write_bytes(path, text.encode(errors="backslashreplace"))
+
+
+def make_folder(path: str | Path) -> Path:
+    """A folder with all that it lies in.
+
+    Raises
+    ------
+    InputError
+        When it cannot be made, or a file is called so.
+    """
+    path = Path(path)
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except FileExistsError as error:
+        raise InputError(str(path), "is a file, expected a folder", "Give another name with -o") from error
+    except OSError as error:
+        raise _unwritable(path, error) from error
+    return path
+
+
+def refuse_unwritable(path: str | Path) -> None:
+    """Ask before long work whether its answer can be written, and change nothing.
+
+    Raises
+    ------
+    InputError
+        When a folder on the way is a file, or may not be written to.
+    """
+    above = next(place for place in (Path(path), *Path(path).absolute().parents) if place.exists())
+    if above != Path(path) and not above.is_dir():
+        raise InputError(str(path), f"cannot be written ({above} is a file)", "Write elsewhere with -o")
+    if not os.access(above, os.W_OK):
+        raise InputError(str(path), f"cannot be written ({above} is read-only)", "Write elsewhere with -o")
+
+
+def remove_begun() -> None:
+    """Take away what has been begun and will not be ended, as a process is made to end."""
+    for temporary in tuple(_BEGUN):
+        with suppress(OSError):
+            temporary.unlink(missing_ok=True)
+
+
+def _unwritable(path: Path, error: OSError) -> InputError:
+    return InputError(
+        str(path), f"cannot be written ({error.strerror})", _MENDS.get(error.errno or 0, "Write elsewhere with -o")
+    )

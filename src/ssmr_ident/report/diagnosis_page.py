@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from pathlib import Path
 
-from ssmr_ident.core.atomic import write_text
+from ssmr_ident.core.atomic import make_folder, write_text
 from ssmr_ident.diagnose.diagnosis import MISSING, NOTHING, UNIT, Diagnosis, NamedEffect
 from ssmr_ident.report.diagnosis_pictures import after_name
 from ssmr_ident.report.diagnosis_sections import needed, sections
@@ -33,7 +33,7 @@ def write_report(diagnosis: Diagnosis, path: Path, command: str, seed: int, file
     """
     page = diagnosis_page(diagnosis, command, seed, file_hashes(files))
     folder = Path(path).parent / FIGURES
-    folder.mkdir(parents=True, exist_ok=True)
+    make_folder(folder)
     for section in page.sections:
         for figure in section.figures:
             for item in figure.drawings:

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from ssmr_ident.core.atomic import write_bytes
+from ssmr_ident.core.atomic import make_folder, write_bytes
 
 # Okabe & Ito (2008), "Color Universal Design": told apart with any common colour blindness, and in grey by order.
 INK = "#1a1a1a"
@@ -135,7 +135,7 @@ def save(figure: Figure, stem: Path, format: str = "png") -> Path:
     Path of the file written
     """
     path = stem.with_name(f"{stem.name}.{format}")
-    path.parent.mkdir(parents=True, exist_ok=True)
+    make_folder(path.parent)
     return write_bytes(path, drawn(figure, format))
 
 

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import yaml
 
 from ssmr_ident.core.atomic import write_text
+from ssmr_ident.core.documents import plain
 from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.session.schema import KEYS
 
@@ -46,7 +45,7 @@ def parameters_text(parameters: ParameterSet) -> str:
             lines += [f"    {key}: {_flow(estimate)}" for key, estimate in entries.items()]
     text = "\n".join(lines) + "\n"
     if parameters.provenance:
-        text += yaml.safe_dump({"provenance": _plain(parameters.provenance)}, sort_keys=False, allow_unicode=True)
+        text += yaml.safe_dump({"provenance": plain(parameters.provenance)}, sort_keys=False, allow_unicode=True)
     return text
 
 
@@ -72,7 +71,7 @@ def _flow(estimate: Estimate) -> str:
         fields["at_bound"] = True
     if estimate.source:
         fields["source"] = estimate.source
-    return "{" + ", ".join(f"{name}: {_scalar(_plain(value))}" for name, value in fields.items()) + "}"
+    return "{" + ", ".join(f"{name}: {_scalar(plain(value))}" for name, value in fields.items()) + "}"
 
 
 def _scalar(value: Any) -> str:
@@ -86,16 +85,3 @@ def _scalar(value: Any) -> str:
         return "[" + ", ".join(_scalar(item) for item in value) + "]"
     text = yaml.safe_dump(value, allow_unicode=True, default_style='"', width=10**6)
     return text.strip()
-
-
-def _plain(value: Any) -> Any:
-    """numpy numbers and arrays as Python's own."""
-    if isinstance(value, np.ndarray):
-        return value.tolist()
-    if isinstance(value, np.generic):
-        return value.item()
-    if isinstance(value, Mapping):
-        return {str(key): _plain(inner) for key, inner in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(inner) for inner in value]
-    return value

@@ -9,7 +9,7 @@ from functools import partial
 from pathlib import Path
 
 from ssmr_ident.compare import Comparison, compare
-from ssmr_ident.core.atomic import write_text
+from ssmr_ident.core.atomic import make_folder, write_text
 from ssmr_ident.experiments.campaign import load
 from ssmr_ident.report.comparison_page import comparison_page
 from ssmr_ident.report.html import file_hashes, write_page
@@ -55,7 +55,7 @@ def write_comparison(
     result: Comparison, output: Path, progress: Callable[[int, int], None] = lambda done, total: None
 ) -> None:
     """``compare.csv`` and one PNG per recording; named with its ending where logs differ by that alone."""
-    output.mkdir(parents=True, exist_ok=True)
+    make_folder(output)
     stream = io.StringIO(newline="")
     writer = csv.writer(stream)
     writer.writerow(["file", "experiment", "metric", "channel", "value"])

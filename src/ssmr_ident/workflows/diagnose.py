@@ -6,10 +6,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-import yaml
 from threadpoolctl import threadpool_limits
 
-from ssmr_ident.core.atomic import write_text
+from ssmr_ident.core.atomic import make_folder, write_text
+from ssmr_ident.core.documents import yaml_text
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.diagnosis import Diagnosis
 from ssmr_ident.experiments.campaign import Campaign, load
@@ -93,10 +93,9 @@ def write_diagnosis(
     """
     from ssmr_ident.report.diagnosis_page import write_report
 
-    out.mkdir(parents=True, exist_ok=True)
+    make_folder(out)
     write_parameters(out / "before.yaml", diagnosis.before)
     write_parameters(out / "after.yaml", diagnosis.after)
+    write_text(out / "diagnosis.yaml", yaml_text(diagnosis.as_dict()))
+    # what was found stands before anything is drawn of it
     write_report(diagnosis, out / "report.html", command, seed, files or files_read(campaign.session.folder))
-    # last, so that who finds it finds the rest as well
-    text = yaml.safe_dump(diagnosis.as_dict(), sort_keys=False, allow_unicode=True, width=110)
-    write_text(out / "diagnosis.yaml", text)

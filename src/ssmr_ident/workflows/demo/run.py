@@ -9,6 +9,7 @@ from functools import partial
 from pathlib import Path
 
 from ssmr_ident.compare import Comparison, compare
+from ssmr_ident.core.atomic import make_folder
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.experiments.campaign import load
@@ -85,7 +86,7 @@ def run_demo(data: Path, output: Path, progress: Progress) -> Demo:
         Called with the name of a stage, how much of it is done, and of how much.
     """
     raw = data / "raw"
-    output.mkdir(parents=True, exist_ok=True)
+    make_folder(output)
     spectra = []
     for index, name in enumerate(SWIVELS):
         progress("spectra of the swivels", index, len(SWIVELS))

@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from pathlib import Path
 
+from ssmr_ident.core.atomic import make_folder
 from ssmr_ident.identify.lmfit_report import Variable
 from ssmr_ident.report.figures_fit import backbone_figure, sawtooth_figure
 from ssmr_ident.report.html import (
@@ -31,7 +32,7 @@ SHOWN = 6
 
 def write_fit_page(fit: SessionFit, folder: Path, command: str, seed: int, session: Path) -> Path:
     """Write ``report.html`` into a folder; it is made where it is missing."""
-    folder.mkdir(parents=True, exist_ok=True)
+    make_folder(folder)
     return write_page(folder / "report.html", fit_page(fit, command, seed, files_read(session)))
 
 

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from ssmr_ident.core.atomic import write_text
+from ssmr_ident.core.atomic import make_folder, write_text
 from ssmr_ident.experiments import SWIVEL, Experiment
 from ssmr_ident.experiments.campaign import Measurement
 from ssmr_ident.report.figures_speed import SpeedAverage, mean_and_spread
@@ -148,7 +148,7 @@ def _padded(analysis: ChannelAnalysis) -> tuple[np.ndarray, np.ndarray]:
 def write_rows(path: Path, rows: Iterable[dict[str, Any]]) -> Path:
     """A CSV file; empty cells for what is not known, numbers to the last bit."""
     rows = list(rows)
-    path.parent.mkdir(parents=True, exist_ok=True)
+    make_folder(path.parent)
     stream = io.StringIO(newline="")
     writer = csv.DictWriter(stream, list(rows[0]))
     writer.writeheader()

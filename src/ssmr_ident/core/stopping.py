@@ -1,0 +1,94 @@
+"""How a run ends that is asked to: within two seconds, without half a file, without a process left behind.
+
+Python calls a signal's handler between two of its own instructions, and a compiled loop or a compiler can be minutes
+away from the next. So a thread reads the signal's number from a pipe that the interpreter writes at once, waits for the
+polite way to work, and ends the process if it has not.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from types import FrameType
+
+PATIENCE_S = 1.2
+"""For the polite way; with the interpreter's own end it stays below two seconds."""
+
+STOPPED = "ident: stopped; what was being written is not there"
+
+
+class Stopped(KeyboardInterrupt):
+    """Ctrl-C, or a polite kill: temporary files are taken away on the way up."""
+
+    def __init__(self, number: int) -> None:
+        self.number = number
+        super().__init__(number)
+
+
+@contextmanager
+def stoppable() -> Iterator[None]:
+    """Turn SIGINT and SIGTERM into ``Stopped``, and into an end where nobody hears it."""
+    numbers = (signal.SIGINT, signal.SIGTERM)
+    before = {number: signal.signal(number, _stop) for number in numbers}
+    woken, written = _watched(numbers) if os.name == "posix" else (-1, -1)
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+        if woken != -1:
+            signal.set_wakeup_fd(woken)
+            os.close(written)  # the thread reads its end and ends
+
+
+def _watched(numbers: tuple[int, ...]) -> tuple[int, int]:
+    """The wake-up descriptor there was, and the writing end of the pipe whose other end a thread reads."""
+    reading, writing = os.pipe()
+    os.set_blocking(writing, False)
+    threading.Thread(target=_watch, args=(reading, numbers), daemon=True).start()
+    return signal.set_wakeup_fd(writing, warn_on_full_buffer=False), writing
+
+
+def _stop(number: int, frame: FrameType | None) -> None:
+    raise Stopped(number)
+
+
+def _watch(reading: int, numbers: tuple[int, ...]) -> None:
+    while True:
+        got = os.read(reading, 1)
+        if not got:
+            os.close(reading)
+            return
+        if got[0] in numbers:
+            time.sleep(PATIENCE_S)
+            end_now(got[0])
+
+
+def end_now(number: int) -> None:
+    """End this process and all that it began, whatever it is doing."""
+    from ssmr_ident.core.atomic import remove_begun  # the run is stoppable before anything heavy is imported
+
+    remove_begun()
+    for child in _below(os.getpid()):
+        with suppress(OSError):
+            os.kill(child, signal.SIGKILL)
+    with suppress(OSError, ValueError, AttributeError):
+        cursor = "\033[?25h" if sys.stderr.isatty() else ""  # a progress bar has hidden it
+        os.write(sys.stderr.fileno(), f"{cursor}{STOPPED}\n".encode())
+    os._exit(128 + number)
+
+
+def _below(process: int) -> list[int]:
+    """Processes that one has begun, and theirs; Linux knows them by /proc."""
+    found: list[int] = []
+    for file in Path(f"/proc/{process}/task").glob("*/children"):
+        with suppress(OSError):
+            for child in map(int, file.read_text(encoding="ascii").split()):
+                found += [*_below(child), child]
+    return found
