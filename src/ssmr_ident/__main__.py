@@ -1,6 +1,6 @@
 """``ident``, also as ``python -m ssmr_ident``: nothing is imported before the run can be stopped."""
 
-from ssmr_ident.core.stopping import STOPPED, Stopped, stoppable
+from ssmr_ident.core.stopping import STOPPED, asked, stoppable
 
 
 def main() -> None:
@@ -12,9 +12,9 @@ def main() -> None:
             from ssmr_ident.cli import main as run
 
             run()
-    except Stopped as stopped:
+    except KeyboardInterrupt:
         print(STOPPED, file=sys.stderr)
-        sys.exit(128 + stopped.number)
+        sys.exit(128 + asked())
 
 
 if __name__ == "__main__":

@@ -38,7 +38,7 @@ def test_a_killed_run_leaves_no_half_file(root: Path, tmp_path: Path, enough: in
     logs = [str(root / "data" / "raw" / "free_response" / f"roll-{trial}.xlsx") for trial in (1, 2, 3, 4)]
     number = getattr(signal, how)
     status = _kill(["spectrum", *logs, "-o", str(folder), "-q"], folder, enough, number)
-    assert status == (130 if how == "SIGTERM" else -number)
+    assert status == (143 if how == "SIGTERM" else -number)
     left = [path for path in folder.iterdir() if not path.name.startswith(".")]
     assert len(left) <= 4  # of four figures and a table: it was stopped before its end
     for path in left:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import difflib
 import importlib
 import io
+import logging
 import os
 import signal
 import sys
@@ -13,7 +14,7 @@ from typing import Annotated, Any, NoReturn
 import typer
 
 from ssmr_ident.core.errors import InputError, SimulationError
-from ssmr_ident.core.stopping import STOPPED
+from ssmr_ident.core.stopping import STOPPED, asked
 
 # Matrices here are small, and threads of the linear algebra only wait for each other: on a busy machine a decay fit
 # takes twenty times as long. Set before numpy is first imported, which each verb does on its own.
@@ -60,11 +61,15 @@ for _verb in VERBS:
 
 def main() -> None:
     """Run ``ident``: exit 0 done, 2 the input or the call is wrong, 1 the tool failed, 130 or 143 stopped."""
+    # without a home it draws all the same, from a folder of its own that it lets go; nothing that a user need know
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):  # a terminal that knows ASCII alone gets numbers for other letters
             stream.reconfigure(errors="backslashreplace")
     try:
         status = app(prog_name="ident", standalone_mode=False) or 0
+        if asked():
+            raise KeyboardInterrupt  # which typer has made a status of
         if sys.stdout is not None:
             sys.stdout.flush()
         sys.exit(status)
@@ -74,10 +79,9 @@ def main() -> None:
         _complain(str(error))
     except SimulationError as error:
         _complain(f"simulation failed: {error}", status=1)
-    except (typer.Abort, KeyboardInterrupt) as error:
-        asked = error.__cause__ if isinstance(error, typer.Abort) else error
+    except (typer.Abort, KeyboardInterrupt):
         print(STOPPED, file=sys.stderr)
-        sys.exit(128 + getattr(asked, "number", signal.SIGINT))
+        sys.exit(128 + (asked() or signal.SIGINT))
     except BrokenPipeError:  # who read has read enough
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         sys.exit(1)

@@ -11,9 +11,13 @@ from __future__ import annotations
 
 import hashlib
 import os
+from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
 from numba import njit
+from numba.core.caching import FunctionCache
 
 STAMP = "compiled_from.sha256"
 
@@ -50,5 +54,20 @@ def forget_other_sources(package: Path) -> bool:
     return True
 
 
-kernel = njit(error_model="numpy", nogil=True, cache=True, fastmath=False)
+class _Cache(FunctionCache):
+    """numba's own, which a full disk costs its use and not the run."""
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        with suppress(OSError):
+            super().save_overload(sig, data)
+
+
+def kernel(function: Callable[..., Any]) -> Any:
+    """Compile a function when it is first called, and keep what was compiled where that can be written."""
+    compiled = njit(error_model="numpy", nogil=True, fastmath=False)(function)
+    with suppress(RuntimeError):  # numba's word for no folder that may be written to: compiled anew in every run
+        compiled._cache = _Cache(function)
+    return compiled
+
+
 forget_other_sources(Path(__file__).parents[1])

@@ -23,17 +23,17 @@ PATIENCE_S = 1.2
 STOPPED = "ident: stopped; what was being written is not there"
 
 
-class Stopped(KeyboardInterrupt):
-    """Ctrl-C, or a polite kill: temporary files are taken away on the way up."""
+_ASKED: list[int] = []
 
-    def __init__(self, number: int) -> None:
-        self.number = number
-        super().__init__(number)
+
+def asked() -> int:
+    """The signal that asked this run to end; 0 for none. Who catches ``KeyboardInterrupt`` on its way may lose it."""
+    return _ASKED[-1] if _ASKED else 0
 
 
 @contextmanager
 def stoppable() -> Iterator[None]:
-    """Turn SIGINT and SIGTERM into ``Stopped``, and into an end where nobody hears it."""
+    """Turn SIGINT and SIGTERM into ``KeyboardInterrupt``, and into an end where nobody hears it."""
     numbers = (signal.SIGINT, signal.SIGTERM)
     before = {number: signal.signal(number, _stop) for number in numbers}
     woken, written = _watched(numbers) if os.name == "posix" else (-1, -1)
@@ -56,7 +56,8 @@ def _watched(numbers: tuple[int, ...]) -> tuple[int, int]:
 
 
 def _stop(number: int, frame: FrameType | None) -> None:
-    raise Stopped(number)
+    _ASKED.append(number)
+    raise KeyboardInterrupt
 
 
 def _watch(reading: int, numbers: tuple[int, ...]) -> None:

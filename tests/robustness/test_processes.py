@@ -1,0 +1,169 @@
+"""Faults of the world around a run: signals, full disks, closed ends, names. One line, or it works."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+pytestmark = pytest.mark.skipif(os.name == "nt", reason="signals and devices of POSIX")
+
+HARD = """
+import hashlib, subprocess, sys
+from ssmr_ident.core import atomic
+from ssmr_ident.core.stopping import stoppable
+with stoppable():
+    child = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(60)"])
+    atomic._BEGUN.add(atomic.Path(sys.argv[1]))
+    atomic.Path(sys.argv[1]).write_text("half")
+    print(child.pid, flush=True)
+    hashlib.pbkdf2_hmac("sha256", b"", b"", 10**9)  # minutes in which no handler of Python's is called
+"""
+LOG = "time [s],ax [m/s^2]\n" + "".join(f"{i / 100},{(i * i) % 7}\n" for i in range(400))
+LONG = ("simulate", "p3at-extended", "-e", "free_response", "--duration-s", "2000")
+
+
+def _ident(*words: str, **settings: object) -> subprocess.CompletedProcess[str]:
+    call = [sys.executable, "-m", "ssmr_ident", *words]
+    given = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, **settings}
+    return subprocess.run(call, text=True, timeout=120, check=False, **given)  # type: ignore[call-overload,no-any-return]
+
+
+@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM])
+def test_a_loop_that_hears_nothing_ends_all_the_same(tmp_path: Path, how: signal.Signals) -> None:
+    half = tmp_path / "half"
+    with subprocess.Popen(
+        [sys.executable, "-c", HARD, str(half)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    ) as process:
+        assert process.stdout is not None
+        child = int(process.stdout.readline())
+        asked = time.monotonic()
+        process.send_signal(how)
+        _, told = process.communicate(timeout=30)
+        spent = time.monotonic() - asked
+    assert process.returncode == 128 + how
+    assert spent < 2.0 + 3.0  # a busy machine's own waiting aside
+    assert told == "ident: stopped; what was being written is not there\n"
+    assert not half.exists()
+    state = Path(f"/proc/{child}/stat")  # a dead child may wait for someone to ask how it ended
+    assert not state.exists() or state.read_text().rpartition(")")[2].split()[0] in "ZX"
+
+
+@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM])
+def test_a_run_stopped_at_its_beginning_or_its_work_says_so(tmp_path: Path, how: signal.Signals) -> None:
+    for wait in (0.3, 1.5, 4.0):
+        call = [sys.executable, "-m", "ssmr_ident", *LONG, "-o", str(tmp_path / "r.csv")]
+        with subprocess.Popen(call, stderr=subprocess.PIPE, text=True) as process:
+            time.sleep(wait)
+            process.send_signal(how)
+            _, told = process.communicate(timeout=30)
+        if process.returncode == -how:  # before the interpreter had read the first of our lines
+            continue
+        assert process.returncode == 128 + how, told
+        assert told.strip().splitlines()[-1] == "ident: stopped; what was being written is not there"
+        assert "Traceback" not in told
+        assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full here")
+@pytest.mark.parametrize("more", [(), ("--json",)])
+def test_a_full_disk_behind_standard_output(more: tuple[str, ...]) -> None:
+    with Path("/dev/full").open("w") as full:
+        done = _ident("effects", *more, stdout=full)
+    assert (done.returncode, done.stderr) == (1, "ident: standard output: No space left on device\n")
+
+
+def test_a_file_that_may_not_grow(tmp_path: Path) -> None:
+    import resource
+
+    # as a full disk ends a write: some of it is there already
+    limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000))  # noqa: E731
+    words = ("simulate", "p3at-extended", "-e", "free_response", "--duration-s", "1", "-o", str(tmp_path / "r.csv"))
+    done = _ident(*words, preexec_fn=limit)
+    assert done.returncode == 2, done.stderr
+    assert done.stderr.startswith(f"ident: {tmp_path / 'r.csv'}: cannot be written (File too large)")
+    assert len(done.stderr.splitlines()) == 1
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("words", [("simulate", "p3at-extended", "-e", "swivel", "-o"), ("diagnose", ".", "-o")])
+def test_a_file_where_a_folder_should_be_is_told_before_any_work(tmp_path: Path, words: tuple[str, ...]) -> None:
+    (tmp_path / "file").write_text("")
+    done = _ident(*words, str(tmp_path / "file" / "r.csv"))
+    assert done.returncode == 2
+    assert f"cannot be written ({tmp_path / 'file'} is a file)" in done.stderr
+    assert len(done.stderr.splitlines()) == 1
+
+
+def test_a_reader_that_has_read_enough_and_one_that_never_was() -> None:
+    call = f"{sys.executable} -m ssmr_ident effects --json"
+    first = subprocess.run(["sh", "-c", f"{call} | head -c 20"], capture_output=True, text=True, check=False)
+    assert (first.returncode, len(first.stdout), first.stderr) == (0, 20, "")
+    closed = subprocess.run(["sh", "-c", f"{call} >&-"], capture_output=True, text=True, check=False)
+    assert (closed.returncode, closed.stderr) == (0, "")
+
+
+def test_a_terminal_that_knows_ascii_alone() -> None:
+    done = _ident("effects", "dry_friction", env={**os.environ, "LC_ALL": "C", "PYTHONIOENCODING": "ascii"})
+    assert done.returncode == 0, done.stderr
+    assert "…" in done.stdout or "\\u2026" in done.stdout
+
+
+def test_no_home_and_no_cache(tmp_path: Path) -> None:
+    kept = {key: value for key, value in os.environ.items() if key not in ("MPLCONFIGDIR", "XDG_CACHE_HOME")}
+    (tmp_path / "nowhere").write_text("")
+    (tmp_path / "a.csv").write_text(LOG)
+    home = str(tmp_path / "nowhere" / "at" / "all")
+    done = _ident("spectrum", "a.csv", "-o", "out", cwd=tmp_path, env={**kept, "HOME": home})
+    assert (done.returncode, done.stderr) == (0, "")
+    assert (tmp_path / "out").is_dir()
+
+
+CACHED = """
+from pathlib import Path
+from numba.core import caching
+from ssmr_ident.core import kernel
+
+def double(x):
+    return 2.0 * x
+
+def refuse(self, sig, data):
+    raise OSError(28, "No space left on device")
+
+caching.FunctionCache._save_overload = refuse
+assert kernel.kernel(double)(2.0) == 4.0
+caching.CacheImpl._locator_classes = []
+assert kernel.kernel(double)(3.0) == 6.0
+"""
+
+
+def test_a_compiled_loop_that_cannot_be_kept_runs(tmp_path: Path) -> None:
+    """numba's disk is full; numba finds no folder at all."""
+    (tmp_path / "cached.py").write_text(CACHED)
+    done = subprocess.run([sys.executable, tmp_path / "cached.py"], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+@pytest.mark.parametrize("name", ["two\nlines.csv", "ünï — °.csv", "-rf.csv", "a'b\"c <b>.csv", "‮gpj.csv"])
+def test_odd_names(tmp_path: Path, name: str) -> None:
+    (tmp_path / name).write_text(LOG)
+    done = _ident("inspect", f"./{name}", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert "csv" in done.stdout
+
+
+def test_a_name_that_is_no_text(tmp_path: Path) -> None:
+    folder = os.fsencode(tmp_path)
+    with open(folder + b"/\xff\xfe.csv", "wb") as stream:  # noqa: PTH123
+        stream.write(LOG.encode())
+    for more in ((), ("--json",)):
+        done = subprocess.run(
+            [sys.executable, "-m", "ssmr_ident", "inspect", b"\xff\xfe.csv", *more], cwd=tmp_path, capture_output=True
+        )
+        assert done.returncode == 0, done.stderr
+        assert done.stdout
