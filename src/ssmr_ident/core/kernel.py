@@ -64,7 +64,7 @@ class _Cache(FunctionCache):
 
 def kernel(function: Callable[..., Any]) -> Any:
     """Compile a function when it is first called, and keep what was compiled where that can be written."""
-    compiled = njit(error_model="numpy", nogil=True, fastmath=False)(function)
+    compiled: Any = njit(error_model="numpy", nogil=True, fastmath=False)(function)
     with suppress(RuntimeError):  # numba's word for no folder that may be written to: compiled anew in every run
         compiled._cache = _Cache(function)
     return compiled

@@ -25,6 +25,6 @@ def courses_figure(recording: Recording, title: str = "") -> Figure:
     for axes, channel in zip(panels, recording.channels, strict=True):
         axes.plot(*thinned(recording.time, channel.samples), color=style.BLUE, lw=0.7)
         axes.set_ylabel(style.axis_text(channel.name, channel.unit))
-    panels[0].set_title(title or recording.provenance.file, loc="left")
+    panels[0].set_title(style.name_text(title or recording.provenance.file), loc="left")
     panels[-1].set_xlabel("time [s]")
     return figure

@@ -74,7 +74,7 @@ def overlay_panel(overlay: Overlay, after: str) -> Figure:
     below.set_ylabel(f"left over [{printed}]")
     above.set_xlim(time[0], time[-1])
     above.legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=3, borderaxespad=0.1, handlelength=1.4, columnspacing=1)
-    above.set_title(overlay.recording, loc="left", pad=14)
+    above.set_title(style.name_text(overlay.recording), loc="left", pad=14)
     figure.align_ylabels()
     return figure
 

@@ -75,7 +75,7 @@ def backbone_figure(backbones: Sequence[NamedBackbone]) -> Figure:
             hertz = 2 * np.pi
             above.errorbar(line.amplitude, line.omega_n / hertz, line.omega_n_std / hertz, label=member.name, **look)
             below.errorbar(line.amplitude, line.xi, line.xi_std, **look)
-        above.set_title(group)
+        above.set_title(style.name_text(group))
         above.margins(y=0.15)
         below.set_xlabel(f"amplitude [{style.unit_text(members[0].unit)}]")
         if len(members) <= 2 * len(style.SERIES):
@@ -120,7 +120,7 @@ def sawtooth_figure(named: NamedPull) -> Figure:
                     at, values, marker, ms=3.5, color=colour, zorder=4, mfc=colour if face else "white", mew=0.6,
                     label=f"{where} of {len(teeth)} {label}",
                 )  # fmt: skip
-    axes.set_title(named.name, loc="left")
+    axes.set_title(style.name_text(named.name), loc="left")
     axes.set_xlabel("travel of the machine [mm]")
     axes.set_ylabel("force [N]")
     axes.margins(x=0.01)

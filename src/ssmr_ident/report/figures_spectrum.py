@@ -43,7 +43,7 @@ def recording_figure(title: str, channels: Sequence[NamedAnalysis]) -> Figure:
     """
     rows = len(channels)
     figure = style.new_figure(style.DOUBLE_COLUMN, 0.75 + 1.5 * rows)
-    figure.suptitle(title, fontsize=8, x=0.01, ha="left")
+    figure.suptitle(style.name_text(title, 120), fontsize=8, x=0.01, ha="left")
     grid = figure.subplots(rows, 3, squeeze=False, sharex="col", width_ratios=(1.1, 1, 1.25))
     window = _strongest(channels)
     for row, named in zip(grid, channels, strict=True):

@@ -96,7 +96,7 @@ def peaks_figure(configuration: str, averages: Sequence[SpeedAverage], speed_lab
     counted = f"{repeats[0]}" if len(repeats) == 1 else f"{repeats[0]} to {repeats[-1]}"
     note = "; bars: standard deviation, dots: single logs" if repeats[-1] > 1 else ""
     counted += " log per speed" if repeats[-1] == 1 else " logs per speed"
-    figure.suptitle(f"{configuration}: {counted}{note}", fontsize=8, x=0.01, ha="left")
+    figure.suptitle(f"{style.name_text(configuration)}: {counted}{note}", fontsize=8, x=0.01, ha="left")
     figure.legend(handles, labels, loc="outside lower center", ncols=3)
     return figure
 

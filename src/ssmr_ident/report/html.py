@@ -156,11 +156,21 @@ def file_hashes(files: Sequence[Path]) -> tuple[tuple[str, str], ...]:
     )
 
 
+def _as_text(value: object) -> object:
+    """Text without letters that are not seen but change what is: controls, and what turns the direction of writing."""
+    if not isinstance(value, str) or isinstance(value, Markup) or value.isprintable():
+        return value
+    return "".join(
+        letter if letter.isprintable() or letter in "\n\t\u00a0\u2009\u202f" else f"⟨U+{ord(letter):04X}⟩"
+        for letter in value
+    )
+
+
 def render_page(page: Page) -> str:
     """The page as one HTML text: style, script and figures inside, nothing to load."""
     folder = resources.files("ssmr_ident.report") / "templates"
     environment = jinja2.Environment(
-        autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True
+        autoescape=True, finalize=_as_text, undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
     numbered = count(1)
     environment.filters["inline"] = lambda d: Markup(inline(d.svg, f"d{next(numbered)}", d.alt, d.white))

@@ -50,6 +50,6 @@ def overlay_figure(prediction: Prediction, title: str) -> Figure:
             low, high = min(c[:, same].min() for c in courses), max(c[:, same].max() for c in courses)
             axes.set_ylim(low - 0.08 * (high - low), high + 0.08 * (high - low))
     panels[0].legend(loc="upper right", ncols=3)
-    panels[0].set_title(title)
+    panels[0].set_title(style.name_text(title))
     panels[-1].set_xlabel("frequency [Hz]" if spectra else "time [s]")
     return figure

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +11,7 @@ import matplotlib as mpl
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.font_manager import findfont, get_font
 
 from ssmr_ident.core.atomic import make_folder, write_bytes
 
@@ -74,6 +76,23 @@ house = mpl.rc_context(STYLE)
 """Decorator for functions that draw or save."""
 
 
+def name_text(name: str, longest: int = 80) -> str:
+    """A name that a user gave, as a figure prints it: its beginning, without mathematics, in letters that the font has.
+
+    >>> name_text("cost_$x.csv"), len(name_text(4000 * "w"))
+    ('cost_\\\\$x.csv', 80)
+    """
+    short = name if len(name) <= longest else f"{name[: longest - 1]}…"
+    return "".join(letter if _printed(letter) else "□" for letter in short).replace("$", r"\$")
+
+
+@cache
+def _printed(letter: str) -> bool:
+    """Whether the figures' font has a letter; what turns the direction of writing is none."""
+    font = get_font(findfont(STYLE["font.family"]))
+    return letter.isprintable() and font.get_char_index(ord(letter)) != 0
+
+
 def unit_text(unit: str) -> str:
     """Unit as printed.
 
@@ -89,7 +108,7 @@ def quantity_text(name: str) -> str:
     >>> quantity_text("ay"), quantity_text("acceleration_2")
     ('$a_y$', 'acceleration 2')
     """
-    return _SYMBOLS.get(name, name.replace("_", " "))
+    return _SYMBOLS.get(name) or name_text(name.replace("_", " "))
 
 
 def axis_text(name: str, unit: str) -> str:
