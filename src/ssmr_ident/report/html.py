@@ -160,10 +160,8 @@ def _as_text(value: object) -> object:
     """Text without letters that are not seen but change what is: controls, and what turns the direction of writing."""
     if not isinstance(value, str) or isinstance(value, Markup) or value.isprintable():
         return value
-    return "".join(
-        letter if letter.isprintable() or letter in "\n\t\u00a0\u2009\u202f" else f"⟨U+{ord(letter):04X}⟩"
-        for letter in value
-    )
+    kept = "\n\t\u00a0\u2009\u202f"
+    return "".join(c if c.isprintable() or c in kept else f"⟨U+{ord(c):04X}⟩" for c in value)
 
 
 def render_page(page: Page) -> str:

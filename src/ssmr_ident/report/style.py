@@ -11,7 +11,7 @@ import matplotlib as mpl
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from matplotlib.font_manager import findfont, get_font
+from matplotlib.font_manager import FontProperties, findfont, get_font
 
 from ssmr_ident.core.atomic import make_folder, write_bytes
 
@@ -89,7 +89,7 @@ def name_text(name: str, longest: int = 80) -> str:
 @cache
 def _printed(letter: str) -> bool:
     """Whether the figures' font has a letter; what turns the direction of writing is none."""
-    font = get_font(findfont(STYLE["font.family"]))
+    font = get_font(findfont(FontProperties(family=[STYLE["font.family"]])))
     return letter.isprintable() and font.get_char_index(ord(letter)) != 0
 
 

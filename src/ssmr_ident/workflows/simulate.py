@@ -75,8 +75,9 @@ def simulate_to_file(params: str, request: Request, output: Path) -> Recording:
         A missing parameter, an ending without a writer.
     """
     duration, rate = request.duration, request.rate
-    for asked in (request, request.conditions):
-        for option, (domain, _) in declared(type(asked)).items():
+    options: tuple[tuple[object, type], ...] = ((request, Request), (request.conditions, Conditions))
+    for asked, kind in options:
+        for option, (domain, _) in declared(kind).items():
             value = getattr(asked, option)
             if value is not None:
                 domain.check(Place(f"--{option.replace('_', '-')}"), value)
