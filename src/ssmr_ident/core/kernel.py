@@ -59,14 +59,14 @@ class _Cache(FunctionCache):
 
     def save_overload(self, sig: Any, data: Any) -> None:
         with suppress(OSError):
-            super().save_overload(sig, data)
+            super().save_overload(sig, data)  # type: ignore[no-untyped-call]
 
 
 def kernel(function: Callable[..., Any]) -> Any:
     """Compile a function when it is first called, and keep what was compiled where that can be written."""
     compiled: Any = njit(error_model="numpy", nogil=True, fastmath=False)(function)
     with suppress(RuntimeError):  # numba's word for no folder that may be written to: compiled anew in every run
-        compiled._cache = _Cache(function)
+        compiled._cache = _Cache(function)  # type: ignore[no-untyped-call]
     return compiled
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from ssmr_ident.core.domain import Choice, Domain, FileName, Keyed, Listed, Text, declared
 from ssmr_ident.core.errors import InputError
@@ -91,7 +90,7 @@ def read_session(path: str | Path) -> Session:
     return Session(name, file.parent, robot, values.get("baseline", "rigid6"), entries)
 
 
-def _inside(place: Place, folder: Path, name: Any) -> Path:
+def _inside(place: Place, folder: Path, name: str) -> Path:
     """A path within the session folder; what leaves it is refused."""
     target = folder / name
     try:
