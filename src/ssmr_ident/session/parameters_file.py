@@ -62,6 +62,14 @@ def parameters_of(place: Place, content: Mapping[str, Any]) -> ParameterSet:
     return ParameterSet(head.get("name", Path(place.file).stem), estimates, effects, provenance, place.file)
 
 
+def _beside(key: str) -> set[str]:
+    """The keys that are known where an unknown one stands."""
+    block = key.rpartition(".")[0]
+    begin = f"{block}." if block else ""
+    known = {path[len(begin) :].partition(".")[0] for path in KEYS if path.startswith(begin)}
+    return known if block else known | {*HEAD, "effects", "provenance"}
+
+
 def _given(content: Mapping[str, Any], key: str) -> Any:
     found = content.get(key)
     return {} if found is None else found
@@ -73,7 +81,7 @@ def _collect(place: Place, key: str, block: Any, estimates: dict[str, Estimate])
             _collect(place.at(str(name)), f"{key}.{name}", inner, estimates)
         return
     if key not in KEYS:
-        raise place.error("is not a known key", did_you_mean(key[:60], {*KEYS, *BLOCKS}))
+        raise place.error("is not a known key", did_you_mean(key.rpartition(".")[2][:60], _beside(key)))
     declared = KEYS[key]
     estimate = Quantity(declared.domain, (declared.unit,)).check(place, block)
     if declared.zero_is_none and not np.any(estimate.value) and not estimate.fixed:

@@ -85,6 +85,9 @@ def load_with_lines(path: Path) -> tuple[Place, dict[str, Any]]:
         mark = error.problem_mark
         place = f"{path}:{mark.line + 1}" if mark else str(path)
         raise InputError(place, f"is not valid YAML: {error.problem}", "Mend this line") from error
+    except yaml.reader.ReaderError as error:
+        line = text.count("\n", 0, error.position) + 1
+        raise InputError(f"{path}:{line}", f"holds the letter U+{error.character:04X}", "Take it out") from error
     except (yaml.YAMLError, RecursionError, ValueError) as error:
         raise InputError(str(path), f"is not valid YAML: {error}") from error
     if node is None or not isinstance(content, dict):
