@@ -47,6 +47,10 @@ def main() -> None:
     if unknown := set(families) - set(FAMILIES):
         parser.error(f"--families: no {', '.join(sorted(unknown))}; there are {', '.join(FAMILIES)}")
     if asked.between:
+        for name in asked.between:
+            if not (RESULTS / f"{name}.jsonl").is_file():
+                there = ", ".join(sorted(file.stem for file in RESULTS.glob("*-*.jsonl"))) or "none yet"
+                parser.error(f"--between: no results of {name}; there are {there}")
         between(*asked.between, families)
         return
     for folder in absent():
@@ -64,7 +68,12 @@ def main() -> None:
     rows = with_unseen(rows)
     if asked.list:
         print("\n".join(line_of(row) for row in rows))
-    print(f"{file.stem}, {len(rows)} of {len(wanted)} sessions\n\n{table(rows)}\n\n{answers(rows)}")
+    took = sum(row["seconds"] for row in rows)
+    print(f"{file.stem}, {len(rows)} of {len(wanted)} sessions, {took:.0f} s of processor
+")
+    print(f"{table(rows)}
+
+{answers(rows)}")
 
 
 def run(wanted: list[Case], engine_name: str, file: Path, limit: float, seconds: float) -> None:

@@ -148,7 +148,12 @@ def _frozen() -> str:
     parts = []
     for file in sorted(RESULTS.glob("*-*.jsonl")):
         rows = with_unseen(read(file))
-        parts.append(f"Engine {file.stem}, {len(rows)} sessions.\n\n{table(rows)}\n\n{block(answers(rows))}")
+        took = sum(row["seconds"] for row in rows)
+        parts.append(f"Engine {file.stem}, {len(rows)} sessions, {took:.0f} s of processor.
+")
+        parts.append(f"{table(rows)}
+
+{block(answers(rows))}")
     return "\n".join(parts) or "Not measured yet.\n"
 
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 
 import numpy as np
 from scoring import GOOD, Row, errors, outcome
 
 from doctor.opened import Opened
+from doctor.processor import timed
 from ssmr_ident.diagnose.diagnosis import Diagnosis
 
 OUTCOMES = ("right", "tie", "part", "wrong", "missed", "false alarm", "undetermined", "failed")
@@ -20,9 +20,9 @@ def judged(session: Opened, run: Callable[[], Diagnosis]) -> Row:
     Where several answers are right, the one that the engine came nearest to counts; where an answer has claims to meet,
     it is right if it meets them all, and right names that do not are a part.
     """
-    begun = time.process_time()
-    diagnosis = run()
-    seconds = time.process_time() - begun
+    seconds: list[float] = []
+    with timed(seconds):
+        diagnosis = run()
     before, after, floor = session.heldout(diagnosis) if session.heldout else kept_back(session, diagnosis)
     said = min((outcome(names, diagnosis) for names in session.right), key=OUTCOMES.index)
     shown = session.claims(diagnosis) if session.claims else ()
@@ -30,7 +30,7 @@ def judged(session: Opened, run: Callable[[], Diagnosis]) -> Row:
         said = "right" if all(holds for _, holds in shown) else "part" if said in GOOD else said
     return {
         "outcome": said,
-        "seconds": seconds,
+        "seconds": seconds[0],
         "verdict": diagnosis.verdict,
         "named": [effect.id for effect in diagnosis.effects],
         "ties": [list(effect.indistinguishable_from) for effect in diagnosis.effects],
