@@ -69,11 +69,8 @@ def main() -> None:
     if asked.list:
         print("\n".join(line_of(row) for row in rows))
     took = sum(row["seconds"] for row in rows)
-    print(f"{file.stem}, {len(rows)} of {len(wanted)} sessions, {took:.0f} s of processor
-")
-    print(f"{table(rows)}
-
-{answers(rows)}")
+    print(f"{file.stem}, {len(rows)} of {len(wanted)} sessions, {took:.0f} s of processor")
+    print(f"\n{table(rows)}\n\n{answers(rows)}")
 
 
 def run(wanted: list[Case], engine_name: str, file: Path, limit: float, seconds: float) -> None:

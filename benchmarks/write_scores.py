@@ -149,11 +149,8 @@ def _frozen() -> str:
     for file in sorted(RESULTS.glob("*-*.jsonl")):
         rows = with_unseen(read(file))
         took = sum(row["seconds"] for row in rows)
-        parts.append(f"Engine {file.stem}, {len(rows)} sessions, {took:.0f} s of processor.
-")
-        parts.append(f"{table(rows)}
-
-{block(answers(rows))}")
+        parts.append(f"Engine {file.stem}, {len(rows)} sessions, {took:.0f} s of processor.\n")
+        parts.append(f"{table(rows)}\n\n{block(answers(rows))}")
     return "\n".join(parts) or "Not measured yet.\n"
 
 
