@@ -59,6 +59,13 @@ def test_spectrum(logs: list[str], tmp_path: Path) -> None:
     assert answer["files"]
 
 
+def test_sweep(tmp_path: Path) -> None:
+    over = ("--over", "lambda_max=0.5,1", "-e", "swivel", "--duration-s", "0.3", "--workers", "1", "-o", str(tmp_path))
+    answer = answer_of("sweep", "p3at-extended", *over)
+    check("sweep", answer)
+    assert [run["lambda_max"] for run in answer["runs"]] == [0.5, 1.0]
+
+
 def test_geometry() -> None:
     check("geometry", answer_of("geometry", str(SCHEMAS.parent / "howto" / "measurements.yaml")))
 

@@ -20,7 +20,20 @@ from ssmr_ident.core.stopping import STOPPED, asked
 # takes twenty times as long. Set before numpy is first imported, which each verb does on its own.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-VERBS = ("inspect", "spectrum", "geometry", "new", "fit", "simulate", "compare", "diagnose", "effects", "demo", "proof")
+VERBS = (
+    "inspect",
+    "spectrum",
+    "geometry",
+    "new",
+    "fit",
+    "simulate",
+    "sweep",
+    "compare",
+    "diagnose",
+    "effects",
+    "demo",
+    "proof",
+)
 
 UsageError: type[Exception] = typer.BadParameter.__bases__[0]
 """Of the click that typer brings along, whichever that is."""

@@ -39,3 +39,9 @@ def baselines(incomplete: str) -> Iterator[str]:
     from ssmr_ident.session.entry import BASELINES
 
     yield from (name for name in BASELINES if name.startswith(incomplete))
+
+
+def contacts(incomplete: str) -> Iterator[str]:
+    from ssmr_ident.session.schema import CHOICES
+
+    yield from (name for name in map(str, CHOICES["tire.contact"][0].known) if name.startswith(incomplete))

@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from ssmr_ident.cli import completion
+from ssmr_ident.cli import experiment_options as asked
 
 CHOICES = "free_response, pull, swivel, straight, wheel_drag, vertical_compression, forced"
 
@@ -17,6 +18,7 @@ FIRST_RUN = "simulating (the first run on a machine compiles the simulator, some
 EXAMPLES = (
     "ident simulate p3at-extended -e free_response --motion pitch --noise --seed 7 -o pitch-1.xlsx",
     "ident simulate params.yaml -e swivel --yaw-rate-deg-s 45 -o swivel.csv",
+    "ident simulate p3at-extended -e swivel --yaw-rate-deg-s 10 --contact printed_6_4 -o swivel.csv",
     "ident simulate p3at-extended -e pull --direction lateral --cable rope -o pull-1.txt",
     "ident simulate p3at-extended -e free_response --effect dry_friction:F_c_N=2 -o roll-1.csv",
     "ident simulate rig.yaml -e forced --force shaker.csv -o answer.csv",
@@ -24,44 +26,31 @@ EXAMPLES = (
 
 
 def command(
-    params: Annotated[
-        str,
-        typer.Argument(
-            help="Parameter file, or a bundled robot: p3at-extended, p3at-platform.", autocompletion=completion.robots
-        ),
-    ],
+    params: asked.Params,
     experiment: Annotated[
         str, typer.Option("--experiment", "-e", help=f"One of {CHOICES}.", autocompletion=completion.experiments)
     ],
     output: Annotated[Path, typer.Option("-o", "--output", help="Log to write: .csv, .lvm or .xlsx.")] = Path(
         "rec.csv"
     ),
-    motion: Annotated[str, typer.Option(help="Free response: roll, pitch or yaw.")] = "roll",
-    amplitude_mm: Annotated[float, typer.Option(help="Free response: displacement of the wheels at the start.")] = 0.3,
-    push_n: Annotated[
-        float,
-        typer.Option("--push-N", help="Free response: pushed by this force and let go, instead of --amplitude-mm."),
-    ] = 0.0,
-    direction: Annotated[str, typer.Option(help="Pull: lateral or longitudinal.")] = "lateral",
-    speed_mm_s: Annotated[float, typer.Option(help="Pull, drag, compression: speed of the head.")] = 1.0,
-    height_m: Annotated[float, typer.Option(help="Pull: height of the cable above the floor.")] = 0.05,
-    wheels_gripping: Annotated[str, typer.Option(help="Pull: wheels that grip, such as 1,2.")] = "1,2,3,4",
-    cable: Annotated[str, typer.Option(help="Pull: steel or rope.")] = "steel",
-    wheel_rate_rad_s: Annotated[float, typer.Option(help="Pull: spinning wheels, the robot held in place.")] = 0.0,
+    motion: asked.Motion = "roll",
+    amplitude_mm: asked.AmplitudeMm = 0.3,
+    start: asked.Start = "tilted",
+    push_n: asked.PushN = 0.0,
+    direction: asked.Direction = "lateral",
+    speed_mm_s: asked.SpeedMmS = 1.0,
+    height_m: asked.HeightM = 0.05,
+    wheels_gripping: asked.WheelsGripping = "1,2,3,4",
+    cable: asked.Cable = "steel",
+    wheel_rate_rad_s: asked.WheelRateRadS = 0.0,
     free_normal: Annotated[bool, typer.Option(help="Wheel drag: the wheel can move off the surface.")] = True,
-    yaw_rate_deg_s: Annotated[float, typer.Option(help="Swivel: wanted yaw rate.")] = 45.0,
-    speed_m_s: Annotated[float, typer.Option(help="Straight: wanted speed.")] = 0.3,
+    yaw_rate_deg_s: asked.YawRateDegS = 45.0,
+    speed_m_s: asked.SpeedMS = 0.3,
     force: Annotated[str, typer.Option(help="Forced rig: a log with columns time and force.")] = "",
-    effect: Annotated[
-        list[str] | None,
-        typer.Option(
-            metavar="ID[:KEY=VALUE,...]",
-            help="Physics beside the file's, nominal where no value is given; ident effects lists it.",
-            autocompletion=completion.effect_ids,
-        ),
-    ] = None,
-    duration_s: Annotated[float | None, typer.Option(help="Length of the recording.")] = None,
-    rate_hz: Annotated[float | None, typer.Option(help="Samples per second.")] = None,
+    contact: asked.Contact = "",
+    effect: asked.EffectIds = None,
+    duration_s: asked.DurationS = None,
+    rate_hz: asked.RateHz = None,
     noise: Annotated[bool, typer.Option(help="Add the noise of the parameter file's noise block.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print what was written as JSON.")] = False,
     quiet: Annotated[bool, typer.Option("-q", "--quiet", help="Print nothing.")] = False,
@@ -75,14 +64,14 @@ def command(
     from ssmr_ident.workflows.simulate import Request, experiment_of, simulate_to_file, wheels_of
 
     conditions = Conditions(
-        motion=motion, amplitude_mm=amplitude_mm, push_N=push_n, direction=direction, speed_mm_s=speed_mm_s,
-        height_m=height_m, wheels_gripping=wheels_of(wheels_gripping), cable=cable,
+        motion=motion, amplitude_mm=amplitude_mm, start=start, push_N=push_n, direction=direction,
+        speed_mm_s=speed_mm_s, height_m=height_m, wheels_gripping=wheels_of(wheels_gripping), cable=cable,
         wheel_rate_rad_s=wheel_rate_rad_s, free_normal=free_normal, yaw_rate_deg_s=yaw_rate_deg_s,
         speed_m_s=speed_m_s,
     )  # fmt: skip
     request = Request(
         experiment_of(experiment), conditions, force=force, duration_s=duration_s, rate_hz=rate_hz, noise=noise,
-        seed=seed, effects=tuple(effect or ()),
+        seed=seed, effects=tuple(effect or ()), contact=contact,
     )  # fmt: skip
     refuse_unwritable(output)
     with doing(FIRST_RUN, hidden=quiet or as_json):

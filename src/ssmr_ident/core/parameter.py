@@ -66,7 +66,8 @@ class Estimate(Shown):
 class ParameterSet(Shown, Mapping[str, Estimate]):
     """Estimates by dotted path (``tire.stiffness_y_N_m``), as robot.yaml and exported parameters hold them.
 
-    ``effects`` maps an effect's id to its parameters; ``provenance`` is free text and numbers about the origin.
+    ``choices`` are the keys whose value is a word (``tire.contact``). ``effects`` maps an effect's id to its
+    parameters; ``provenance`` is free text and numbers about the origin.
     """
 
     name: str
@@ -74,6 +75,7 @@ class ParameterSet(Shown, Mapping[str, Estimate]):
     effects: Mapping[str, Mapping[str, Estimate]] = field(default_factory=dict)
     provenance: Mapping[str, Any] = field(default_factory=dict)
     file: str = ""
+    choices: Mapping[str, str] = field(default_factory=dict)
 
     def __getitem__(self, path: str) -> Estimate:
         return self.estimates[path]
@@ -98,6 +100,7 @@ class ParameterSet(Shown, Mapping[str, Estimate]):
 
     def _repr_html_(self) -> str:
         rows = [(path, str(e), e.source + (", fixed" if e.fixed else "")) for path, e in self.estimates.items()]
+        rows += [(path, word, "") for path, word in self.choices.items()]
         rows += [(f"{id}: {key}", str(e), e.source) for id, block in self.effects.items() for key, e in block.items()]
         return html_table(("parameter", "value", "source"), rows, f"parameters of {self.name}")
 
@@ -105,6 +108,7 @@ class ParameterSet(Shown, Mapping[str, Estimate]):
         width = max((len(path) for path in self.estimates), default=0)
         lines = [f"parameters of {self.name}"]
         lines += [f"  {path:<{width}}  {estimate}" for path, estimate in self.estimates.items()]
+        lines += [f"  {path:<{width}}  {word}" for path, word in self.choices.items()]
         for effect, parameters in self.effects.items():
             lines += [f"  {effect}: {key} = {estimate}" for key, estimate in parameters.items()]
         return "\n".join(lines)

@@ -27,7 +27,7 @@ def with_law_of_sliding(
     """A session set up with the relay of each axis (6.4) or with Coulomb's cone, whichever its recordings prefer.
 
     Under one friction coefficient both are Coulomb's law, and differ where a wheel slides along two axes at once. A
-    file that states the speed of sliding has decided.
+    file that states the speed of sliding, or the law itself, has decided.
 
     Parameters
     ----------
@@ -42,7 +42,7 @@ def with_law_of_sliding(
     """
     relay = set_up(campaign, known)
     one = known.number("tire.mu_static", np.nan) == known.number("tire.mu_kinetic", np.nan)
-    if KEY in known or not one or not any(trial.experiment.drags_everything for trial in relay.fitted):
+    if KEY in known or known.choices or not one or not any(trial.experiment.drags_everything for trial in relay.fitted):
         return relay, known
     if progress:
         progress("fitting the baseline", 0, 1)

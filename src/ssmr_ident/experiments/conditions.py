@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated
 
-from ssmr_ident.core.domain import Number, declared
+from ssmr_ident.core.domain import Choice, Number, declared
 from ssmr_ident.session.entry import Entry
 
 _ENTRY = declared(Entry)
@@ -22,6 +22,8 @@ class Conditions:
         Into which a free response is released.
     amplitude_mm : float
         Displacement of the wheels at the release.
+    start : {"tilted", "vertical"}
+        Of a free response: tilted about the CoM, which strains all springs, or the thesis' push of vertical ones only.
     push_N : float
         Steady force from which it is let go in place of ``amplitude_mm``, where not 0.
     direction : {"lateral", "longitudinal"}
@@ -46,6 +48,7 @@ class Conditions:
 
     motion: Annotated[str, _ENTRY["motion"][0]] = "roll"
     amplitude_mm: Annotated[float, Number("mm", least=-1e4, most=1e4)] = 0.3
+    start: Annotated[str, Choice(("tilted", "vertical"))] = "tilted"
     push_N: Annotated[float, Number("N", least=-1e9, most=1e9)] = 0.0
     direction: Annotated[str, _ENTRY["direction"][0]] = "lateral"
     speed_mm_s: Annotated[float, _ENTRY["speed_mm_s"][0]] = 1.0

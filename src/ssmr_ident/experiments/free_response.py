@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from ssmr_ident.core.errors import InputError
@@ -33,6 +35,29 @@ def free_response(motion: str, amplitude: float = 0.001, duration: float = 4.096
     return Scenario(FREE_RESPONSE.name, duration, offset={motion: amplitude / lever[motion]})
 
 
+def pressed(robot: Robot, motion: str, amplitude: float = 0.001, duration: float = 4.096) -> Scenario:
+    """Let go as the thesis does (6.5): only the vertical springs of two wheels are pressed and of two relieved.
+
+    The contact points stay where they are, so the body tilts about the floor and not about its CoM. Springs along the
+    floor that a tilt about the CoM strains as well would put most of a pitch into its second mode, near 11 Hz.
+
+    Parameters
+    ----------
+    robot : Robot
+    motion : str
+        ``roll``, ``pitch``; ``yaw`` has no vertical springs and is that of ``free_response``.
+    amplitude : float [m]
+        At the wheels.
+    """
+    tilted = free_response(motion, amplitude, duration)
+    if motion == "yaw":
+        return tilted
+    lever = robot.half_track if motion == "roll" else float(np.abs(robot.contact_points[:, 0]).mean())
+    angle = amplitude / lever
+    along, sign = ("y", -1.0) if motion == "roll" else ("x", 1.0)
+    return replace(tilted, offset={motion: angle, along: sign * robot.height * float(np.sin(angle))})
+
+
 def released(robot: Robot, motion: str, force: float, duration: float = 4.096) -> Scenario:
     """Pushed or turned by a steady force and let go: the start is the robot's own static deflection.
 
@@ -58,6 +83,8 @@ def released(robot: Robot, motion: str, force: float, duration: float = 4.096) -
 def _scenario(robot: Robot, conditions: Conditions, duration: float) -> Scenario:
     if conditions.push_N:
         return released(robot, conditions.motion, conditions.push_N, duration)
+    if conditions.start == "vertical":
+        return pressed(robot, conditions.motion, conditions.amplitude_mm * 1e-3, duration)
     return free_response(conditions.motion, conditions.amplitude_mm * 1e-3, duration)
 
 

@@ -45,6 +45,9 @@ class Robot:
     sliding_speed : float [m/s]
         Over which friction falls from mu_static to mu_kinetic while a contact slides along both axes together;
         0 keeps the thesis' relay, axis by axis.
+    contact : str
+        ``printed_6_4``: (6.4) and N >= 0 (4.15) to the letter; ``relay``: one per axis that lands on mu_k N; ``cone``:
+        Coulomb's. Empty where the file does not choose, and each experiment takes its usual one.
     """
 
     mass: float
@@ -63,6 +66,7 @@ class Robot:
     cable_damping: float
     accelerometer: Accelerometer
     sliding_speed: float = 0.0
+    contact: str = ""
 
     @property
     def height(self) -> float:
@@ -75,8 +79,13 @@ class Robot:
         return float(np.abs(self.contact_points[:, 1]).mean())
 
     def sliding_together(self) -> Robot:
-        """A robot whose contacts slide along both axes together (Coulomb's cone), in place of the thesis' relay."""
-        return self if self.sliding_speed > 0.0 else replace(self, sliding_speed=SLIDING_SPEED)
+        """A robot whose contacts slide along both axes together (Coulomb's cone), unless its file chooses a relay."""
+        return self if self.contact or self.sliding_speed > 0.0 else replace(self, sliding_speed=SLIDING_SPEED)
+
+    def with_contact(self, contact: str) -> Robot:
+        """A robot under a chosen law of its contacts."""
+        speed = (self.sliding_speed or SLIDING_SPEED) if contact == "cone" else 0.0
+        return replace(self, contact=contact, sliding_speed=speed)
 
     def with_changes(self, **changes: object) -> Robot:
         """A copy with some fields replaced."""
@@ -117,7 +126,7 @@ def robot_from_parameters(parameters: ParameterSet) -> Robot:
     mass = need("mass_kg")
     cable = parameters.number("cable.stiffness_N_m", 1e6)
     mu_static = need("tire.mu_static")
-    return Robot(
+    robot = Robot(
         mass=mass,
         inertia=inertia,
         contact_points=points,
@@ -136,6 +145,8 @@ def robot_from_parameters(parameters: ParameterSet) -> Robot:
         accelerometer=accelerometer_from_parameters(parameters),
         sliding_speed=parameters.number("tire.sliding_speed_m_s", 0.0),
     )
+    contact = parameters.choices.get("tire.contact")
+    return robot if contact is None else robot.with_contact(contact)
 
 
 def accelerometer_from_parameters(parameters: ParameterSet) -> Accelerometer:

@@ -1,4 +1,5 @@
-"""Grip of one tire: the relay of eq (6.4) axis by axis, or sliding of both axes together, under (4.10)-(4.12)."""
+"""Grip of one tire: eq (6.4) axis by axis, as printed or landing on its limit, or sliding of both axes together, under
+(4.10)-(4.12)."""
 
 from __future__ import annotations
 
@@ -91,6 +92,44 @@ def contact_force(deflection, sliding, velocity, hub, beside, stiffness, damping
     landing = hub + (deflection - (direction * grip - damping * hub - beside) / stiffness) / step
     velocity = where(direction * velocity > direction * landing, landing, velocity)
     return slides, where(slides, velocity, 0.0), where(slides, damping * velocity - force, -force)
+
+
+@kernel
+def printed_force(
+    deflection, released, velocity, hub, beside, stiffness, damping, mass, breakaway, grip, drag, coast, step
+):
+    """Relay (6.4) to the letter, and tire force (4.9), of one contact axis at a whole step.
+
+    m_t dv_c/dt + D v_c = F'·sigma with F' = m_t dv_i/dt + D v_i + K s, where the relay sigma is 1 from |F'| > mu_s N
+    until |F'| < mu_k N. A contact whose relay has fallen back is not held: it coasts on its own damper for about m_t/D,
+    so that a release ends below mu_k N. ``contact_force`` stops it there.
+
+    Parameters
+    ----------
+    deflection, velocity, beside, stiffness, damping, mass, breakaway, grip, drag, step
+        As ``contact_force`` takes them.
+    released : bool
+        The relay.
+    hub : (float, float) [m/s, m/s^2]
+        Velocity of the hub relative to the rolling contact, and its rate.
+    coast : float
+        exp(-D·step/m_t): exact for a force that is constant over the step. 0 without mass.
+
+    Returns
+    -------
+    (bool, float, float)
+        The relay, contact velocity [m/s] half a step on, force on the hub [N].
+    """
+    carried = stiffness * deflection + damping * hub[0] + beside
+    force = carried + mass * hub[1]
+    releases = (released & (abs(force) >= grip)) | (abs(force) > breakaway)
+    damped = damping > 0.0
+    gain = where(damped, (1.0 - coast) / where(damped, damping, 1.0), step / where(damped, 1.0, mass))
+    coming = coast * velocity + where(releases, gain * force, 0.0)
+    slowed = max(abs(coming) - gain * drag, 0.0)  # the kinetic term opposes what moves, and moves nothing by itself
+    coming = where(coming > 0.0, slowed, -slowed)
+    now = where(mass > 0.0, 0.5 * (velocity + coming), coming)
+    return releases, coming, damping * now - carried
 
 
 @kernel

@@ -14,7 +14,7 @@ from ssmr_ident.core.domain import Schema, optional
 from ssmr_ident.session.effects_block import effect_keys, rotary
 from ssmr_ident.session.estimate_file import Quantity, definitions
 from ssmr_ident.session.parameters_file import HEAD
-from ssmr_ident.session.schema import KEYS
+from ssmr_ident.session.schema import CHOICES, KEYS
 from ssmr_ident.session.session_file import FILE
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
@@ -53,6 +53,9 @@ def parameters_schema() -> Schema:
             inside[last]["anyOf"].append(quantity)
         else:
             inside[last] = quantity
+    for path, (choice, meaning) in CHOICES.items():
+        block, last = path.split(".")
+        properties[block]["anyOf"][0]["properties"][last] = choice.schema() | {"description": meaning}
     properties["effects"] = _effects()
     properties["provenance"] = {"type": ["object", "null"], "description": "where the numbers come from"}
     absent = {"anyOf": [{"const": 0}, {"type": "object", "properties": {"value": {"const": 0}}, "required": ["value"]}]}

@@ -16,7 +16,7 @@ from ssmr_ident.core.place import Place, shown
 from ssmr_ident.session.effects_block import effect_keys, rotary
 from ssmr_ident.session.estimate_file import Quantity
 from ssmr_ident.session.parameters_text import SCHEMA
-from ssmr_ident.session.schema import BLOCKS, KEYS
+from ssmr_ident.session.schema import BLOCKS, CHOICES, KEYS
 from ssmr_ident.session.yaml_file import expect_schema, load_with_lines
 
 HEAD: dict[str, tuple[Any, str]] = {
@@ -51,22 +51,23 @@ def parameters_of(place: Place, content: Mapping[str, Any]) -> ParameterSet:
     expect_schema(place, content, SCHEMA)
     head = Keyed(HEAD).check(place, {key: content[key] for key in HEAD if key in content})
     estimates: dict[str, Estimate] = {}
+    choices: dict[str, str] = {}
     for key, block in content.items():
         if key not in (*HEAD, "effects", "provenance"):
-            _collect(place.at(str(key)), str(key), block, estimates)
+            _collect(place.at(str(key)), str(key), block, estimates, choices)
     turning = "inertia_kg_m2" in estimates
     effects = _effects(place.at("effects"), _given(content, "effects"), turning)
     provenance = _given(content, "provenance")
     if not isinstance(provenance, Mapping):
         raise place.at("provenance").error(f"is {shown(provenance)}, expected a mapping")
-    return ParameterSet(head.get("name", Path(place.file).stem), estimates, effects, provenance, place.file)
+    return ParameterSet(head.get("name", Path(place.file).stem), estimates, effects, provenance, place.file, choices)
 
 
 def _beside(key: str) -> set[str]:
     """The keys that are known where an unknown one stands."""
     block = key.rpartition(".")[0]
     begin = f"{block}." if block else ""
-    known = {path[len(begin) :].partition(".")[0] for path in KEYS if path.startswith(begin)}
+    known = {path[len(begin) :].partition(".")[0] for path in (*KEYS, *CHOICES) if path.startswith(begin)}
     return known if block else known | {*HEAD, "effects", "provenance"}
 
 
@@ -75,10 +76,15 @@ def _given(content: Mapping[str, Any], key: str) -> Any:
     return {} if found is None else found
 
 
-def _collect(place: Place, key: str, block: Any, estimates: dict[str, Estimate]) -> None:
+def _collect(
+    place: Place, key: str, block: Any, estimates: dict[str, Estimate], choices: dict[str, str]
+) -> None:
+    if key in CHOICES:
+        choices[key] = CHOICES[key][0].check(place, block)
+        return
     if isinstance(block, Mapping) and "value" not in block and key in BLOCKS:
         for name, inner in block.items():
-            _collect(place.at(str(name)), f"{key}.{name}", inner, estimates)
+            _collect(place.at(str(name)), f"{key}.{name}", inner, estimates, choices)
         return
     if key not in KEYS:
         raise place.error("is not a known key", did_you_mean(key.rpartition(".")[2][:60], _beside(key)))

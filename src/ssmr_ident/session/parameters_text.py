@@ -37,7 +37,7 @@ def parameters_text(parameters: ParameterSet) -> str:
             open_blocks.append(parts[len(open_blocks)])
         indent = "  " * (len(parts) - 1)
         meaning = f"  # {KEYS[key].meaning}" if key in KEYS else ""
-        lines.append(f"{indent}{parts[-1]}: {_flow(estimate)}{meaning}")
+        lines.append(f"{indent}{parts[-1]}: {_flow(estimate) if isinstance(estimate, Estimate) else estimate}{meaning}")
     if parameters.effects:
         lines.append("effects:")
         for effect, entries in parameters.effects.items():
@@ -49,15 +49,16 @@ def parameters_text(parameters: ParameterSet) -> str:
     return text
 
 
-def _grouped(parameters: ParameterSet) -> list[tuple[str, Estimate]]:
+def _grouped(parameters: ParameterSet) -> list[tuple[str, Estimate | str]]:
     """Keys of one block side by side, blocks in the order of their first key."""
+    entries: dict[str, Estimate | str] = {**parameters.estimates, **parameters.choices}
     order: dict[str, int] = {}
-    for key in parameters:
+    for key in entries:
         parts = key.split(".")
         for depth in range(1, len(parts) + 1):
             order.setdefault(".".join(parts[:depth]), len(order))
     path_order = lambda key: [order[".".join(key.split(".")[: d + 1])] for d in range(len(key.split(".")))]  # noqa: E731
-    return [(key, parameters[key]) for key in sorted(parameters, key=path_order)]
+    return [(key, entries[key]) for key in sorted(entries, key=path_order)]
 
 
 def _flow(estimate: Estimate) -> str:

@@ -119,6 +119,12 @@ KEYS: dict[str, Key] = {
     "noise.force_N": Key("N", "standard deviation per sample of a measured force", _NOISE),
 }
 
+CHOICES: dict[str, tuple[Choice, str]] = {
+    "tire.contact": (Choice(("printed_6_4", "relay", "cone")), "law under which a contact slides, in every experiment")
+}
+"""Keys whose value is a word, and what they mean. ``tire.contact``: (6.4) and N >= 0 (4.15) to the letter, a relay per
+axis that lands on mu_k N, or Coulomb's cone; left out, each experiment takes its usual one."""
+
 BLOCKS: frozenset[str] = frozenset(path.rsplit(".", 1)[0] for path in KEYS if "." in path) | {"accelerometer"}
 
 _SPELLINGS = {

@@ -22,7 +22,7 @@ from ssmr_ident.physics.slots import (
     checked_for_robot,
     effect_vector,
 )
-from ssmr_ident.physics.tire import contact_force, release_share
+from ssmr_ident.physics.tire import contact_force, printed_force, release_share
 from ssmr_ident.simulate.sensed import sensed
 
 LONGEST_STEP = 2e-4
@@ -67,7 +67,7 @@ def drag_wheel(
     falling = e[KINETIC_SHARE] != 1.0 or robot.mu_kinetic != robot.mu_static
     substeps = max(1, math.ceil(step / (LONGEST_STEP if falling or longest is None else longest)))
     cable = _cable(math.inf, active)
-    tire = (robot.stiffness[1], robot.damping[1], robot.effective_mass)
+    tire = (robot.stiffness[1], robot.damping[1], robot.effective_mass, robot.contact == "printed_6_4")
     _drag(*tire, *grip, load, cable, e, head - head[0], step, substeps, force)
     return _read(force, step, active)
 
@@ -162,12 +162,13 @@ def _read(force: np.ndarray, step: float, active: Effects) -> np.ndarray:
 
 
 @kernel
-def _drag(stiffness, damping, mass, breakaway, grip, load, cable, e, head, step, substeps, out):
+def _drag(stiffness, damping, mass, printed, breakaway, grip, load, cable, e, head, step, substeps, out):
     deflection, velocity, sliding, hub_position = 0.0, 0.0, False, 0.0
     hidden, free = np.zeros(STATES), e[UNLISTED:]
     h = step / substeps
     series, falling = math.isfinite(cable), e[KINETIC_SHARE] != 1.0 and math.isfinite(grip)
-    drag = grip * release_share(breakaway, grip, 0.0) if math.isfinite(grip) else 0.0
+    drag = grip * release_share(breakaway, grip, 0.0) if math.isfinite(grip) and not printed else 0.0
+    coast, rate_before = math.exp(-damping * h / mass) if mass > 0.0 else 0.0, math.nan
     for n in range(out.shape[0]):
         rate = (head[n + 1] - head[n]) / step if n + 1 < out.shape[0] else 0.0
         for m in range(substeps):
@@ -187,9 +188,17 @@ def _drag(stiffness, damping, mass, breakaway, grip, load, cable, e, head, step,
                 )
                 grip = load * mu
                 drag = grip
-            sliding, velocity, force = contact_force(
-                deflection, sliding, velocity, hub, beside, stiffness, damping, mass, breakaway, grip, drag, h
-            )
+            if printed:
+                faster = 0.0 if math.isnan(rate_before) else (hub - rate_before) / h
+                rate_before = hub
+                sliding, velocity, force = printed_force(
+                    deflection, sliding, velocity, (hub, faster), beside, stiffness, damping, mass, breakaway, grip,
+                    drag, coast, h,
+                )  # fmt: skip
+            else:
+                sliding, velocity, force = contact_force(
+                    deflection, sliding, velocity, hub, beside, stiffness, damping, mass, breakaway, grip, drag, h
+                )
             if m == 0:
                 out[n] = -force
             deflection += h * (hub - velocity)

@@ -93,7 +93,7 @@ class Body:
         switches, ahead = self.e[_SWITCHES] != _OFF, p[POINTS : POINTS + 12 : 3] > 0.0
         return (
             self.beyond, switches.tobytes(), ahead.tobytes(), p[k.SLIDING_SPEED] > 0.0, p[k.SLIP_COUPLING] != 0.0,
-            id(self.uneven),
+            p[k.AS_PRINTED] > 0.0, id(self.uneven),
         )  # fmt: skip
 
     @cached_property
@@ -169,7 +169,7 @@ def pack_robot(robot: Robot) -> np.ndarray:
     p[k.INVERSE_INERTIA : k.INVERSE_INERTIA + 9] = np.linalg.inv(robot.inertia).ravel()
     p[k.INERTIA : k.INERTIA + 9] = robot.inertia.ravel()
     p[k.GRIPPING : k.GRIPPING + 4] = 1.0
-    p[k.SLIDING_SPEED] = robot.sliding_speed
+    p[k.SLIDING_SPEED], p[k.AS_PRINTED] = robot.sliding_speed, float(robot.contact == "printed_6_4")
     return p
 
 

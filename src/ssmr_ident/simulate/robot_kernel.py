@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import math
 
+from ssmr_ident.core.exponential import exp
 from ssmr_ident.core.kernel import kernel
 from ssmr_ident.core.simd import anywhere, first, lanewise, space, where
 from ssmr_ident.physics import slots
@@ -38,11 +39,20 @@ from ssmr_ident.physics.slots import (
     STRIBECK_EXPONENT,
     STRIBECK_SPEED,
 )
-from ssmr_ident.physics.tire import combined_share, contact_force, grip_shares, release_share, sliding_force, weakened
+from ssmr_ident.physics.tire import (
+    combined_share,
+    contact_force,
+    grip_shares,
+    printed_force,
+    release_share,
+    sliding_force,
+    weakened,
+)
 from ssmr_ident.simulate.angles import sin_cos
 from ssmr_ident.simulate.belts import take_up
 from ssmr_ident.simulate.floor import contact_speed, floor_height, rough_height
 from ssmr_ident.simulate.layout import (
+    AS_PRINTED,
     DX,
     DY,
     DZ,
@@ -138,6 +148,12 @@ def run(
     coupling, nominal_load = p[SLIP_COUPLING], 0.25 * p[MASS] * p[GRAVITY_G]
     drag_share = release_share(p[MU_STATIC], p[MU_KINETIC], p[RELEASE_DRAG])
     sliding_speed, together = p[SLIDING_SPEED], first(p[SLIDING_SPEED]) > 0.0
+    printed = first(p[AS_PRINTED]) > 0.0
+    coast_x, coast_y = 0.0 * patch, 0.0 * patch  # shares of a contact's speed that its own damper leaves after a step
+    if printed:
+        drag_share = p[RELEASE_DRAG]
+        coast_x = where(patch > 0.0, exp(-dx * step / patch), 0.0)
+        coast_y = where(patch > 0.0, exp(-dy * step / patch), 0.0)
     inv, tensor = INVERSE_INERTIA, INERTIA
     beside = remembers = patterned = rough = falling = load_law = swaying = stretching = lift = smooth = pulled = (
         held
@@ -160,6 +176,7 @@ def run(
         for term in range(_TERMS):
             smooth = smooth or first(e[_FREE + term]) != 0.0
         pulled, held = first(pulling[PULLED]) > 0.5, first(pulling[HELD]) > 0.5
+    lift = lift or printed  # (4.15) as printed: N is never below 0
     turning_back, coupled, rolls = first(coriolis) != 0.0, first(coupling) != 0.0, first(rolling) != 0.0
     uneven, share_x_gap = patterned or rough, e[GAP_SHARE_X]
 
@@ -178,6 +195,7 @@ def run(
         take_up(p, e[BELT_STIFFNESS], start, deflection, belt)
     contact, slip = space(p, 4, 2), space(p, 4, 2)  # velocities of contact points, and of hubs over them
     sliding = space(p, 4, 2)  # 1 where a contact slides
+    on_hub = space(p, 4, 2)  # forces
     hidden = space(p, 12, STATES)  # of x, y, z of the first wheel, then of the next
     law = inner_slots(e)
     if beside and anywhere(start[LOADED] != 0.0):
@@ -250,6 +268,7 @@ def run(
                 normal = _lifted(normal, depth)
             load[0, i] = normal
             weight = max(normal, 0.0) * p[GRIPPING + i]
+            slip_before_x, slip_before_y = slip[i, 0], slip[i, 1]
             slip[i, 0], slip[i, 1] = hub_x - rim, hub_y
             if stretching:
                 slip[i, 0] -= belt[1, side]
@@ -294,6 +313,22 @@ def run(
                 )  # fmt: skip
                 sliding[i, 0] = sliding[i, 1] = where(slides, 1.0, 0.0)
                 contact[i, 0], contact[i, 1] = contact_x, contact_y
+            elif printed:
+                faster_x, faster_y = 0.0 * hub_y, 0.0 * hub_y
+                if n > 0:
+                    faster_x, faster_y = (slip[i, 0] - slip_before_x) / step, (hub_y - slip_before_y) / step
+                limit, grip = mu_s * share_x * weight, mu_k * share_x * weight
+                slides, contact[i, 0], force_x = printed_force(
+                    deflection[i, 0], sliding[i, 0] != 0.0, contact[i, 0], (slip[i, 0], faster_x), beside_x, kx, dx,
+                    patch, limit, grip, release * grip, coast_x, step,
+                )  # fmt: skip
+                sliding[i, 0] = where(slides, 1.0, 0.0)
+                limit, grip = mu_s * share_y * weight, mu_k * share_y * weight
+                slides, contact[i, 1], force_y = printed_force(
+                    deflection[i, 1], sliding[i, 1] != 0.0, contact[i, 1], (hub_y, faster_y), beside_y, ky, dy,
+                    patch, limit, grip, release * grip, coast_y, step,
+                )  # fmt: skip
+                sliding[i, 1] = where(slides, 1.0, 0.0)
             else:
                 limit, grip = mu_s * share_x * weight, mu_k * share_x * weight
                 slides, contact[i, 0], force_x = contact_force(
@@ -308,6 +343,7 @@ def run(
                 )  # fmt: skip
                 sliding[i, 1] = where(slides, 1.0, 0.0)
             any_sliding += max(sliding[i, 0], sliding[i, 1])
+            on_hub[i, 0], on_hub[i, 1] = force_x, force_y
             if stretching:
                 belt[2, side] += force_x
             if rolls and anywhere(rim != 0.0):
@@ -398,7 +434,7 @@ def run(
             out[row, 14], out[row, 15], out[row, 16], out[row, 17] = tension, head_now, rate_left, rate_right
             out[row, 18] = any_sliding
             for i in range(4):
-                out[row, 19 + i] = load[0, i]
+                out[row, 19 + i], out[row, 23 + i], out[row, 27 + i] = load[0, i], on_hub[i, 0], on_hub[i, 1]
             row += 1
             finite = math.isfinite(x) & math.isfinite(z) & math.isfinite(yaw) & math.isfinite(az)
             failed = where(finite | (failed >= 0.0), failed, 1.0 * n)

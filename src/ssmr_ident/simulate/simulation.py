@@ -37,7 +37,7 @@ from ssmr_ident.simulate.step import choose_step
 from ssmr_ident.simulate.together import Run
 
 _UNITS = ["m/s^2"] * 3 + ["rad/s"] * 3 + ["m"] * 3 + ["rad"] * 3 + ["m/s"] * 2
-_UNITS += ["N", "m", "rad/s", "rad/s", "1"] + ["N"] * 4
+_UNITS += ["N", "m", "rad/s", "rad/s", "1"] + ["N"] * 12
 UNITS = dict(zip(k.OUTPUTS, _UNITS, strict=True))
 
 

@@ -24,7 +24,7 @@ FEWEST = 3
 """Runs from which lanes are quicker than one run after the other."""
 
 LONGEST = 200_000
-"""Samples up to which they are taken: eight runs of all outputs then fill 0.3 GB, and each thread has its own."""
+"""Samples up to which they are taken: eight runs of all outputs then fill 0.4 GB, and each thread has its own."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Annotated
@@ -16,15 +17,16 @@ from ssmr_ident.core.recording import Channel, Provenance, Recording
 from ssmr_ident.experiments import EXPERIMENTS, Conditions, Experiment
 from ssmr_ident.experiments.experiment import ACCELERATIONS
 from ssmr_ident.physics.rig import rig_from_parameters
-from ssmr_ident.physics.robot import accelerometer_from_parameters, robot_from_parameters
+from ssmr_ident.physics.robot import Robot, accelerometer_from_parameters, robot_from_parameters
 from ssmr_ident.physics.sensor import Noise
-from ssmr_ident.physics.slots import effect_values
+from ssmr_ident.physics.slots import Effects, effect_values
 from ssmr_ident.readers import ReadOptions, read_one, writers
 from ssmr_ident.session import read_parameters
 from ssmr_ident.session.entry import RATE, WHEELS
+from ssmr_ident.session.schema import CHOICES
 from ssmr_ident.simulate.bench import load_wheel
 from ssmr_ident.simulate.rig import simulate_rig
-from ssmr_ident.simulate.simulation import simulate
+from ssmr_ident.simulate.simulation import Simulation, simulate
 
 
 @dataclass(frozen=True)
@@ -44,6 +46,8 @@ class Request:
     seed : int
     effects : tuple of str
         ``ID`` or ``ID:KEY=VALUE,…``, beside those of the file.
+    contact : str or None
+        Law of the contacts instead of the file's.
     """
 
     experiment: Experiment
@@ -54,6 +58,7 @@ class Request:
     noise: bool = False
     seed: int = 0
     effects: tuple[str, ...] = ()
+    contact: Annotated[str | None, CHOICES["tire.contact"][0]] = None
 
     @property
     def duration(self) -> float:
@@ -74,6 +79,23 @@ def simulate_to_file(params: str, request: Request, output: Path) -> Recording:
     InputError
         A missing parameter, an ending without a writer.
     """
+    check(request)
+    parameters = asked_for(read_parameters(params), request)
+    recording = _run(parameters, request)
+    if request.noise:
+        recording = _noisy(recording, parameters, request.seed)
+    _write(output, recording, parameters)
+    return recording
+
+
+def check(request: Request) -> None:
+    """Whether a request can be met at all.
+
+    Raises
+    ------
+    InputError
+        A value out of its domain, or too many samples.
+    """
     duration, rate = request.duration, request.rate
     options: tuple[tuple[object, type], ...] = ((request, Request), (request.conditions, Conditions))
     for asked, kind in options:
@@ -83,18 +105,13 @@ def simulate_to_file(params: str, request: Request, output: Path) -> Recording:
                 domain.check(Place(f"--{option.replace('_', '-')}"), value)
     if duration * rate > 5e7:
         raise InputError("--duration-s, --rate-hz", f"ask for {duration * rate:g} samples")
-    parameters = _with_effects(read_parameters(params), request.effects)
-    recording = _run(parameters, request)
-    if request.noise:
-        recording = _noisy(recording, parameters, request.seed)
-    _write(output, recording, parameters)
-    return recording
 
 
-def _with_effects(parameters: ParameterSet, wanted: tuple[str, ...]) -> ParameterSet:
-    """Effects as the command line names them, ``ID`` or ``ID:KEY=VALUE,…``, beside those of the file."""
+def asked_for(parameters: ParameterSet, request: Request) -> ParameterSet:
+    """A file's parameters with the effects and the law of contacts that the command line names beside them."""
+    choices = {"tire.contact": request.contact} if request.contact else parameters.choices
     effects = dict(parameters.effects)
-    for text in wanted:
+    for text in request.effects:
         effect_id, _, pairs = text.partition(":")
         given: dict[str, Estimate] = {}
         for pair in pairs.split(",") if pairs else ():
@@ -105,7 +122,7 @@ def _with_effects(parameters: ParameterSet, wanted: tuple[str, ...]) -> Paramete
                 problem = f"{shown(pair)} is no KEY=VALUE"
                 raise InputError("--effect", problem, "Such as dry_friction:F_c_N=2") from None
         effects[effect_id] = given
-    return replace(parameters, effects=effects)
+    return replace(parameters, effects=effects, choices=choices)
 
 
 def _write(output: Path, recording: Recording, parameters: ParameterSet) -> None:
@@ -141,11 +158,28 @@ def _run(parameters: ParameterSet, request: Request) -> Recording:
         head = conditions.speed_mm_s * 1e-3 * time
         force = load_wheel(robot, experiment, head, 1.0 / request.rate, conditions.free_normal, effects)
         return _recording(time, experiment.name, position=(head, "m"), force=(force, "N"))
-    scenario = experiment.scenario(robot, conditions, request.duration)
-    result = simulate(robot, scenario, request.rate, effects=effects)
-    if scenario.pulled:
+    result = run_robot(robot, effects, request)
+    if result.scenario.pulled:
         return _recording(result.time, experiment.name, position=(result["head"], "m"), force=(result["force"], "N"))
     return result.recording(*ACCELERATIONS)
+
+
+def run_robot(
+    robot: Robot, effects: Effects, request: Request, offset: Mapping[str, float] | None = None
+) -> Simulation:
+    """The whole robot in one of the experiments that are done with it, begun ``offset`` further away.
+
+    N >= 0 (4.15) is part of the baseline here; in free responses it is the effect ``wheel_lift``, which decays tell.
+    """
+    experiment = request.experiment
+    if experiment.scenario is None:
+        raise InputError("--experiment", f"{experiment.name} is not done with a whole robot")
+    if not experiment.free:
+        effects = {"wheel_lift": {"active": 1.0}, **effects}
+    scenario = experiment.scenario(robot, request.conditions, request.duration)
+    if offset:
+        scenario = replace(scenario, offset={**scenario.offset, **offset})
+    return simulate(robot, scenario, request.rate, effects=effects)
 
 
 def _forced(parameters: ParameterSet, request: Request) -> Recording:

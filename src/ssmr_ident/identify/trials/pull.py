@@ -196,7 +196,8 @@ def travelled(measurement: Measurement) -> tuple[Array, Array, float, float]:
 def _steady(parameters: ParameterSet) -> bool:
     """Whether what is known has contacts slide at the force at which they let go, or along both axes together."""
     static, kinetic = (parameters.number(f"tire.mu_{name}", np.nan) for name in ("static", "kinetic"))
-    return static == kinetic or parameters.number("tire.sliding_speed_m_s", 0.0) > 0.0
+    cone = parameters.choices.get("tire.contact", "cone") == "cone"
+    return static == kinetic or (cone and parameters.number("tire.sliding_speed_m_s", 0.0) > 0.0)
 
 
 def _blind(experiment: Experiment, toothed: bool) -> tuple[str, ...]:

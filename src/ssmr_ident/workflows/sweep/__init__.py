@@ -1,0 +1,1 @@
+"""``ident sweep``: the simulator over a grid (thesis appendix C)."""
