@@ -1,9 +1,9 @@
 """The plane with a constraint: A(q)·q̇ = 0, q̇ = S(q)·η, and the reduced model of chapter 2.
 
 A skid-steered robot whose sideways skid is bounded turns about points at one distance x_0 ahead of its CoM:
-v_y = −x_0·ω. That is one constraint on q = (X, Y, θ); S spans what is left, η = (v_x, ω). The source's digest names A, S
-and the reduced model without printing them; derived here, in the form of K. Kozłowski and D. Pazderski (Int. J. Appl.
-Math. Comput. Sci. 14(4), 2004).
+v_y = −x_0·ω. That is one constraint on q = (X, Y, θ); S spans what is left, η = (v_x, ω). The source's digest names A,
+S and the reduced model without printing them; derived here, in the form of K. Kozłowski and D. Pazderski (Int. J.
+Appl. Math. Comput. Sci. 14(4), 2004).
 """
 
 from __future__ import annotations
