@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.optimize import least_squares
 
-from ssmr_ident.experiments.pull import pull
+from ssmr_ident.experiments.pull import ROPE_STIFFNESS, pull
 from ssmr_ident.identify.forces.curves import load_curve
 from ssmr_ident.identify.forces.friction import friction_of, gripping_load
 from ssmr_ident.identify.forces.sawtooth import take_apart
@@ -44,6 +44,8 @@ def _longitudinal(platform: Robot) -> list[Row]:
     rubber = platform.with_changes(stiffness=platform.stiffness * np.array([RUBBER / platform.stiffness[0], 1.0, 1.0]))
     soft = simulate(rubber, scenario, RATE, effects=belts)
     slope, with_belts = taken.first.slope, take_apart(soft["head"], soft["force"]).first.slope
+    roped = simulate(rubber, pull("longitudinal", 1.0, 60.0, "rope"), RATE, effects=belts)
+    with_rope = take_apart(roped["head"], roped["force"]).first.slope
     expected = 2.0 * in_series(3000.0, 2.0 * RUBBER)
     return [
         Row(
@@ -57,7 +59,9 @@ def _longitudinal(platform: Robot) -> list[Row]:
         ),
         Row(
             "belts", "3.3", "K_measured = 2·K_belt (3.8), each belt of 3 kN/m in series with two tires (4.14)",
-            f"{with_belts / 1e3:.2f} kN/m, closed form {expected / 1e3:.2f}", "5–7 kN/m",
+            f"{with_belts / 1e3:.2f} kN/m, closed form {expected / 1e3:.2f}; with the rope {with_rope / 1e3:.2f} kN/m, "
+            f"closed form {in_series(expected, ROPE_STIFFNESS) / 1e3:.2f}",
+            "5–7 kN/m without the rope",
             5e3 < with_belts < 7e3 and abs(with_belts / expected - 1.0) < 0.05,
             "the effect motor_belt, behind tires as stiff along x as along y",
         ),

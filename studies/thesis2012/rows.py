@@ -29,6 +29,8 @@ class Row:
         None where nothing public allows a check; ``comment`` says why.
     comment : str
         Why it differs, or what else was seen.
+    command : str
+        With which a user sees it.
     """
 
     key: str
@@ -38,6 +40,7 @@ class Row:
     expected: str
     passed: bool | None
     comment: str = ""
+    command: str = ""
 
     def __post_init__(self) -> None:
         if self.passed is not None:  # numpy's own bool is neither True nor JSON
@@ -85,14 +88,16 @@ class Scoreboard:
             lines.append(f"          found {row.found}; expected {row.expected}")
             if row.comment and row.passed is not True:
                 lines += textwrap.wrap(row.comment, 100, initial_indent=" " * 10, subsequent_indent=" " * 10)
+            lines.append(f"          {row.command}")
         return "\n".join(lines)
 
     def markdown(self) -> str:
         """A table."""
-        lines = ["| | section | statement | found here | expected | remark |", "| --- | --- | --- | --- | --- | --- |"]
+        lines = ["| | section | statement | found here | expected | remark | command |", f"|{' --- |' * 7}"]
         for row in self.rows:
             lines.append(
-                f"| {row.mark} | {row.section} | {row.statement} | {row.found} | {row.expected} | {row.comment} |"
+                f"| {row.mark} | {row.section} | {row.statement} | {row.found} | {row.expected} | {row.comment} "
+                f"| `{row.command}` |"
             )
         return "\n".join(lines)
 
@@ -101,10 +106,11 @@ class Scoreboard:
             "<tr>"
             + "".join(
                 f"<td>{escape(text)}</td>"
-                for text in (row.mark, row.section, row.statement, row.found, row.expected, row.comment)
+                for text in (row.mark, row.section, row.statement, row.found, row.expected, row.comment, row.command)
             )
             + "</tr>"
             for row in self.rows
         )
-        head = "".join(f"<th>{name}</th>" for name in ("", "section", "statement", "found", "expected", "remark"))
+        names = ("", "section", "statement", "found", "expected", "remark", "command")
+        head = "".join(f"<th>{name}</th>" for name in names)
         return f"<p>{escape(self.summary)}</p><table><tr>{head}</tr>{body}</table>"

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 from ssmr_ident.physics.robot import robot_from_parameters
 from ssmr_ident.session import read_parameters
+from thesis2012.commands import BY_CONSTRUCTION, COMMANDS
 from thesis2012.forces import force_rows
 from thesis2012.pulls import pull_rows
 from thesis2012.rows import Row, Scoreboard
@@ -31,4 +33,11 @@ def thesis_scoreboard(progress: Callable[[str], None] | None = None) -> Scoreboa
     rows += force_rows(robot, platform)
     tell("pulls")
     rows += pull_rows(robot)
-    return Scoreboard((*rows, *turning_rows(robot, progress)))
+    rows += turning_rows(robot, progress)
+    return Scoreboard(tuple(_with_command(row) for row in rows))
+
+
+def _with_command(row: Row) -> Row:
+    why = BY_CONSTRUCTION.get(row.key)
+    said = f"True by construction: {why}. {row.comment}".rstrip() if why and row.passed else row.comment
+    return replace(row, command=COMMANDS[row.key], comment=said)

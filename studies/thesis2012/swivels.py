@@ -22,6 +22,7 @@ REPEATS = 5
 WIDTH_HZ = 0.5  # bins of the power densities
 FAST_HZ = (30.0, 200.0)
 AXES = ("ax", "ay", "az")
+LIFTING = {"wheel_lift": {"active": 1.0}}  # N >= 0 (4.15)
 NEAR_HZ = 1.0  # lines nearer than the thesis' spacing of peaks are one
 
 
@@ -61,7 +62,7 @@ class Turn:
 
 
 def turn(robot: Robot, lambda_max: float, speed: float, release_drag: float = 0.0) -> Turn:
-    """Swivel five times 20 s at a wanted speed [deg/s] and measure the steady part.
+    """Swivel five times 20 s at a wanted speed [deg/s] on wheels that may lift, and measure the steady part.
 
     Stick-slip is chaotic: starts that differ by a tenth of a micrometre give other waveforms, and the highest peak of
     one log is a draw. Power densities are averaged over the repeats, as the thesis averages its three.
@@ -72,6 +73,7 @@ def turn(robot: Robot, lambda_max: float, speed: float, release_drag: float = 0.
             robot.with_changes(lambda_max=lambda_max),
             replace(swivel(wheel_rates(robot, 0.0, wanted), 20.0), offset={"y": 1e-7 * repeat}),
             RATE,
+            effects=LIFTING,
             release_drag=release_drag,
         )
         for repeat in range(REPEATS)
@@ -110,7 +112,7 @@ def all_turns(robot: Robot, release_drag: float = 0.0, progress: Callable[[str],
     found: Turns = {}
     for limit in LIMITS:
         if progress:
-            progress(f"swivels with λ_max = {limit:g}")
+            progress(f"swivels with λ_max = {limit:g} under {robot.contact or 'the relay'}")
         for speed in SPEEDS:
             found[limit, speed] = turn(robot, limit, speed, release_drag)
     return found

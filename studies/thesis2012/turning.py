@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
@@ -17,7 +18,23 @@ CLIPPED = 0.7 * 9.8  # m/s^2: what is left of a_z beside gravity before the acce
 
 
 def turning_rows(robot: Robot, progress: Callable[[str], None] | None = None) -> list[Row]:
-    """Rows of section 6.2 about swivels, in the thesis' own form of (6.4) and with the contact points of Table 5.1."""
+    """Rows of section 6.2 about swivels, under (6.4) to the letter, N >= 0 (4.15) and the contact points of Table 5.1.
+
+    What the relay that lands on its limit makes of the same statement is in the remark.
+    """
+    relay = _rows(robot.with_contact("relay"), progress)
+    printed = _rows(robot.with_contact("printed_6_4"), progress)
+    return [_beside(one, other) for one, other in zip(printed, relay, strict=True)]
+
+
+def _beside(printed: Row, relay: Row) -> Row:
+    """The row under the printed law, with the other law's answer; reasons were worked out under the relay."""
+    answer = {True: "it holds", False: "it does not"}[bool(relay.passed)]
+    said = f"Under the relay that lands on µ_k N {answer}: {relay.found}. {relay.comment}".rstrip()
+    return replace(printed, comment=said)
+
+
+def _rows(robot: Robot, progress: Callable[[str], None] | None) -> list[Row]:
     turns = all_turns(robot, progress=progress)
     variants = {
         "kinetic term kept": turn(robot, 0.01, 64.0, release_drag=1.0),

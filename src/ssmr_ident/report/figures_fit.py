@@ -53,6 +53,53 @@ class NamedPull:
     pull: Pull
 
 
+@dataclass(frozen=True, eq=False)
+class NamedDecay:
+    """One free response as the thesis reads it, and the decay that was fitted to it.
+
+    Parameters
+    ----------
+    name, motion, unit : str
+    time : (n,) float [s]
+    samples : (n,) float [unit]
+        Low-passed, without offset.
+    start, amplitude, rate : float [s], [unit], [1/s]
+        A·exp(-lambda·(t - start)) of the motion's own mode.
+    peak_hz, resolution_hz : float [Hz]
+        Highest line of the FFT, and the distance of its bins.
+    """
+
+    name: str
+    motion: str
+    unit: str
+    time: np.ndarray
+    samples: np.ndarray
+    start: float
+    amplitude: float
+    rate: float
+    peak_hz: float
+    resolution_hz: float
+
+
+@style.house
+def envelope_figure(decays: Sequence[NamedDecay]) -> Figure:
+    """Each decay of one motion under its envelope ±A·exp(-lambda·t), one below the other."""
+    figure = style.new_figure(style.DOUBLE_COLUMN, 0.75 * len(decays) + 0.8)
+    grid = figure.subplots(len(decays), 1, sharex=True, squeeze=False)[:, 0]
+    for axes, decay in zip(grid, decays, strict=True):
+        axes.plot(decay.time, decay.samples, color=style.MEASURED, lw=0.7)
+        after = decay.time[decay.time >= decay.start]
+        envelope = decay.amplitude * np.exp(-decay.rate * (after - decay.start))
+        for side in (1.0, -1.0):
+            axes.plot(after, side * envelope, color=style.ORANGE, lw=0.9)
+        axes.set_title(
+            f"{decay.name}: {decay.peak_hz:.2f} Hz, A {decay.amplitude:.3g}, λ {decay.rate:.3g} 1/s", loc="left"
+        )
+    grid[-1].set_xlabel("time [s]")
+    figure.supylabel(f"{decays[0].motion}, below 20 Hz [{style.unit_text(decays[0].unit)}]", fontsize=8)
+    return figure
+
+
 @style.house
 def backbone_figure(backbones: Sequence[NamedBackbone]) -> Figure:
     """Natural frequency (above) and damping ratio (below) over amplitude, a column per group.

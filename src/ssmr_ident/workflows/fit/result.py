@@ -10,7 +10,14 @@ from typing import Any
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.core.shown import Shown
 from ssmr_ident.identify.lmfit_report import Variable
-from ssmr_ident.report.figures_fit import NamedBackbone, NamedPull, backbone_figure, sawtooth_figure
+from ssmr_ident.report.figures_fit import (
+    NamedBackbone,
+    NamedDecay,
+    NamedPull,
+    backbone_figure,
+    envelope_figure,
+    sawtooth_figure,
+)
 from ssmr_ident.report.style import save
 from ssmr_ident.report.text_fit import fit_report
 
@@ -39,6 +46,7 @@ class SessionFit(Shown):
         Every unknown of the fit, arrays part by part; empty takes ``changed``.
     backbones : tuple of NamedBackbone
     pulls : tuple of NamedPull
+    decays : tuple of NamedDecay
         For figures.
     """
 
@@ -56,6 +64,7 @@ class SessionFit(Shown):
     variables: tuple[Variable, ...] = ()
     backbones: tuple[NamedBackbone, ...] = ()
     pulls: tuple[NamedPull, ...] = ()
+    decays: tuple[NamedDecay, ...] = ()
 
     def __str__(self) -> str:
         return fit_report(
@@ -72,7 +81,7 @@ class SessionFit(Shown):
         )
 
     def write_figures(self, folder: Path) -> tuple[Path, ...]:
-        """Draw frequency and damping over amplitude, and each pull taken apart; the files written.
+        """Draw decays under their envelopes, frequency and damping over amplitude, each pull taken apart.
 
         Parameters
         ----------
@@ -82,6 +91,10 @@ class SessionFit(Shown):
         drawn = [save(backbone_figure(self.backbones), folder / "backbone")] if self.backbones else []
         return (
             *drawn,
+            *(
+                save(envelope_figure([d for d in self.decays if d.motion == motion]), folder / f"envelope-{motion}")
+                for motion in dict.fromkeys(decay.motion for decay in self.decays)
+            ),
             *(save(sawtooth_figure(pull), folder / f"sawtooth-{Path(pull.name).stem}") for pull in self.pulls),
         )
 

@@ -25,6 +25,7 @@ from ssmr_ident.identify.robot.unknowns import (
     set_aside,
 )
 from ssmr_ident.report.figures_fit import NamedBackbone
+from ssmr_ident.workflows.fit.decay_table import decay_table, named_decay
 from ssmr_ident.workflows.fit.result import SessionFit
 from ssmr_ident.workflows.fit.robot_decays import body_statistics, fit_samples
 from ssmr_ident.workflows.fit.robot_forces import (
@@ -147,12 +148,13 @@ def fit_robot_session(
         ),
         recordings=gathered.lines,
         results=gathered.results,
-        tables=tuple(chapter_5[0]),
+        tables=(*([decay_table(gathered.decays)] if gathered.decays else []), *chapter_5[0]),
         correlations=strongest(posterior),
         findings=tuple(gathered.findings),
         conflicts=tuple(conflicts(posterior, known)),
         variables=variables(posterior, known),
         backbones=tuple(gathered.backbones),
+        decays=tuple(gathered.decays),
         pulls=tuple(gathered.drawn_pulls),
     )
 
@@ -201,6 +203,9 @@ def _decay(measurement: Measurement, expected: dict[str, tuple[float, float]], g
     ]
     if not fit.adequate:
         lines.append(f"the residual holds structure: {fit.misfit:.3g} times the noise's variance")
+    drawn = named_decay(measurement.name, entry.motion, recording.time, samples, unit, fit, mode)
+    if drawn is not None:
+        gathered.decays.append(drawn)
     trend = backbone(recording.time, samples, fit)
     if trend is not None:
         gathered.backbones.append(NamedBackbone(measurement.name, f"{entry.motion} in {channel}", unit, trend))

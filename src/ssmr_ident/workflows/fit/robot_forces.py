@@ -21,7 +21,7 @@ from ssmr_ident.identify.forces.observations import (
 )
 from ssmr_ident.identify.forces.sawtooth import machine_moves, mean_with_wander, take_apart
 from ssmr_ident.identify.posterior.most_probable import Observation, Posterior, Unknown
-from ssmr_ident.report.figures_fit import NamedBackbone, NamedPull
+from ssmr_ident.report.figures_fit import NamedBackbone, NamedDecay, NamedPull
 from ssmr_ident.workflows.fit.robot_result import ON_FLOOR, ROPE
 from ssmr_ident.workflows.fit.speeds import AtSpeed
 
@@ -54,6 +54,7 @@ class Gathered:
     rope: bool = False
     shift_std: float = 0.0
     backbones: list[NamedBackbone] = field(default_factory=list)
+    decays: list[NamedDecay] = field(default_factory=list)
     drawn_pulls: list[NamedPull] = field(default_factory=list)
 
 
