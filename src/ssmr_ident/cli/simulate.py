@@ -47,7 +47,7 @@ def command(
     yaw_rate_deg_s: asked.YawRateDegS = 45.0,
     speed_m_s: asked.SpeedMS = 0.3,
     force: Annotated[str, typer.Option(help="Forced rig: a log with columns time and force.")] = "",
-    contact: asked.Contact = "",
+    contact: asked.Contact = None,
     effect: asked.EffectIds = None,
     duration_s: asked.DurationS = None,
     rate_hz: asked.RateHz = None,

@@ -51,7 +51,7 @@ def command(
     wheel_rate_rad_s: asked.WheelRateRadS = 0.0,
     yaw_rate_deg_s: asked.YawRateDegS = 45.0,
     speed_m_s: asked.SpeedMS = 0.3,
-    contact: asked.Contact = "",
+    contact: asked.Contact = None,
     effect: asked.EffectIds = None,
     duration_s: asked.DurationS = None,
     rate_hz: asked.RateHz = None,

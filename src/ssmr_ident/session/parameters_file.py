@@ -76,9 +76,7 @@ def _given(content: Mapping[str, Any], key: str) -> Any:
     return {} if found is None else found
 
 
-def _collect(
-    place: Place, key: str, block: Any, estimates: dict[str, Estimate], choices: dict[str, str]
-) -> None:
+def _collect(place: Place, key: str, block: Any, estimates: dict[str, Estimate], choices: dict[str, str]) -> None:
     if key in CHOICES:
         choices[key] = CHOICES[key][0].check(place, block)
         return
