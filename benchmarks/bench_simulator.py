@@ -60,10 +60,10 @@ def ours(robot: Robot, effects: tuple[str, ...], seconds: float) -> Runner:
 
 def theirs(robot: Robot, tires: str, plain: bool, steps: int) -> Runner:
     """The same swivel in MuJoCo, all steps in one call into the engine, so that no time is Python's."""
-    from ssmr_proof.engine.bodies import start
-    from ssmr_proof.engine.build import WHEELS, Build
-    from ssmr_proof.engine.robot import mjcf
-    from ssmr_proof.engine.run import engine
+    from ssmr_ident.simulate.mjcf.bodies import start
+    from ssmr_ident.simulate.mjcf.build import WHEELS, Build
+    from ssmr_ident.simulate.mjcf.robot import mjcf
+    from ssmr_proof.mujoco_run import engine
 
     mujoco = engine()
     build = Build(tires=tires, driven=True, plain=plain, step=STEP)

@@ -11,6 +11,7 @@ import jsonschema
 import pytest
 import yaml
 from made_diagnoses import EVERY
+from small_fleet import write_fleet
 from typer.testing import CliRunner
 
 from ssmr_ident import cli
@@ -45,6 +46,18 @@ def test_every_schema_is_one(path: Path) -> None:
 def test_every_verb_has_a_schema() -> None:
     names = {path.name.removesuffix(".schema.json") for path in SCHEMAS.iterdir()}
     assert names == {"diagnosis" if verb == "diagnose" else verb for verb in cli.VERBS} | {"diagnosis"}
+
+
+def test_export(tmp_path: Path) -> None:
+    check("export", answer_of("export", "p3at-extended", "--to", "csv", "-o", str(tmp_path / "robot.csv")))
+
+
+@pytest.mark.slow
+def test_batch(tmp_path: Path) -> None:
+    write_fleet(tmp_path / "in", 1)
+    check(
+        "batch", answer_of("batch", str(tmp_path / "in"), "-o", str(tmp_path / "out"), "--no-diagnose", "--jobs", "1")
+    )
 
 
 @pytest.mark.parametrize("log", ["free_response/roll-1.xlsx", "pulls/concrete-lateral-steel-1.txt"])

@@ -12,8 +12,8 @@ from ssmr_ident.physics.linear import LinearRobot, linear_robot
 from ssmr_ident.physics.robot import GRAVITY, Robot
 from ssmr_ident.physics.statics import rest_loads, rest_pose, tilt
 from ssmr_ident.simulate import Simulation, simulate
-from ssmr_proof.engine.build import Build, Mast
-from ssmr_proof.engine.run import MujocoRun, run_mujoco
+from ssmr_ident.simulate.mjcf.build import Build, Mast
+from ssmr_proof.mujoco_run import MujocoRun, run_mujoco
 
 pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("engine")]
 CHANNELS = {"roll": ("roll", "y"), "pitch": ("pitch", "x"), "yaw": ("yaw",)}

@@ -10,8 +10,8 @@ from ssmr_ident.experiments.swivel import swivel
 from ssmr_ident.physics.motor import wheel_rates
 from ssmr_ident.physics.robot import GRAVITY, Robot
 from ssmr_ident.simulate import simulate
-from ssmr_proof.engine.build import Build
-from ssmr_proof.engine.run import run_mujoco
+from ssmr_ident.simulate.mjcf.build import Build
+from ssmr_proof.mujoco_run import run_mujoco
 
 pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("engine")]
 

@@ -9,9 +9,9 @@ import pytest
 
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.physics.robot import Robot
-from ssmr_proof.engine.bodies import chassis, hubs, wheel_inertia
-from ssmr_proof.engine.build import Build
-from ssmr_proof.engine.run import run_mujoco
+from ssmr_ident.simulate.mjcf.bodies import chassis, hubs, wheel_inertia
+from ssmr_ident.simulate.mjcf.build import Build
+from ssmr_proof.mujoco_run import run_mujoco
 
 
 def test_the_parts_add_up_to_the_robot(robot: Robot) -> None:

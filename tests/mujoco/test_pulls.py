@@ -8,8 +8,8 @@ import pytest
 from ssmr_ident.experiments.pull import pull
 from ssmr_ident.physics.robot import GRAVITY, Robot
 from ssmr_ident.simulate import Simulation, simulate
-from ssmr_proof.engine.build import Build, Cable
-from ssmr_proof.engine.run import MujocoRun, run_mujoco
+from ssmr_ident.simulate.mjcf.build import Build, Cable
+from ssmr_proof.mujoco_run import MujocoRun, run_mujoco
 
 pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("engine")]
 

@@ -21,18 +21,8 @@ from ssmr_ident.core.stopping import STOPPED, asked
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 VERBS = (
-    "inspect",
-    "spectrum",
-    "geometry",
-    "new",
-    "fit",
-    "simulate",
-    "sweep",
-    "compare",
-    "diagnose",
-    "effects",
-    "demo",
-    "proof",
+    *("inspect", "spectrum", "geometry", "new", "fit", "simulate", "sweep", "compare", "diagnose", "batch", "export"),
+    *("effects", "demo", "proof"),
 )
 
 UsageError: type[Exception] = typer.BadParameter.__bases__[0]

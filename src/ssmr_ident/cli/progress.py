@@ -29,6 +29,22 @@ def stages(hidden: bool = False) -> Iterator[Callable[[str, int, int], None]]:
 
 
 @contextmanager
+def counted(what: str, hidden: bool = False) -> Iterator[Callable[[int, int], None]]:
+    """Yield a function that takes the number done and the total, for long work: shows when it will end."""
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TimeElapsedColumn, TimeRemainingColumn
+
+    console = Console(stderr=True)
+    if hidden or not console.is_terminal:
+        yield lambda done, total: None
+        return
+    columns = ("{task.description}", BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), "left")
+    with Progress(*columns, TimeRemainingColumn(), console=console, transient=True, speed_estimate_period=600.0) as bar:
+        task = bar.add_task(what, total=None)
+        yield lambda done, total: bar.update(task, completed=done, total=total)
+
+
+@contextmanager
 def progress(what: str, hidden: bool = False) -> Iterator[Callable[[int, int], None]]:
     """Yield a function that takes the number done and the total."""
     with stages(hidden) as step:

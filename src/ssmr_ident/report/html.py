@@ -31,7 +31,15 @@ class Number:
     value: float
 
 
-Cell = str | Number
+@dataclass(frozen=True)
+class Link:
+    """A cell that leads to a file beside the page."""
+
+    text: str
+    target: str
+
+
+Cell = str | Number | Link
 
 
 @dataclass(frozen=True)
@@ -45,7 +53,10 @@ class Table:
     def numeric(self, column: int) -> bool:
         """Whether a column is set as numbers."""
         cells = [cell for row in self.rows if (cell := row[column]) not in ("", "–")]
-        numbers = [isinstance(cell, Number) or bool(_BEGINS_WITH_NUMBER.match(cell)) for cell in cells]
+        numbers = [
+            isinstance(cell, Number) or (isinstance(cell, str) and bool(_BEGINS_WITH_NUMBER.match(cell)))
+            for cell in cells
+        ]
         return column > 0 and sum(numbers) > len(numbers) / 2
 
 

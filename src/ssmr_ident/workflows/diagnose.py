@@ -76,6 +76,7 @@ def write_diagnosis(
     command: str = "",
     seed: int = 0,
     files: Sequence[Path] = (),
+    report: bool = True,
 ) -> None:
     """diagnosis.yaml, before.yaml, after.yaml, report.html and its figures.
 
@@ -90,12 +91,14 @@ def write_diagnosis(
     seed : int
     files : sequence of Path
         What was read, for their SHA-256; empty takes the session's file, robot and logs.
+    report : bool
+        Whether report.html and its figures are drawn.
     """
-    from ssmr_ident.report.diagnosis_page import write_report
-
     make_folder(out)
     write_parameters(out / "before.yaml", diagnosis.before)
     write_parameters(out / "after.yaml", diagnosis.after)
     write_text(out / "diagnosis.yaml", yaml_text(diagnosis.as_dict()))
-    # what was found stands before anything is drawn of it
-    write_report(diagnosis, out / "report.html", command, seed, files or files_read(campaign.session.folder))
+    if report:  # what was found stands before anything is drawn of it
+        from ssmr_ident.report.diagnosis_page import write_report
+
+        write_report(diagnosis, out / "report.html", command, seed, files or files_read(campaign.session.folder))

@@ -14,7 +14,7 @@ import numpy as np
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.experiments.campaign import Campaign
 from ssmr_ident.physics.rig import rig_from_parameters
-from ssmr_proof.engine.run import engine
+from ssmr_proof.mujoco_run import engine
 from ssmr_proof.peers.answer import PeerAnswer, drive_and_motion
 
 RANGE = 4.0

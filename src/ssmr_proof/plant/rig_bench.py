@@ -8,7 +8,7 @@ import numpy as np
 
 from ssmr_ident.core.errors import SimulationError
 from ssmr_ident.core.kernel import kernel
-from ssmr_proof.engine.run import engine
+from ssmr_proof.mujoco_run import engine
 from ssmr_proof.plant.spring_laws import HIDDEN, advance, beside, law_vector
 
 STEP = 1e-4  # s

@@ -8,7 +8,7 @@ import numpy as np
 
 from ssmr_ident.core.errors import SimulationError
 from ssmr_ident.physics.robot import GRAVITY, Robot
-from ssmr_proof.engine.run import engine
+from ssmr_proof.mujoco_run import engine
 from ssmr_proof.plant.grip import FRICTIONS, LOAD_EXPONENT, MU, MU_SHARE, NOMINAL_LOAD, SLIP_SPEED, cable, tires
 from ssmr_proof.plant.robot_model import Frame, Turned, robot_xml
 from ssmr_proof.plant.spring_laws import HIDDEN, law_vector

@@ -9,9 +9,9 @@ import numpy as np
 
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.physics.robot import GRAVITY, Robot
-from ssmr_proof.engine.bodies import POINT_INERTIA, steiner
-from ssmr_proof.engine.build import AXES
-from ssmr_proof.engine.mjcf_text import row, six, text
+from ssmr_ident.simulate.mjcf.bodies import POINT_INERTIA, steiner
+from ssmr_ident.simulate.mjcf.build import AXES
+from ssmr_ident.simulate.mjcf.text import row, six, text
 
 
 @dataclass(frozen=True)

@@ -6,8 +6,8 @@ import numpy as np
 
 from ssmr_ident.physics.robot import Robot
 from ssmr_ident.physics.statics import rest_pose, tilt
-from ssmr_proof.engine.build import WHEELS, Build
-from ssmr_proof.engine.mjcf_text import row, text
+from ssmr_ident.simulate.mjcf.build import WHEELS, Build
+from ssmr_ident.simulate.mjcf.text import row, text
 
 SOLVER = 'integrator="implicitfast" cone="elliptic" impratio="10" tolerance="1e-12"'
 # Time constant of a contact in steps (the engine takes 2 at least, and rattles there); an impedance of 0.9999 is its

@@ -9,7 +9,7 @@ import numpy as np
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.physics.robot import Robot
 from ssmr_ident.physics.statics import rest_pose, tilt
-from ssmr_proof.engine.build import AXES, Build, Mast
+from ssmr_ident.simulate.mjcf.build import AXES, Build, Mast
 
 PLATE_HALF_WIDTH, PLATE_HALF_HEIGHT = 0.02, 0.002  # m
 POINT_INERTIA = 1e-9  # kg m^2; the engine asks for some inertia where a body only slides

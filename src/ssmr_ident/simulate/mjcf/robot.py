@@ -9,11 +9,11 @@ the whole has exactly the robot's. docs/theory/mujoco.md says which model answer
 from __future__ import annotations
 
 from ssmr_ident.physics.robot import GRAVITY, Robot
-from ssmr_proof.engine.bodies import chassis
-from ssmr_proof.engine.build import Build, Cable, Mast
-from ssmr_proof.engine.contact import SOLVER, pairs, places, ties
-from ssmr_proof.engine.mjcf_text import row, six, text
-from ssmr_proof.engine.parts import anchor, hook, mast_text, motors, sensors, tendon, wheel_text, winch
+from ssmr_ident.simulate.mjcf.bodies import chassis
+from ssmr_ident.simulate.mjcf.build import Build, Cable, Mast
+from ssmr_ident.simulate.mjcf.contact import SOLVER, pairs, places, ties
+from ssmr_ident.simulate.mjcf.parts import anchor, hook, mast_text, motors, sensors, tendon, wheel_text, winch
+from ssmr_ident.simulate.mjcf.text import row, six, text
 
 
 def mjcf(robot: Robot, build: Build, mast: Mast | None = None, cable: Cable | None = None) -> str:

@@ -10,9 +10,9 @@ import numpy as np
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.shown import Shown
 from ssmr_ident.physics.robot import Robot
-from ssmr_proof.engine.bodies import start
-from ssmr_proof.engine.build import AXES, WHEELS, Build, Cable, Mast
-from ssmr_proof.engine.robot import mjcf
+from ssmr_ident.simulate.mjcf.bodies import start
+from ssmr_ident.simulate.mjcf.build import AXES, WHEELS, Build, Cable, Mast
+from ssmr_ident.simulate.mjcf.robot import mjcf
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,7 +8,7 @@ import numpy as np
 
 from ssmr_ident.physics.robot import Robot
 from ssmr_ident.physics.statics import rest_pose, tilt
-from ssmr_proof.engine.bodies import (
+from ssmr_ident.simulate.mjcf.bodies import (
     PLATE_HALF_HEIGHT,
     PLATE_HALF_WIDTH,
     POINT_INERTIA,
@@ -16,8 +16,8 @@ from ssmr_proof.engine.bodies import (
     rise,
     wheel_inertia,
 )
-from ssmr_proof.engine.build import AXES, WHEELS, Build, Cable, Mast
-from ssmr_proof.engine.mjcf_text import row, text
+from ssmr_ident.simulate.mjcf.build import AXES, WHEELS, Build, Cable, Mast
+from ssmr_ident.simulate.mjcf.text import row, text
 
 ROTOR = 1e4  # kg m^2; 100 N at the rim shift a wheel's rate by 2e-4 rad/s
 ANCHOR = 100.0  # m; so far away that a pull keeps its direction to 1e-5 whatever the robot does

@@ -1,0 +1,35 @@
+"""The process that sessions run in, one after the other: a line of JSON in is a session, a line out its row.
+
+It ends with who started it, whatever that died of: its standard input is at its end then.
+"""
+
+from __future__ import annotations
+
+import os
+import queue
+import sys
+import threading
+
+
+def main() -> None:
+    """Answer until the input ends."""
+    answers = os.fdopen(os.dup(1), "w", encoding="utf-8", buffering=1)
+    os.dup2(2, 1)  # whatever else is printed is no answer
+    lines: queue.SimpleQueue[str] = queue.SimpleQueue()
+    threading.Thread(target=_read, args=(lines,), daemon=True).start()
+    from ssmr_ident.core.documents import json_text
+    from ssmr_ident.workflows.batch.session_run import run_session
+    from ssmr_ident.workflows.batch.task import Task
+
+    while True:
+        print(json_text(run_session(Task.from_line(lines.get()))), file=answers, flush=True)
+
+
+def _read(lines: queue.SimpleQueue[str]) -> None:
+    for line in sys.stdin:
+        lines.put(line)
+    os._exit(0)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,1 +1,0 @@
-"""The robot as a MuJoCo model, and its run."""
