@@ -59,6 +59,7 @@ def test_of_a_long_recording_the_part_is_taken_in_which_most_is_unexplained() ->
     assert loudest(force[:500]) == slice(0, 500)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("effect", "true", "tolerance"),
     [

@@ -9,6 +9,7 @@ from small_rigs import RATE, Run, campaign, fitted, prepared
 from ssmr_ident.diagnose.residual_map import cells, residual_maps
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("count", [200, 700])
 def test_noise_exceeds_the_threshold_once_in_a_hundred_maps(count: int) -> None:
     rng = np.random.default_rng(11)

@@ -72,6 +72,7 @@ def test_no_word_of_a_session_tells_what_is_hidden(tmp_path: Path, tiny: Extent)
             assert not [name for name in NAMES if name in words], path
 
 
+@pytest.mark.slow
 def test_a_session_of_every_effect_can_be_read(tmp_path: Path, tiny: Extent) -> None:
     draws = [(f, draw) for table in (ONE, MIMIC, OUTSIDE) for f in table for draw in table[f]]
     draws += [(family, draw) for family in TWO for pair in TWO[family] for draw in pair]

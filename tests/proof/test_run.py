@@ -19,6 +19,8 @@ from ssmr_proof.run import STAGES, Proof, prove
 from ssmr_proof.scores.against import against
 from ssmr_proof.scores.score import MEANING
 
+pytestmark = pytest.mark.slow
+
 CASES = 6
 
 

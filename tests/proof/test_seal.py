@@ -48,6 +48,7 @@ def test_seals_are_read_as_written(tmp_path: Path) -> None:
         read_seals(tmp_path / "gone.csv")
 
 
+@pytest.mark.slow
 def test_a_diagnosis_that_looks_everywhere_finds_no_truth(tmp_path: Path, tiny: Extent) -> None:
     here, report = tmp_path / "place" / "proof", tmp_path / "found.txt"
     spy = str(Path(__file__).with_name("spying_diagnosis.py"))

@@ -112,6 +112,7 @@ def robot_session(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.mark.slow
 def test_robot_parameters_come_back(robot_session: Path) -> None:
     fit = fit_session(robot_session)
     for path, truth in TRUTH.items():
@@ -137,6 +138,7 @@ def test_robot_parameters_come_back(robot_session: Path) -> None:
     assert not fit.conflicts
 
 
+@pytest.mark.slow
 def test_rope_is_told_from_the_tires(tmp_path: Path) -> None:
     """A rope of 6 kN/m in series (3.9): with a steel-cable pull beside it, both stiffnesses come out."""
     robot = known_robot(tmp_path)
@@ -158,6 +160,7 @@ def test_rope_is_told_from_the_tires(tmp_path: Path) -> None:
     assert abs(float(estimate.value) - 19200.0) < 3 * estimate.std
 
 
+@pytest.mark.slow
 def test_command_writes_the_same_file_twice(robot_session: Path, tmp_path: Path) -> None:
     runner = CliRunner()
     for name in ("one.yaml", "two.yaml"):

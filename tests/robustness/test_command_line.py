@@ -65,6 +65,7 @@ def test_one_clear_line_and_status_2(folder: Path, change: tuple | None, call: t
     assert sorted(path.name for path in folder.iterdir()) == before
 
 
+@pytest.mark.slow
 def test_a_missing_parameter_and_a_wrong_unit_are_named(folder: Path) -> None:
     (folder / "robot.yaml").write_text("schema: ssmr-ident/parameters/1\nmass_kg: {value: 30, unit: kg}\n")
     _replace(folder / "session.yaml", "p3at-extended", "robot.yaml")
@@ -94,6 +95,7 @@ def test_a_simulated_log_reads_back_like_a_real_one(tmp_path: Path) -> None:
     assert '"lvm"' in seen.stdout
 
 
+@pytest.mark.slow
 def test_an_effect_is_simulated_by_name(tmp_path: Path) -> None:
     logs = {}
     for name, extra in {

@@ -119,6 +119,7 @@ def test_colour_for_people_who_want_it() -> None:
     assert "\x1b" not in _ident("--help").stdout
 
 
+@pytest.mark.slow
 def test_progress_on_a_terminal_and_silence_in_a_pipe(root: Path, tmp_path: Path) -> None:
     session = root / "data" / "raw" / "pulls" / "carpet.yaml"
     call = ("fit", str(session), "-o", str(tmp_path / "p.yaml"))

@@ -6,6 +6,7 @@ import hashlib
 import re
 from collections.abc import Callable
 from dataclasses import replace
+from functools import cache
 from html.parser import HTMLParser
 from pathlib import Path
 
@@ -19,7 +20,7 @@ from ssmr_ident.diagnose.evidence import Evidence, ForceSurface, SpeedMap
 from ssmr_ident.report.curves import busiest_part, thinned
 from ssmr_ident.report.diagnosis_page import diagnosis_page, render_report, write_report
 from ssmr_ident.report.diagnosis_pictures import scalar
-from ssmr_ident.report.html import Number, Table
+from ssmr_ident.report.html import Number, Page, Table
 from ssmr_ident.report.svg import inline
 
 
@@ -38,15 +39,26 @@ class _Elements(HTMLParser):
         self.text += data
 
 
-def parsed(diagnosis: Diagnosis) -> _Elements:
+@cache
+def rendered(made: Callable[[], Diagnosis]) -> str:
+    """Drawn once for every test that looks at it."""
+    return render_report(made(), "ident diagnose my-session -o out --seed 3", 3)
+
+
+@cache
+def page_of(made: Callable[[], Diagnosis]) -> Page:
+    return diagnosis_page(made(), "")
+
+
+def parsed(made: Callable[[], Diagnosis]) -> _Elements:
     page = _Elements()
-    page.feed(render_report(diagnosis, "ident diagnose my-session -o out --seed 3", 3))
+    page.feed(rendered(made))
     return page
 
 
 @pytest.mark.parametrize("made", EVERY)
 def test_figures_have_words_and_ids_are_unique(made: Callable[[], Diagnosis]) -> None:
-    tags = parsed(made()).tags
+    tags = parsed(made).tags
     figures = [attributes for tag, attributes in tags if tag == "svg"]
     assert figures
     assert all(f["role"] == "img" and len(f["aria-label"] or "") > 20 for f in figures)
@@ -61,11 +73,11 @@ def test_figures_have_words_and_ids_are_unique(made: Callable[[], Diagnosis]) ->
 
 @pytest.mark.parametrize("made", EVERY)
 def test_page_loads_nothing(made: Callable[[], Diagnosis]) -> None:
-    for tag, attributes in parsed(made()).tags:
+    for tag, attributes in parsed(made).tags:
         assert tag not in ("iframe", "object", "embed")
         for key in ("src", "href", "xlink:href", "action", "srcset"):
             assert (attributes.get(key) or "#").startswith(("#", "data:")), (tag, attributes)
-    assert not re.search(r"@import|url\((?!#)", render_report(made(), "", 0))
+    assert not re.search(r"@import|url\((?!#)", rendered(made))
 
 
 @pytest.mark.parametrize(
@@ -78,14 +90,13 @@ def test_page_loads_nothing(made: Callable[[], Diagnosis]) -> None:
     ],
 )
 def test_verdict_says_what_was_found(made: Callable[[], Diagnosis], label: str, tone: str) -> None:
-    diagnosis = made()
-    verdict = diagnosis_page(diagnosis, "").verdict
+    verdict = page_of(made).verdict
     assert verdict is not None
-    assert (verdict.label, verdict.tone, verdict.sentence) == (label, tone, diagnosis.summary)
+    assert (verdict.label, verdict.tone, verdict.sentence) == (label, tone, made().summary)
 
 
 def test_verdict_holds_before_after_noise_and_interval() -> None:
-    verdict = diagnosis_page(hardening(), "").verdict
+    verdict = page_of(hardening).verdict
     assert verdict is not None
     assert [fact.value for fact in verdict.facts[:3]] == ["22.0 %", "3.4 %", "2.9 %"]
     assert "17.1 … 20.2 %" in verdict.facts[1].note
@@ -94,7 +105,7 @@ def test_verdict_holds_before_after_noise_and_interval() -> None:
 
 
 def test_nothing_missing_shows_one_model_and_claims_no_gain() -> None:
-    text = parsed(nothing()).text
+    text = parsed(nothing).text
     assert "2.95 %" in text
     assert "2.91 %" in text
     for word in ("physics added", "improve", "model before", "Missing"):
@@ -102,7 +113,7 @@ def test_nothing_missing_shows_one_model_and_claims_no_gain() -> None:
 
 
 def test_tie_names_all_and_puts_the_next_experiment_first() -> None:
-    verdict = diagnosis_page(undetermined(), "").verdict
+    verdict = page_of(undetermined).verdict
     assert verdict is not None
     assert verdict.advice.startswith("Sweep the force")
     assert "quadratic damping, dry friction, hysteresis" in verdict.facts[-1].note
@@ -110,14 +121,14 @@ def test_tie_names_all_and_puts_the_next_experiment_first() -> None:
 
 
 def test_parameters_carry_interval_and_unit() -> None:
-    table = diagnosis_page(hardening(), "").sections[0].tables[0]
+    table = page_of(hardening).sections[0].tables[0]
     assert [getattr(cell, "text", cell) for cell in table.rows[0]] == [
         "nonlinear stiffness", "k3_N_m3", "(3.10 ± 0.21)·10⁸", "(2.69 … 3.52)·10⁸", "N/m³",
     ]  # fmt: skip
 
 
 def test_absorption_account_shows_where_a_parameter_came_back_to() -> None:
-    sections = {section.title: section for section in diagnosis_page(hardening(), "").sections}
+    sections = {section.title: section for section in page_of(hardening).sections}
     row = [getattr(cell, "text", cell) for cell in sections["What it had been hidden in"].tables[0].rows[0]]
     assert row == ["inertia_kg_m2.xx", "1.210 ± 0.050", "1.940 ± 0.020", "1.220 ± 0.020", "kg m²", "+14.6"]
 
@@ -154,7 +165,8 @@ def test_the_end_tells_command_version_seed_and_hashes(tmp_path: Path) -> None:
 
 
 def test_same_diagnosis_same_page() -> None:
-    assert render_report(undetermined(), "c", 1) == render_report(undetermined(), "c", 1)
+    again = render_report(undetermined(), "ident diagnose my-session -o out --seed 3", 3)
+    assert again == rendered(undetermined)
 
 
 def test_few_speeds_are_drawn_as_lines_and_many_as_maps() -> None:

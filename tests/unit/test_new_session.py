@@ -229,6 +229,7 @@ def test_a_folder_without_logs_is_refused(tmp_path: Path) -> None:
         draft_session(tmp_path / "nowhere")
 
 
+@pytest.mark.slow
 @pytest.mark.shared
 def test_practice_sessions_are_guessed_as_their_makers_wrote_them(shared: Path, tmp_path: Path) -> None:
     """What the samples and names can tell is told as in the makers' session.yaml, in every practice session."""

@@ -17,6 +17,7 @@ def logs(folder: Path) -> list[Path]:
     return sorted(path for path in folder.rglob("*") if path.suffix in LOGS)
 
 
+@pytest.mark.slow
 def test_every_recording_is_read(shared: Path) -> None:
     files = [path for path in logs(shared / "recordings") if path.parent.name != "original"]
     assert len(files) > 50
@@ -41,6 +42,7 @@ def test_originals_ask_for_what_they_do_not_say(shared: Path) -> None:
         assert recording.series("force").rate == pytest.approx(84, abs=3)
 
 
+@pytest.mark.slow
 def test_every_practice_log_is_read(shared: Path) -> None:
     files = logs(shared / "practice")
     assert len(files) > 150

@@ -143,6 +143,7 @@ def test_exported_file_explains_its_keys(tmp_path: Path) -> None:
     assert "# per wheel, lateral" in text
 
 
+@pytest.mark.slow
 def test_every_shared_session_reads(shared: Path) -> None:
     folders = sorted({path.parent for path in shared.glob("*/**/session.yaml")})
     assert len(folders) > 40
