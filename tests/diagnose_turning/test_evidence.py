@@ -20,6 +20,7 @@ from ssmr_ident.diagnose.turning.verdict import Decision, Finding, Findings, dec
 from ssmr_ident.signals.metrics import log_psd_db
 
 
+@pytest.mark.slow
 def test_white_noise_scatters_as_its_degrees_of_freedom_say():
     random = np.random.default_rng(3)
     logs = []

@@ -75,6 +75,7 @@ def test_drops_without_a_rise_as_steep_as_the_first_are_no_teeth(stiffness: floa
     assert not pull.teeth
 
 
+@pytest.mark.slow
 def test_slope_intervals_cover() -> None:
     rng = np.random.default_rng(1)
     misses = []

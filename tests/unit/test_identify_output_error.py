@@ -115,6 +115,7 @@ def test_parameters_come_back_and_only_the_common_factor_is_flat(builder: RobotB
     assert len(flat_directions([u.name for u in unknowns], information)) == 1
 
 
+@pytest.mark.slow
 def test_stds_are_those_of_many_noises(builder: RobotBuilder) -> None:
     known = robot_unknowns(read_parameters("p3at-extended"))
     unknowns = [replace(u, prior_std=None) for u in known if u.name.startswith("tire.damping")]

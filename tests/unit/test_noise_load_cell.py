@@ -40,6 +40,7 @@ def truly(share: float, corner_hz: float) -> np.ndarray:
     return np.array([averages(samples, length).std() for length in LENGTHS])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("share", "corner_hz"), [(0.0, 1.0), (0.3, 1.0), (0.5, 3.0), (0.3, 8.0)])
 def test_noise_of_any_colour_is_as_large_as_it_is(share: float, corner_hz: float) -> None:
     random = np.random.default_rng(1)
@@ -54,6 +55,7 @@ def test_second_differences_of_blocks_alone_miss_most_of_slow_noise() -> None:
     assert np.all(seen / truly(0.4, 1.0) < 0.75)
 
 
+@pytest.mark.slow
 def test_logarithm_of_a_variance_from_a_median_scatters_as_stated() -> None:
     random = np.random.default_rng(3)
     for count in (36, 150):

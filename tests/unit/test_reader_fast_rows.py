@@ -75,6 +75,7 @@ def test_endings_blanks_and_empty_cells() -> None:
     np.testing.assert_array_equal(rows, [[1.5, 2.5]])
 
 
+@pytest.mark.slow
 def test_long_and_short_ways_agree(tmp_path: Path) -> None:
     """A log long enough for the loop and for two threads, with disturbances that go through Python."""
     rng = np.random.default_rng(7)

@@ -61,6 +61,7 @@ def test_a_rough_cost_widens_the_scatter_by_the_depth_of_its_hollows(wave: float
     assert widened == pytest.approx(1.0 + depth, rel=0.25)
 
 
+@pytest.mark.slow
 def test_estimates_from_pulls_lie_within_what_is_said_of_them() -> None:
     drawn = draw("pulls", "none", 5512)
     setup, known = with_law_of_sliding(drawn.campaign, drawn.campaign.parameters, None)

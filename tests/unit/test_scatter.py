@@ -62,6 +62,7 @@ def test_fine_differences_are_the_exact_slopes_of_a_decay() -> None:
     assert unknown.value(float(fit.point[column])) == pytest.approx(values["stiffness_N_m"])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("phi", "frequency"), [(0.0, 0.8), (0.9, 0.8), (0.9, 20.0)])
 def test_estimates_scatter_by_what_is_said_in_noise_of_any_colour(phi: float, frequency: float) -> None:
     """A wave in noise that is loudest where it is slow: 200 recordings against the stated deviation."""
@@ -82,6 +83,7 @@ def test_estimates_scatter_by_what_is_said_in_noise_of_any_colour(phi: float, fr
         assert np.mean(curvature) > 2.0 * np.std(found)  # one number of independent samples for all frequencies
 
 
+@pytest.mark.slow
 def test_what_priors_of_nuisances_leave_open_is_part_of_it() -> None:
     """A wave, and a gain of each recording that is known beforehand and does the same: the mean of four is known to
     half of what one gain is open by, however quiet the noise."""
