@@ -28,7 +28,7 @@ docs: $(VENV)/.docs
 	@echo "open site/index.html"
 
 bench: $(VENV)/.test
-	for f in benchmarks/bench_*.py; do $(BIN)/python $$f; done
+	for f in $(filter-out %/bench_doctor.py,$(wildcard benchmarks/bench_*.py)); do $(BIN)/python $$f; done
 
 # N: sessions of each kind; FAMILIES: some of them; START: others than the frozen ones; ENGINE: another one
 bench-doctor: $(VENV)/.test
