@@ -61,6 +61,7 @@ def test_a_misspelt_name_is_answered_in_one_line_with_the_nearest(
     assert "Did you mean 'dry_friction'?" in complaint
 
 
+@pytest.mark.slow
 def test_a_figure_is_written_where_asked_and_nowhere_else(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     assert "-o free_play.png" in _out("free_play")

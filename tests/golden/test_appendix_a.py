@@ -96,6 +96,7 @@ def test_low_pass_equals_the_recursion(cutoff: float) -> None:
     np.testing.assert_allclose(filters.low_pass(samples, RATE, cutoff), expected, rtol=0, atol=1e-11)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [2, 3, 4])
 def test_spectrum_and_peaks_of_a_swivel_equal_the_transcription(seed: int) -> None:
     samples = swivel_like(20000, seed)

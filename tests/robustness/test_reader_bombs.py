@@ -47,6 +47,7 @@ def refused(path: Path, words: str, seconds: float = 2.0) -> None:
 SHEET = "xl/worksheets/sheet1.xml"
 
 
+@pytest.mark.slow
 def test_zip_bomb(workbook: Path) -> None:
     size = zip_safety.MAX_UNPACKED + 1
     refused(repack(workbook, "xl/media/zeros.xml", lambda _: bytes(size)), "unpacks to more than", seconds=5)
@@ -119,6 +120,7 @@ def test_both_ways_find_the_same_corner() -> None:
         assert corner_of(data) == corner_of(data.replace(b"<c r", b"<c  r")) == (rows, columns)
 
 
+@pytest.mark.slow
 def test_a_million_blank_formatted_rows(workbook: Path) -> None:
     """A column formatted to the end of the sheet is clumsy, not wrong: it is read, up to the last number."""
     blank = b"".join(b'<row r="%d"><c r="A%d" s="0"/></row>' % (r, r) for r in range(41, 300_000))

@@ -20,6 +20,7 @@ def _two(made: Event, answer: str, rates: tuple[float, float], starts: tuple[flo
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("answer", "hertz", "rates", "starts"),
     [

@@ -164,11 +164,13 @@ def test_the_end_tells_command_version_seed_and_hashes(tmp_path: Path) -> None:
     assert len(figures) == text.count("<svg ")
 
 
+@pytest.mark.slow
 def test_same_diagnosis_same_page() -> None:
     again = render_report(undetermined(), "ident diagnose my-session -o out --seed 3", 3)
     assert again == rendered(undetermined)
 
 
+@pytest.mark.slow
 def test_few_speeds_are_drawn_as_lines_and_many_as_maps() -> None:
     def names(speeds: SpeedMap) -> list[str]:
         evidence = replace(swivel().evidence, speeds=(speeds,))
@@ -187,6 +189,7 @@ def test_few_speeds_are_drawn_as_lines_and_many_as_maps() -> None:
     assert names(few) == ["waterfall-1"]
 
 
+@pytest.mark.slow
 def test_poor_evidence_is_drawn_as_it_is() -> None:
     """One point, one column, no number: what a short or failed fit leaves."""
     full, few = hardening(), np.array([0.001, 0.002])
@@ -220,6 +223,7 @@ def test_text_from_outside_is_escaped() -> None:
     assert "<img" not in page
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("made", EVERY)
 def test_a_diagnosis_without_figures_still_makes_a_page(made: Callable[[], Diagnosis]) -> None:
     bare = replace(made().without_evidence(), tried=(), conflicts=(), located=(), notes=(), next_experiment="")

@@ -93,6 +93,7 @@ def test_gradient_and_elimination(builder: RobotBuilder) -> None:
     assert alone.cost == pytest.approx(float(rest @ rest), rel=1e-8)
 
 
+@pytest.mark.slow
 def test_parameters_come_back_and_only_the_common_factor_is_flat(builder: RobotBuilder) -> None:
     """M, C and K times one number give the same motion: the Fisher information has exactly that null space."""
     decays = [made(builder, motion, seed) for motion in START for seed in (1, 2)]

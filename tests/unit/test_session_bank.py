@@ -58,6 +58,7 @@ def test_stranger_laws_do_what_they_say(force: np.ndarray) -> None:
     assert np.abs(play - rounded).max() / play.std() < 0.01
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("motion", ["roll", "pitch", "yaw"])
 def test_robot_plant_agrees_with_the_simulator(motion: str) -> None:
     robot, _, _ = draw_robot(np.random.default_rng(1))

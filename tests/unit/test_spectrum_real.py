@@ -27,6 +27,7 @@ def test_a_coarse_range_cannot_split_the_modes(shared: Path) -> None:
     assert len(near) == 1
 
 
+@pytest.mark.slow
 def test_practice_swivels_agree_across_formats(shared: Path) -> None:
     for practice, reader in (("practice-20", "xlsx"), ("practice-21", "lvm")):
         report = spectrum([shared / "practice" / practice / "session"])
@@ -37,6 +38,7 @@ def test_practice_swivels_agree_across_formats(shared: Path) -> None:
         np.testing.assert_allclose(vertical, 9.8, atol=3 * 0.13)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("folder", ["borealtc_flooring", "borealtc_ice"])
 def test_husky_logs_of_100_hz(shared: Path, folder: str) -> None:
     report = spectrum([shared / "recordings" / folder])

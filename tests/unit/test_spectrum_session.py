@@ -89,6 +89,7 @@ def test_repeats_are_averaged_over_both_senses_of_turning(session: Path) -> None
     assert row["amplitude_std"] == pytest.approx(0.1 * 0.4, rel=0.1)
 
 
+@pytest.mark.slow
 def test_figures_are_drawn_and_the_same_twice(session: Path, tmp_path: Path) -> None:
     report = spectrum([session])
     few = [row for row in report.rows if row.label.file.endswith("0.csv")][:3]
