@@ -34,11 +34,11 @@ IDS = (
     "viscoelastic_relaxation", "flexible_mast", "free_play", "com_offset", "wheel_lift", "motor_belt",
     "cable_compliance", "stribeck", "load_sensitive_friction", "slip_coupling", "rolling_resistance",
     "ground_roughness", "ground_joints", "wheel_eccentricity", "coriolis", "sensor_saturation",
-    "sensor_bandwidth", "sensor_misalignment", "load_cell_drift", "unlisted",
+    "sensor_bandwidth", "sensor_delay", "sensor_misalignment", "load_cell_drift", "unlisted",
 )  # fmt: skip
 UNITS = {
     "1", "1/m^2", "N", "N/m", "N/m^2", "N/m^3", "N s/m", "N s/m^2", "N s/m^3", "N s^2/m^2", "N s^3/m^3", "N/s", "1/s",
-    "m", "N s^0.5/m^0.5", "m/s", "m/s^2", "s", "kg", "Hz", "rad", "N/(m s)",
+    "m", "N s^0.5/m^0.5", "m/s", "m/s^2", "s", "kg", "Hz", "rad", "rad/s", "N/(m s)",
 }  # fmt: skip
 NO_SLOT = {
     "ground_roughness.length_m": "shapes the random floor before the run",

@@ -371,6 +371,25 @@ def test_the_sensor_is_three_decibels_down_and_a_quarter_turn_late_at_its_bandwi
     assert np.angle(ratio) == pytest.approx(-math.pi / 2, abs=5e-3)
 
 
+@law("sensor_delay")
+def test_a_late_channel_is_the_same_one_some_samples_on() -> None:
+    drive = np.sin(2 * np.pi * 3.0 * np.arange(800) / 1000.0)
+    rig = Rig(1.0, 5.0, 100.0)
+    plain, late = (simulate_rig(rig, drive, 1000.0, effects=e) for e in ({}, {"sensor_delay": {"delay_s": 0.005}}))
+    assert late[5:] == pytest.approx(plain[:-5], abs=1e-9)
+
+
+@law("sensor_saturation")
+def test_every_channel_of_a_rig_clips_at_its_own_range() -> None:
+    drive = np.sin(2 * np.pi * 3.0 * np.arange(800) / 1000.0)
+    rig = Rig(1.0, 5.0, 100.0)
+    plain = simulate_rig(rig, drive, 1000.0)
+    limit = 0.5 * float(np.abs(plain[:, 0]).max())
+    cut = simulate_rig(rig, drive, 1000.0, effects={"sensor_saturation": {"range_m": limit}})
+    assert np.array_equal(cut[:, 0], np.clip(plain[:, 0], -limit, limit))
+    assert np.array_equal(cut[:, 1:], plain[:, 1:])
+
+
 @law("sensor_saturation")
 def test_saturation_cuts_and_leaves_the_rest_alone(robot: Robot) -> None:
     plain, cut = (

@@ -107,6 +107,7 @@ CASES = {
     ),
     "free_play": Case(_rig, ACCELERATION_NOISE, ("gap_m",), {}),
     "sensor_bandwidth": Case(_rig, ACCELERATION_NOISE, ("bandwidth_hz",), {}),
+    "sensor_delay": Case(_rig, ACCELERATION_NOISE, ("delay_s",), {}),
     "sensor_saturation": Case(_rig, ACCELERATION_NOISE, ("range_m_s2",), {"range_m_s2": 4.0}),
     "flexible_mast": Case(_accelerations(_release, **HELD), ACCELERATION_NOISE, ("f_mast_Hz",), {}),
     "com_offset": Case(_accelerations(_release, **HELD), ACCELERATION_NOISE, ("offset_x_m", "offset_y_m"), {}),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import textwrap
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -72,6 +73,10 @@ class NamedEffect:
         Ids that fit this data as well.
     form : str
         Which formula of this physics fits best, where more than one was tried.
+    kind, element : str
+        Of the seven kinds, and where it acts; empty where that was not asked.
+    curve : mapping or None
+        ``variable``, ``points``, ``force``, ``std`` of a force whose shape is drawn.
     """
 
     id: str
@@ -81,6 +86,9 @@ class NamedEffect:
     confidence: float
     indistinguishable_from: tuple[str, ...] = ()
     form: str = ""
+    kind: str = ""
+    element: str = ""
+    curve: Mapping[str, Any] | None = None
 
 
 @dataclass(frozen=True)
@@ -167,7 +175,7 @@ class Diagnosis(Shown):
                 for c in self.conflicts
             ],
             "effects": [
-                {"id": e.id, "sentence": e.sentence, "equation": e.equation, "form": e.form,
+                {"id": e.id, **_placed(e), "sentence": e.sentence, "equation": e.equation, "form": e.form,
                  "parameters": {name: _plain(estimate) for name, estimate in e.parameters.items()},
                  "confidence": float(e.confidence), "indistinguishable_from": list(e.indistinguishable_from)}
                 for e in self.effects
@@ -192,6 +200,8 @@ class Diagnosis(Shown):
             lines.append(f"  {effect.id}  (confidence {effect.confidence:.2f}{tie})  {effect.equation}")
             lines += [f"      {name} = {estimate}" for name, estimate in effect.parameters.items()]
         for name, worth in (("fitted", self.training), ("held out", self.heldout)):
+            if math.isnan(worth.before):
+                continue  # nothing could be kept back, which a note says
             lines.append(
                 f"  {name:<9} before {worth.before:.3g} {unit}, after {worth.after:.3g} {unit}, "
                 f"noise floor {worth.noise_floor:.3g} {unit}"
@@ -211,7 +221,14 @@ def _folded(line: str) -> list[str]:
     return textwrap.wrap(line, WIDTH, subsequent_indent=" " * (indent + 4), break_long_words=False) or [line]
 
 
+def _placed(effect: NamedEffect) -> dict[str, Any]:
+    found = {"kind": effect.kind, "element": effect.element, "curve": effect.curve}
+    return {name: value for name, value in found.items() if value}
+
+
 def _worth(worth: PredictionQuality) -> dict[str, Any]:
+    if math.isnan(worth.before):
+        return {"before": None, "after": None, "noise_floor": None}
     plain: dict[str, Any] = {"before": worth.before, "after": worth.after, "noise_floor": worth.noise_floor}
     if worth.recordings:
         plain["recordings"] = list(worth.recordings)

@@ -27,6 +27,7 @@ LAWS = {
     "rolling_resistance": "F_x = -c_rr N sign(v_x)",
     "sensor_saturation": "y = max(-range, min(range, a))",
     "sensor_bandwidth": "H(s) = 1/(1 + sqrt(2) s/w + (s/w)^2), w = 2 pi bandwidth",
+    "sensor_delay": "y(t) = x(t - delay)",
     "sensor_misalignment": "a_log = (R_z R_y R_x)^T a",
     "load_cell_drift": "F_log = F (1 + g t) + z t",
 }

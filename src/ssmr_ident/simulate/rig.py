@@ -89,9 +89,9 @@ def simulate_rig(
             f"the rig left the finite numbers at t = {row / sample_rate:.4g} s with effects {active or 'none'}; "
             f"mass {rig.mass:g}, damping {rig.damping:g}, stiffness {rig.stiffness:g}"
         )
-    channels = sensed(np.arange(n) / sample_rate, {"acceleration": out[:, 2]}, active)
-    out[:, 2] = channels["acceleration"]
-    return out
+    names = ("angle", "angular_rate") if rig.rotary else ("position", "velocity")
+    logged = dict(zip((*names, "acceleration"), out.T, strict=True))
+    return np.column_stack(list(sensed(np.arange(n) / sample_rate, logged, active).values()))
 
 
 def band_limited(signal: np.ndarray, factor: int) -> np.ndarray:

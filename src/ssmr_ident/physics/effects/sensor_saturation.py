@@ -11,19 +11,21 @@ from ssmr_ident.core.parameter import Parameter
 from ssmr_ident.physics.effect import Effect, Site, Sized
 
 ACCELERATIONS = ("ax", "ay", "az", "acceleration", "acceleration_2")
+RANGES = {
+    "range_m_s2": ACCELERATIONS,
+    "range_N": ("force",),
+    "range_m": ("position",),
+    "range_m_s": ("velocity",),
+    "range_rad": ("angle",),
+    "range_rad_s": ("angular_rate", "wx", "wy", "wz"),
+}
+"""Channels by the range that they have."""
 
 
-def change(
-    time: np.ndarray, channels: Mapping[str, np.ndarray], range_m_s2: float, range_N: float
-) -> dict[str, np.ndarray]:
-    """Clip accelerations [m/s^2] and the load cell [N] at their ranges; channels : (n,) float."""
-    clipped = dict(channels)
-    for name in ACCELERATIONS:
-        if name in channels:
-            clipped[name] = np.clip(channels[name], -range_m_s2, range_m_s2)
-    if "force" in channels:
-        clipped["force"] = np.clip(channels["force"], -range_N, range_N)
-    return clipped
+def change(time: np.ndarray, channels: Mapping[str, np.ndarray], **ranges: float) -> dict[str, np.ndarray]:
+    """Clip each channel at the range of its quantity; channels : (n,) float [SI]."""
+    limits = {name: limit for key, limit in ranges.items() for name in RANGES[key]}
+    return {name: np.clip(s, -limits[name], limits[name]) if name in limits else s for name, s in channels.items()}
 
 
 EFFECT = Effect(
@@ -35,6 +37,10 @@ EFFECT = Effect(
     parameters=(
         Parameter("range_m_s2", "m/s^2", 12.0, 1e-4, math.inf, "of the accelerometers", off=math.inf),
         Parameter("range_N", "N", 150.0, 1e-4, math.inf, "of the load cell", off=math.inf),
+        Parameter("range_m", "m", 0.01, 1e-12, math.inf, "of a position sensor", off=math.inf),
+        Parameter("range_m_s", "m/s", 1.0, 1e-12, math.inf, "of a velocity sensor", off=math.inf),
+        Parameter("range_rad", "rad", 1.0, 1e-12, math.inf, "of an angle sensor", off=math.inf),
+        Parameter("range_rad_s", "rad/s", 10.0, 1e-12, math.inf, "of a rate sensor", off=math.inf),
     ),
     experiments=("free_response", "pull", "wheel_drag", "vertical_compression", "swivel", "straight", "forced"),
     acts={Site.OUTPUT: change},

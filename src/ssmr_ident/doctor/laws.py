@@ -1,0 +1,221 @@
+"""Named laws: the formulas of the catalogue's effects, begun by least squares along a path."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ssmr_ident.estimate.along_kernel import force_along
+from ssmr_ident.estimate.fit import Fit, Problem, Start
+from ssmr_ident.estimate.generic import MEMORY, STATIC
+from ssmr_ident.estimate.node import Coordinate, Member, Node
+from ssmr_ident.physics.effects import CATALOGUE
+from ssmr_ident.physics.effects.unlisted import TERMS
+from ssmr_ident.physics.slots import effect_vector
+
+Array = np.ndarray
+Shape = Mapping[str, float]
+
+
+@dataclass(frozen=True)
+class Form:
+    """A formula of an effect, by its amplitude and the shapes that are tried along a path.
+
+    Parameters
+    ----------
+    effect, kind, name : str
+    shapes : callable
+        ``shapes(x, v, f)``: those that are tried, from the largest deflection, speed and force.
+    unit : callable
+        ``unit(shape, k, x, v, f)``: the effect's parameters at an amplitude of about one ``f``.
+    settle : callable
+        ``settle(coefficient, unit, k)``: the same at the amplitude that least squares found.
+    moved : mapping of str to bool
+        Parameters that are fitted; True for a logarithm.
+    """
+
+    effect: str
+    kind: str
+    name: str
+    shapes: Callable[[float, float, float], Sequence[Shape]]
+    unit: Callable[[Shape, float, float, float, float], Shape]
+    settle: Callable[[float, Shape, float], Shape]
+    moved: Mapping[str, bool]
+
+
+def _scaled(*names: str) -> Callable[[float, Shape, float], Shape]:
+    return lambda c, unit, k: {**unit, **{name: c * unit[name] for name in names}}
+
+
+def _none(x: float, v: float, f: float) -> Sequence[Shape]:
+    return ({},)
+
+
+def _loop(c: float, unit: Shape, k: float) -> Shape:
+    return {**unit, "alpha": float(np.clip(1.0 - c * (1.0 - unit["alpha"]), 0.02, 0.98))}
+
+
+def _term(term: str, size: Callable[[float, float, float], float]) -> Form:
+    def unit(s: Shape, k: float, x: float, v: float, f: float) -> Shape:
+        return {term: size(x, v, f)}
+
+    return Form("unlisted", STATIC, TERMS[term], _none, unit, _scaled(term), {term: False})
+
+
+def _grid(name: str, *shares: float) -> Callable[[float, float, float], Sequence[Shape]]:
+    """Shapes by shares of the largest deflection, or of the speed where the parameter is one."""
+    return lambda x, v, f: [{name: q * (v if name.endswith("m_s") else x)} for q in shares]
+
+
+def _travel(x: float, v: float, f: float) -> Sequence[Shape]:
+    return [{"element_stiffness_N_m": f / (q * x)} for q in (0.01, 0.04, 0.15)]
+
+
+FORMS = (
+    Form("nonlinear_stiffness", STATIC, "cubic", _none,
+         lambda s, k, x, v, f: {"k3_N_m3": f / x**3}, _scaled("k3_N_m3"), {"k3_N_m3": False}),
+    Form("nonlinear_stiffness", STATIC, "two slopes", _grid("knee_m", 0.2, 0.4, 0.6, 0.8, 0.9),
+         lambda s, k, x, v, f: {"knee_share": 1.0, **s}, _scaled("knee_share"), {"knee_share": False, "knee_m": True}),
+    Form("nonlinear_stiffness", STATIC, "cubic and two slopes",
+         _grid("knee_m", 0.3, 0.6, 0.85),
+         lambda s, k, x, v, f: {"knee_share": 1.0, "k3_N_m3": 0.3 * k / x**2, **s}, _scaled("knee_share", "k3_N_m3"),
+         {"knee_share": False, "knee_m": True, "k3_N_m3": False}),
+    Form("free_play", STATIC, "", _grid("gap_m", 0.05, 0.15, 0.3, 0.5, 0.8, 1.2),
+         lambda s, k, x, v, f: {"rounding": 0.1, **s}, lambda c, unit, k: unit, {"gap_m": True, "rounding": True}),
+    Form("quadratic_damping", STATIC, "", _none, lambda s, k, x, v, f: {"d2_N_s2_m2": f / v**2}, _scaled("d2_N_s2_m2"),
+         {"d2_N_s2_m2": False}),
+    Form("dry_friction", STATIC, "tanh", _grid("rounding_m_s", 0.01, 0.03, 0.1, 0.3),
+         lambda s, k, x, v, f: {"F_c_N": f, **s}, _scaled("F_c_N"), {"F_c_N": False, "rounding_m_s": True}),
+    Form("dry_friction", MEMORY, "Dahl", _travel,
+         lambda s, k, x, v, f: {"F_c_N": f, "slider": 0.0, **s}, _scaled("F_c_N", "element_stiffness_N_m"),
+         {"F_c_N": False, "element_stiffness_N_m": True}),
+    Form("dry_friction", MEMORY, "slider", _travel,
+         lambda s, k, x, v, f: {"F_c_N": f, "slider": 1.0, **s}, _scaled("F_c_N", "element_stiffness_N_m"),
+         {"F_c_N": False, "element_stiffness_N_m": True}),
+    Form("hysteresis", MEMORY, "Bouc-Wen, n = 2", _grid("yield_m", 0.05, 0.15, 0.35, 0.7, 1.2),
+         lambda s, k, x, v, f: {"alpha": 0.5, **s}, _loop, {"alpha": False, "yield_m": True}),
+    Form("hysteresis", MEMORY, "Bouc-Wen, n = 1", _grid("yield_m", 0.05, 0.15, 0.35, 0.7, 1.2),
+         lambda s, k, x, v, f: {"alpha": 0.5, "exponent": 1.0, "shape": 0.0, **s}, _loop,
+         {"alpha": False, "yield_m": True, "shape": False}),
+    _term("c_abs_v_N_s_m", lambda x, v, f: f / v),
+    Form("unlisted", STATIC, "|s - place|", _grid("place_m", -0.4, 0.0, 0.4),
+         lambda s, k, x, v, f: {"c_abs_s_N_m": f / x, **s}, _scaled("c_abs_s_N_m"),
+         {"c_abs_s_N_m": False, "place_m": False}),
+    _term("c_s2_N_m2", lambda x, v, f: f / x**2),
+    _term("c_v2_N_s2_m2", lambda x, v, f: f / v**2),
+    _term("c_sv_N_s_m2", lambda x, v, f: f / (x * v)),
+    _term("c_s2v_N_s_m3", lambda x, v, f: f / (x**2 * v)),
+    _term("c_v3_N_s3_m3", lambda x, v, f: f / v**3),
+    _term("c_s_abs_v_N_s_m2", lambda x, v, f: f / (x * v)),
+    _term("c_root_v_N_s05_m05", lambda x, v, f: f / v**0.5),
+)  # fmt: skip
+
+
+@dataclass(frozen=True, eq=False)
+class Proposal:
+    """A node and where to begin it, with what it promises."""
+
+    node: Node
+    start: Start
+    promise: float
+
+
+def proposals(problem: Problem, found: Fit, paths: Sequence[Array], beside: Sequence[Member] = ()) -> list[Proposal]:
+    """Every form beside the baseline and given members, begun along the path of a fit that follows the motion.
+
+    The force that moved the mass along the path is regressed on the rig and the form; what is left says what the form
+    promises, by the logarithm of the residual's size. The fit decides, not this.
+
+    Parameters
+    ----------
+    problem : Problem
+    found : Fit
+        Whose motion the paths are, with its mass.
+    paths : sequence of (n, 3) float
+    beside : sequence of Member
+        That the node has besides; their coordinates begin as in ``found``.
+    """
+    mass = float(found.node.values(found.point)[0])
+    x, v = np.concatenate([p[:, 0] for p in paths]), np.concatenate([p[:, 1] for p in paths])
+    reach, fastest = float(np.abs(x).max()), float(np.abs(v).max())
+    target, first = [], [0]
+    for piece, path, nuisance in zip(problem.pieces, paths, found.nuisances, strict=True):
+        drive = np.zeros(len(path))
+        if piece.driven and not piece.based:
+            drive = piece.drive[:: piece.every][: len(path)] + nuisance[found.node.states]
+        target.append(drive - mass * path[:, 2])
+        first.append(first[-1] + len(path))
+    force = np.concatenate(target)
+    size = float(np.sqrt(np.mean(force**2)))
+    plain = np.column_stack([x / reach, v / fastest, np.ones(len(x))])
+    stiff = float(found.node.values(found.point)[2])
+    for law in (m for m in beside if m.law is not None):
+        own = CATALOGUE[law.id].begun({**(law.law or {}), **found.node.of(law, found.point)})
+        column = _along(problem, paths, first, law.id, own, stiff)
+        plain = np.column_stack([plain, column / max(float(np.sqrt(np.mean(column**2))), 1e-300)])
+    result = []
+    taken = {m.id for m in beside}
+    for form in (f for f in FORMS if f.effect not in taken):
+        best = None
+        stiffness = float(found.node.values(found.point)[2])
+        for shape in form.shapes(reach, fastest, 0.3 * size):
+            unit = CATALOGUE[form.effect].begun(form.unit(shape, stiffness, reach, fastest, 0.3 * size))
+            column = _along(problem, paths, first, form.effect, unit, stiffness)
+            norm = float(np.sqrt(np.mean(column**2)))
+            if not np.isfinite(norm) or norm <= 0.0:
+                continue
+            design = np.column_stack([plain, column / norm])
+            coefficients, _, _, _ = np.linalg.lstsq(design, force, rcond=None)
+            rest = float(np.sum((force - design @ coefficients) ** 2))
+            k, d, c = coefficients[0] / reach, coefficients[1] / fastest, coefficients[-1] / norm
+            if form.effect == "hysteresis":
+                c = c * stiffness / max(k, 1e-3 * stiffness)
+            if best is None or rest < best[0]:
+                best = rest, k, d, form.settle(c, unit, k), unit
+        if best is None:
+            continue
+        rest, k, d, values, _ = best
+        member = member_of(form, values, reach, fastest, size)
+        node = Node(found.node.baseline, (*beside, member))
+        point = _begun(node, found, (mass, max(d, 0.0), max(k, 0.05 * stiffness)), member, values)
+        result.append(Proposal(node, Start(point, paths=tuple(paths)), -0.5 * np.log(max(rest, 1e-300))))
+    return sorted(result, key=lambda p: -p.promise)
+
+
+def member_of(form: Form, values: Shape, reach: float, fastest: float, force: float) -> Member:
+    """A form with its coordinates about given values."""
+    declared = {p.name: p for p in CATALOGUE[form.effect].parameters}
+    coordinates = []
+    for name, log in form.moved.items():
+        p, value = declared[name], values[name]
+        scale = abs(value) or 1.0
+        if name == "place_m":
+            scale = reach
+        low, high = p.lower, p.upper
+        if log:
+            low, high = max(low, 1e-3 * scale), min(high, 1e3 * scale)
+        coordinates.append(Coordinate(name, scale, log, low, high, 0.0, 3.0 if log else np.inf, p.unit))
+    held = {name: value for name, value in values.items() if name not in form.moved}
+    return Member(form.effect, form.kind, form.name, tuple(coordinates), law=held)
+
+
+def _begun(node: Node, found: Fit, given: Sequence[float], member: Member, values: Shape) -> Array:
+    """A node's coordinates: baseline as given (mass, damping, stiffness), members as a fit or a law has them."""
+    old = {id(c): float(p) for c, p in zip(found.node.coordinates, found.point, strict=True)}
+    own = {id(c): c.at(values[c.name]) for c in member.coordinates}
+    point = np.array([own.get(id(c), old.get(id(c), c.mean)) for c in node.coordinates])
+    point[:3] = [c.at(v) for c, v in zip(node.baseline, given, strict=True)]
+    return point
+
+
+def _along(
+    problem: Problem, paths: Sequence[Array], first: Sequence[int], effect: str, values: Shape, stiffness: float
+) -> Array:
+    """A law's force along the paths, (n,) float [N]."""
+    e = effect_vector({effect: values})
+    out = np.empty(first[-1])
+    for piece, path, at in zip(problem.pieces, paths, first[:-1], strict=True):
+        force_along(path, piece.step * piece.every, stiffness, e, effect == "unlisted", out[at : at + len(path)])
+    return out

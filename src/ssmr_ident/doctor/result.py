@@ -1,0 +1,259 @@
+"""From the table and the decision to the answer: names, numbers, sentences, files, and what figures are drawn from."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from ssmr_ident.compare.comparison import measure
+from ssmr_ident.compare.prediction import Prediction
+from ssmr_ident.core.parameter import Estimate, ParameterSet
+from ssmr_ident.diagnose.diagnosis import Conflict, Diagnosis, Located, NamedEffect, PredictionQuality, Tried
+from ssmr_ident.diagnose.evidence import Evidence
+from ssmr_ident.diagnose.words import law, missing, nothing, told, undetermined
+from ssmr_ident.diagnose.worth import overlays, worth
+from ssmr_ident.doctor.decide import MISSING, NOTHING, UNDETERMINED, Decision
+from ssmr_ident.doctor.held import held_fit
+from ssmr_ident.doctor.search import Search
+from ssmr_ident.doctor.table import Row
+from ssmr_ident.estimate.fit import Fit, Problem
+from ssmr_ident.estimate.node import Member, effects_of
+from ssmr_ident.estimate.problem import natural_hz
+from ssmr_ident.experiments.campaign import Campaign
+from ssmr_ident.physics.effects import CATALOGUE
+from ssmr_ident.signals.metrics import LOW_PASS_HZ
+
+Array = np.ndarray
+
+METRIC = "nrmse_percent"
+SOURCE = "fit of the recordings"
+
+CONFLICT = 2.0
+"""Prior standard deviations from which a parameter counts as pulled away from what is known of it."""
+
+POINTS = 41
+"""Of a curve."""
+
+
+@dataclass(frozen=True, eq=False)
+class Examined:
+    """Everything that an answer is made of."""
+
+    campaign: Campaign
+    known: ParameterSet
+    search: Search
+    rows: tuple[Row, ...]
+    decision: Decision
+    fitted: Problem
+    kept: Problem | None
+    kept_by_us: bool
+    notes: tuple[str, ...]
+
+
+def answer(found: Examined) -> Diagnosis:
+    """The diagnosis."""
+    base = next(r for r in found.rows if not r.ids)
+    decision = found.decision
+    chosen = next((r for r in found.rows if decision.chosen is not None and r.name == decision.chosen.name), base)
+    assert base.fit is not None
+    assert chosen.fit is not None
+    before, after = (predictions(found.fitted, f, found.known) for f in (base.fit, chosen.fit))
+    training = worth(before, after if chosen is not base else before, names_of(found.fitted))
+    heldout = PredictionQuality(math.nan, math.nan, math.nan)
+    drawn = overlays([p.name for p in found.fitted.pieces], before, after, heldout=False)
+    if found.kept is not None:
+        first, second = held_fit(found.kept, base.fit), held_fit(found.kept, chosen.fit)
+        if first is not None and second is not None:
+            kept = [predictions(found.kept, f, found.known) for f in (first, second)]
+            heldout = worth(kept[0], kept[1] if chosen is not base else kept[0], names_of(found.kept))
+            drawn = overlays([p.name for p in found.kept.pieces], kept[0], kept[1], heldout=True)
+    decision = _checked(decision, training, heldout)
+    named = decision.verdict == MISSING
+    before_file = exported(base.fit, found.known)
+    after_file = exported(chosen.fit, found.known) if named else before_file
+    effects = named_effects(decision, chosen, after_file) if named else ()
+    conflicts = conflicting(base.fit)
+    tried = tuple(Tried("+".join(r.ids) or "baseline", r.heldout, r.log_evidence) for r in found.rows)
+    shown = training if math.isnan(heldout.before) else heldout
+    if named:
+        summary = missing(effects, shown, METRIC, conflicts)
+    elif decision.verdict == NOTHING:
+        summary = nothing(shown, METRIC, len(found.rows) - 1)
+    else:
+        summary = undetermined(shown, METRIC, [r.name for r in found.rows if r.ids])
+    if shown is training:
+        summary = summary.replace("recordings never fitted", "the recordings that were fitted")
+    return Diagnosis(
+        session=found.campaign.session.name,
+        verdict=decision.verdict,
+        located=() if decision.verdict == NOTHING else located(found.search.problem, base.fit),
+        conflicts=conflicts,
+        effects=effects,
+        tried=tried,
+        metric=METRIC,
+        training=training,
+        heldout=heldout,
+        next_experiment=_next(decision),
+        before=before_file,
+        after=after_file,
+        summary=summary,
+        notes=(*found.notes, *_notes(decision, chosen, heldout)),
+        evidence=Evidence(overlays=drawn),
+    )
+
+
+def _checked(decision: Decision, training: PredictionQuality, heldout: PredictionQuality) -> Decision:
+    """No effect is named that makes the error on fitted or kept recordings grow."""
+    grows = training.after > 1.02 * training.before or heldout.after > 1.02 * heldout.before
+    return replace(decision, verdict=UNDETERMINED) if decision.verdict == MISSING and grows else decision
+
+
+def predictions(problem: Problem, fit: Fit, known: ParameterSet) -> list[Prediction]:
+    """Every piece beside what a fit says of it."""
+    band = max(LOW_PASS_HZ, 4.0 * natural_hz(known))
+    return [
+        Prediction(p.time, p.channels, p.units, p.y, p.y + rest, low_pass_hz=band)
+        for p, rest in zip(problem.pieces, fit.residuals, strict=True)
+    ]
+
+
+def errors(found: Sequence[Prediction]) -> Array:
+    return np.array([measure(p)[0] for p in found])
+
+
+def names_of(problem: Problem) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(p.name for p in problem.pieces))
+
+
+def exported(fit: Fit, known: ParameterSet) -> ParameterSet:
+    """The parameter set that a fit stands for."""
+    node, values = fit.node, fit.node.values(fit.point)
+    stds = np.sqrt(np.maximum(np.diag(fit.covariance), 0.0)) * np.abs(node.slopes(fit.point))
+    changes: dict[str, Estimate] = {}
+    for k, c in enumerate(node.baseline):
+        if c.std < 1e-6:
+            continue
+        std = float(stds[k])
+        changes[c.name] = replace(known[c.name], value=float(values[k]), std=std, source=SOURCE)
+    place = {id(c): k for k, c in enumerate(node.coordinates)}
+    blocks: dict[str, dict[str, Estimate]] = {}
+    for effect, full in effects_of(node, fit.point).items():
+        units = {p.name: p.unit for p in CATALOGUE[effect].parameters}
+        blocks[effect] = {n: Estimate(float(v), None, units[n], "not fitted", fixed=True) for n, v in full.items()}
+    for member in node.members:
+        for c in member.coordinates if member.id in blocks and not member.tables else ():
+            k = place[id(c)]
+            blocks[member.id][c.name] = Estimate(
+                float(values[k]), float(stds[k]), c.unit, SOURCE, at_bound=values[k] in (c.lower, c.upper)
+            )
+    return replace(known.updated(changes), effects=blocks)
+
+
+def named_effects(decision: Decision, chosen: Row, after: ParameterSet) -> tuple[NamedEffect, ...]:
+    assert chosen.fit is not None
+    found = []
+    for member in chosen.fit.node.members:
+        effect = member.id if decision.listed else "unlisted"
+        values = {} if member.tables else dict(after.effects[member.id])
+        if effect == "unlisted":
+            values = {name: e for name, e in values.items() if not e.fixed}
+        text = law(effect, values) if values else "F = f(s, v), drawn"
+        kind = member.kind.replace("_", " ")
+        sentence = told(effect, values) if values else f"Something of the kind {kind} acts that no listed law makes."
+        found.append(
+            NamedEffect(
+                effect, sentence, text, values, min(decision.confidence, 1.0), decision.ties, member.form,
+                kind=member.kind, element=element_of(member), curve=curve(chosen.fit, member),
+            )
+        )  # fmt: skip
+    return tuple({e.id: e for e in reversed(found)}.values())[::-1]
+
+
+def element_of(member: Member) -> str:
+    if member.kind == "sensor_chain":
+        return f"sensor.{member.channel}" if member.channel else "sensor.acceleration" if member.linear else "sensor"
+    return "body" if member.kind == "extra_motion" else "spring"
+
+
+def curve(fit: Fit, member: Member) -> Mapping[str, Any] | None:
+    """The force over deflection that a static generic member has taken, with its standard deviation."""
+    tables = member.tables
+    if tables is None or not tables.by_position.shape[1]:
+        return None
+    count = tables.by_position.shape[1]
+    first = [id(c) for c in fit.node.coordinates].index(id(member.coordinates[0]))
+    grid = np.linspace(-0.9, 0.9, POINTS)
+    cells = np.linspace(-1.0, 1.0, len(tables.by_position))
+    shapes = np.column_stack([np.interp(grid, cells, column) for column in tables.by_position.T])
+    own = slice(first, first + count)
+    scales = fit.node.slopes(fit.point)[own]
+    force = shapes @ fit.node.values(fit.point)[own]
+    spread = np.sqrt(np.einsum("gi,ij,gj->g", shapes * scales, fit.covariance[own, own], shapes * scales))
+    stiffness = fit.node.values(fit.point)[2]
+    return {
+        "variable": "displacement [m]",
+        "points": (grid * tables.reach).tolist(),
+        "force": (force + stiffness * grid * tables.reach).tolist(),
+        "std": spread.tolist(),
+    }
+
+
+def conflicting(fit: Fit) -> tuple[Conflict, ...]:
+    """What the baseline's fit pulls away from what is known of it."""
+    found = []
+    for c, at in zip(fit.node.baseline, fit.point, strict=False):
+        if c.std > 0.5 or c.std < 1e-6:
+            continue
+        sigmas = (float(at) - c.mean) / c.std
+        if abs(sigmas) > CONFLICT:
+            found.append(Conflict(c.name, c.value(c.mean), c.value(float(at)), sigmas, c.unit))
+    return tuple(sorted(found, key=lambda c: -abs(c.sigmas)))
+
+
+def located(problem: Problem, fit: Fit) -> tuple[Located, ...]:
+    """Recordings and channels by their share of the misfit, with the time and band that hold most of it."""
+    places = []
+    for piece, rest in zip(problem.pieces, fit.residuals, strict=True):
+        for c, name in enumerate(piece.channels):
+            own = rest[:, c] - rest[:, c].mean()
+            power = np.cumsum(own**2)
+            share = float(power[-1]) / float(piece.white[c]) ** 2
+            time = np.interp([0.05, 0.95], power / max(power[-1], 1e-300), piece.time)
+            spectrum = np.cumsum(np.abs(np.fft.rfft(own)) ** 2)
+            grid = np.fft.rfftfreq(len(own), 1.0 / piece.rate)
+            band = np.interp([0.1, 0.9], spectrum / max(spectrum[-1], 1e-300), grid)
+            places.append((share, piece.name, name, time, band))
+    total = sum(p[0] for p in places)
+    found = []
+    for share, recording, channel, time, band in sorted(places, key=lambda p: -p[0])[:4]:
+        part = share / max(total, 1e-300)
+        words = (
+            f"{100 * part:.0f} % of the misfit is in {channel} of {recording}, {time[0]:.3g} to {time[1]:.3g} s, "
+            f"{band[0]:.3g} to {band[1]:.3g} Hz"
+        )
+        found.append(Located(recording, channel, (time[0], time[1]), (band[0], band[1]), "", part, words))
+    return tuple(found)
+
+
+def _next(decision: Decision) -> str:
+    if not decision.ties or decision.chosen is None:
+        return ""
+    names = ", ".join((*decision.chosen.ids, *decision.ties))
+    return f"Record the same at half and at twice the amplitude, and at another speed: {names} part in how they scale"
+
+
+def _notes(decision: Decision, chosen: Row, heldout: PredictionQuality) -> tuple[str, ...]:
+    notes = [
+        f"{share.kind.replace('_', ' ')} in any shape takes {100 * share.share:.0f} % of the misfit"
+        for share in decision.kinds[:3]
+    ]
+    if decision.verdict == MISSING and heldout.after > 1.6 * heldout.noise_floor:
+        notes.append(
+            f"{chosen.name} still leaves {heldout.after / heldout.noise_floor:.1f} times the noise floor: its form, or "
+            "a smaller effect beside it, is not quite the world's"
+        )
+    return tuple(notes)

@@ -1,0 +1,25 @@
+"""Every number that the decision rests on, in natural units of log evidence unless said otherwise."""
+
+UNIT = 1.0
+"""A gain that counts as one at all: what is smaller is not followed."""
+
+SECOND = 10.0
+"""By which a second effect gains on the first one in any shape."""
+
+HALVED = 0.5
+"""Of the variance beyond noise that the first effect leaves in any shape, the share that a second one may leave: what
+gains less is the first one's formula."""
+
+CERTAIN = 10.0
+"""By which an explanation beats the baseline before anything is said to be missing: odds of 22,000 to one, which leaves
+1 in 1,000 for some twenty looks."""
+
+TIE = 5.0
+"""Within which two explanations fit alike: odds of 150 to one."""
+
+FORMULA = 0.02
+"""Share of the baseline's misfit that a named law may leave beside its kind's generic member and still be that law: the
+world's formula is hardly ever the catalogue's."""
+
+OVER_NOISE = 1.6
+"""Ratio of what is left to white noise from which something is missing even if nothing names it."""

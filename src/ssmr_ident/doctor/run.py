@@ -1,0 +1,126 @@
+"""A rig's diagnosis from its campaign: search, held-out recordings, decision, answer."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from ssmr_ident.core.errors import InputError
+from ssmr_ident.core.parameter import ParameterSet
+from ssmr_ident.diagnose.diagnosis import Diagnosis
+from ssmr_ident.diagnose.setup import keep_back
+from ssmr_ident.doctor.decide import decide
+from ssmr_ident.doctor.held import held_fit, interleaved
+from ssmr_ident.doctor.result import Examined, answer, errors, predictions
+from ssmr_ident.doctor.search import searched
+from ssmr_ident.doctor.table import Row
+from ssmr_ident.estimate.fit import Problem
+from ssmr_ident.estimate.problem import problem_of
+from ssmr_ident.experiments.campaign import Campaign, Measurement
+
+Array = np.ndarray
+Progress = Callable[[str, int, int], None]
+
+EXPERIMENTS = ("forced", "free_response", "base_motion")
+
+SHOWN = 8
+"""Rows of the table that are held against what was kept back."""
+
+
+def diagnose(
+    campaign: Campaign,
+    parameters: ParameterSet | None = None,
+    seed: int = 0,
+    progress: Progress | None = None,
+    budget: float = math.inf,
+) -> Diagnosis:
+    """Locate, name and prove what a rig's baseline leaves out.
+
+    Parameters
+    ----------
+    campaign : Campaign
+        With ``baseline: sdof``.
+    parameters : ParameterSet, optional
+        What is known beforehand, in place of the session's own file.
+    seed : int
+        Of chance; nothing here uses it yet, and the answer does not depend on it.
+    progress : callable, optional
+    budget : float [s]
+        After which nothing new is tried; the answer names what was not.
+
+    Raises
+    ------
+    InputError
+        No rig, an experiment that no rig has, or nothing to fit.
+    """
+    known = campaign.parameters if parameters is None else parameters
+    with threadpool_limits(1, user_api="blas"):
+        return answer(examined(campaign, known, progress, budget))
+
+
+def examined(campaign: Campaign, known: ParameterSet, progress: Progress | None, budget: float) -> Examined:
+    """The table and the decision."""
+    _checked(campaign)
+    targets, heldout, by_us = roles(campaign)
+    fitted = problem_of(targets, known)
+    notes: list[str] = []
+    if heldout:
+        kept: Problem | None = problem_of(heldout, known)
+        if by_us:
+            names = ", ".join(m.name for m in heldout)
+            notes.append(f"the session holds nothing back, so {names} did not enter the fits that decided")
+    else:
+        fitted, kept = interleaved(fitted)
+        if kept is None:
+            notes.append("too little motion to keep any of it back: no error on unseen data is given")
+        else:
+            spans = ", ".join(f"{p.time[0]:.4g} to {p.time[-1]:.4g} s" for p in kept.pieces)
+            notes.append(f"{targets[0].name} is the only recording: {spans} were kept back, with starts of their own")
+    search = searched(fitted, budget, progress)
+    rows = search.rows()
+    base = next(r for r in rows if not r.ids)
+    assert base.fit is not None
+    decision = decide(rows)
+    if kept is not None:
+        wanted = {id(r): r for r in (*rows[:SHOWN], base, *([decision.chosen] if decision.chosen else []))}
+        rows = tuple(_with_heldout(r, kept, known) if id(r) in wanted else r for r in rows)
+    if search.untried:
+        notes.append(f"not tried within the budget: {', '.join(search.untried)}")
+    return Examined(campaign, known, search, rows, decision, search.problem, kept, by_us, tuple(notes))
+
+
+def _checked(campaign: Campaign) -> None:
+    for m in campaign.measurements:
+        if m.entry.experiment not in EXPERIMENTS:
+            raise InputError(
+                f"{campaign.session.folder / 'session.yaml'}: {m.name}",
+                f"a {m.entry.experiment} cannot be diagnosed with baseline {campaign.session.baseline}",
+                f"Make a session of its own of it; here: {', '.join(EXPERIMENTS)}",
+            )
+
+
+def roles(campaign: Campaign) -> tuple[list[Measurement], list[Measurement], bool]:
+    """Recordings to fit, those kept back, and whether that was our choice."""
+    targets = [m for m in campaign.measurements if m.entry.role != "heldout"]
+    heldout = [m for m in campaign.measurements if m.entry.role == "heldout"]
+    if not targets:
+        raise InputError(
+            f"{campaign.session.folder}/session.yaml: recordings",
+            "all are heldout, so nothing may be fitted",
+            "Give at least one recording role: target",
+        )
+    if heldout or len(targets) == 1:
+        return targets, heldout, False
+    return (*keep_back(targets), True)
+
+
+def _with_heldout(row: Row, kept: Problem, known: ParameterSet) -> Row:
+    assert row.fit is not None
+    found = held_fit(kept, row.fit)
+    if found is None:
+        return row
+    return replace(row, heldout=float(np.mean(errors(predictions(kept, found, known)))))

@@ -1,0 +1,324 @@
+"""The search: generic members of every kind, named laws along the motion that the best of them has, second effects."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from ssmr_ident.doctor.laws import Proposal, proposals
+from ssmr_ident.doctor.rules import SECOND, UNIT
+from ssmr_ident.doctor.table import Row, row_of
+from ssmr_ident.estimate.fit import Fit, Problem, Start, motion, polish, regressed, shot, with_noises
+from ssmr_ident.estimate.generic import branch, by_recording, changing, clip, delay, lag, memory, rider, static
+from ssmr_ident.estimate.node import Member, Node
+from ssmr_ident.estimate.pieces import difference_noise
+from ssmr_ident.estimate.smoother import smoothed
+from ssmr_ident.physics.effects import CATALOGUE
+from ssmr_ident.signals.noise import AutoregressiveNoise, fit_noise
+
+Array = np.ndarray
+Progress = Callable[[str, int, int], None]
+
+TRIED_LAWS, FULL_LAWS = 7, 3
+"""Named laws that get a short fit, most promising first, two formulas of one effect at the most; and a full one."""
+
+LARGEST_ORDER = 12
+"""Of the autoregressive noise."""
+
+SHORT, FULL = 6, 25
+"""Gauss-Newton steps."""
+
+OFFERED = 5
+"""Fits, the best ones, that are offered back to what lies below them."""
+
+OVER_NOISE_SECOND = 1.25
+"""What a first effect leaves, in sizes of white noise, from which a second one is looked for."""
+
+FULL_KINDS = 4
+"""Members that get a full fit, those that a short one has brought farthest."""
+
+MOSTLY = 0.3
+"""Share of its base's cost below which a fit from nearby is on its way, and needs no other start."""
+
+FAR_OFF = 2.0
+"""Factor on the least cost beyond which a short fit is not followed where another explains everything."""
+
+NEAR_NOISE = 1.5
+"""Mean square of whitened residuals up to which nothing much is left to find."""
+
+
+@dataclass(eq=False)
+class Search:
+    """What has been fitted, and under which noise."""
+
+    problem: Problem
+    until: float = math.inf
+    fits: list[Fit] = field(default_factory=list)
+    untried: list[str] = field(default_factory=list)
+
+    @property
+    def late(self) -> bool:
+        return time.monotonic() > self.until
+
+    def rows(self) -> tuple[Row, ...]:
+        base = next(f for f in self.fits if not f.node.members)
+        zero = row_of(base, self.problem).log_evidence
+        rows = [row_of(f, self.problem, zero) for f in self.fits if math.isfinite(f.cost)]
+        return tuple(sorted(rows, key=lambda r: -r.log_evidence))
+
+    def add(self, fit: Fit) -> Fit:
+        """Keep the better of two fits of one node."""
+        same = [f for f in self.fits if f.node.name == fit.node.name]
+        if same and same[0].cost <= fit.cost:
+            return same[0]
+        self.fits = [f for f in self.fits if f not in same] + [fit]
+        return fit
+
+
+def searched(problem: Problem, budget: float = math.inf, progress: Progress | None = None) -> Search:
+    """Fit the baseline and what may be beside it.
+
+    Parameters
+    ----------
+    problem : Problem
+    budget : float [s]
+        Once it is spent nothing new is begun; what was not tried is named.
+    progress : callable, optional
+    """
+    say = progress or (lambda stage, done, total: None)
+    search = Search(problem, time.monotonic() + budget)
+    say("fitting the baseline", 0, 1)
+    paths = [smoothed(p, problem.frequency, problem.size) for p in problem.pieces]
+    baseline = Node(problem.baseline)
+    base = search.add(_from_paths(problem, baseline, regressed(problem, paths, baseline), paths))
+    say("fitting the baseline", 1, 1)
+    members = kinds(problem, paths)
+    short = []
+    for index, member in enumerate(members):
+        say("any shape of every kind", index, len(members))
+        if search.late:
+            search.untried.append(member.name)
+            continue
+        node = base.node.with_member(member)
+        short.append(polish(problem, node, Start(joined(node, base), carried(node, base)), SHORT))
+    for rank, fit in enumerate(sorted(short, key=lambda f: f.cost)):
+        search.add(_finished(search, fit, base, paths) if rank < FULL_KINDS and not search.late else fit)
+    _offered_back(search)
+    search = _with_white(search)
+    leader = search.rows()[0].fit
+    assert leader is not None
+    _named(search, say, leader)
+    _offered_back(search)
+    search = _with_own_noise(search)
+    _second(search, say)
+    return search
+
+
+def kinds(problem: Problem, paths: Sequence[Array]) -> list[Member]:
+    """Generic members of every kind that these recordings can show, and the links of the sensor chain."""
+    f = problem.frequency
+    found = [static(problem, paths), memory(problem, paths), changing(problem)]
+    found.append(branch(problem, 0.5 / (2.0 * math.pi * f)))
+    other = by_recording(problem)
+    found += [other] if other else []
+    found += [rider(problem, ratio * f) for ratio in (0.6, 1.5)]
+    piece = problem.pieces[0]
+    if any(p.driven for p in problem.pieces):
+        found.append(delay(piece.step * piece.every))
+    if 2 in piece.orders:
+        found.append(lag(3.0 * f))
+    ranges = {p.name: p for p in CATALOGUE["sensor_saturation"].parameters}
+    for c, (name, unit) in enumerate(zip(piece.channels, piece.units, strict=True)):
+        parameter = {
+            "m/s^2": "range_m_s2",
+            "m": "range_m",
+            "m/s": "range_m_s",
+            "rad": "range_rad",
+            "rad/s": "range_rad_s",
+        }
+        if parameter[unit] in ranges:
+            most = max(float(np.abs(p.y[:, c]).max()) for p in problem.pieces)
+            found.append(clip(name, 0.95 * most, parameter[unit], unit))
+    return found
+
+
+def _from_paths(problem: Problem, node: Node, point: Array, paths: Sequence[Array]) -> Fit:
+    return polish(problem, node, shot(problem, node, Start(point, paths=tuple(paths))), FULL)
+
+
+def joined(node: Node, fit: Fit) -> Array:
+    """A node's coordinates as another fit has them, at their usual values where it has them not."""
+    old = {id(c): float(p) for c, p in zip(fit.node.coordinates, fit.point, strict=True)}
+    usual = {"K_m_N_m": 0.1, "rider_share": 0.03, "delay_s": 0.3}
+    return np.array([old.get(id(c), usual.get(c.name, c.mean)) for c in node.coordinates])
+
+
+def carried(node: Node, fit: Fit) -> tuple[Array, ...]:
+    """A fit's nuisances for a node with other linear states."""
+    was, now, found = fit.node, node, []
+    sizes = {"lag": 2, "branch": 1, "rider": 2}
+    for nuisance in fit.nuisances:
+        at, kept = 2, {}
+        for member in (m for m in was.members if m.linear):
+            kept[id(member)] = nuisance[at : at + sizes[member.linear]]
+            at += sizes[member.linear]
+        states = [nuisance[:2]]
+        states += [kept.get(id(m), np.zeros(sizes[m.linear])) for m in now.members if m.linear]
+        hidden = nuisance[was.linear_states : was.states]
+        states.append(hidden if len(hidden) == now.hidden_states else np.zeros(now.hidden_states))
+        found.append(np.concatenate([*states, nuisance[was.states :]]))
+    return tuple(found)
+
+
+def _finished(search: Search, near: Fit, base: Fit, paths: Sequence[Array], point: Array | None = None) -> Fit:
+    """A short fit to its end; by multiple shooting too, unless it is on its way or another one explains everything."""
+    problem = search.problem
+    least = min((f for f in search.fits), key=lambda f: f.cost)
+    explained = over(least, problem) < NEAR_NOISE
+    if explained and near.cost > FAR_OFF * least.cost:
+        return near
+    full = polish(problem, near.node, Start(near.point, near.nuisances), FULL)
+    if full.cost < MOSTLY * base.cost or over(full, problem) < NEAR_NOISE or explained:
+        return full
+    if point is None:
+        point = regressed(problem, paths, near.node) if near.node.generic else joined(near.node, base)
+    far = _from_paths(problem, near.node, point, paths)
+    return far if far.cost < full.cost else full
+
+
+def over(fit: Fit, problem: Problem) -> float:
+    """Mean square of the whitened residuals: 1 for noise alone."""
+    return fit.chi2 / max(problem.samples, 1)
+
+
+def _offered_back(search: Search) -> None:
+    """What a richer model's fit has found is offered to the poorer one with that member dropped."""
+    for fit in sorted(search.fits, key=lambda f: f.cost)[:OFFERED]:
+        for member in fit.node.members:
+            node = fit.node.without(member)
+            poorer = [f for f in search.fits if f.node.name == node.name]
+            if not poorer:
+                continue
+            point = joined(node, fit)
+            found = polish(search.problem, poorer[0].node, Start(point, carried(node, fit)), SHORT)
+            if found.cost < poorer[0].cost - UNIT:
+                search.add(polish(search.problem, found.node, Start(found.point, found.nuisances), FULL))
+
+
+def _named(search: Search, say: Progress, best: Fit, beside: Sequence[Member] = ()) -> None:
+    """Named laws beside given members, begun along the motion of a fit that follows it well."""
+    paths = motion(search.problem, best)
+    problem, short = search.problem, []
+    offers = _varied(proposals(problem, best, paths, beside))
+    for index, offer in enumerate(offers):
+        say("named laws", index, len(offers))
+        if search.late:
+            search.untried.append(offer.node.name)
+            continue
+        start = Start(offer.start.point, carried(offer.node, best))
+        short.append((polish(problem, offer.node, start, SHORT), offer))
+    base = next(f for f in search.fits if not f.node.members)
+    for rank, (near, offer) in enumerate(sorted(short, key=lambda s: s[0].cost)):
+        whole = rank < FULL_LAWS and not search.late
+        search.add(_finished(search, near, base, offer.start.paths or (), offer.start.point) if whole else near)
+
+
+def _varied(offers: Sequence[Proposal]) -> list[Proposal]:
+    """The most promising, of each effect two formulas at the most."""
+    chosen: list[Proposal] = []
+    for offer in offers:
+        effect = offer.node.members[-1].id
+        if sum(o.node.members[-1].id == effect for o in chosen) < 2 and len(chosen) < TRIED_LAWS:
+            chosen.append(offer)
+    return chosen
+
+
+def own_noise(problem: Problem, fit: Fit) -> tuple[tuple[AutoregressiveNoise, ...], ...]:
+    """What a fit leaves, channel by channel, as autoregressive noise."""
+    found = []
+    for piece, rest in zip(problem.pieces, fit.residuals, strict=True):
+        spent = round(fit.dof / len(problem.pieces)) + 2
+        found.append(
+            tuple(
+                fit_noise(np.where(piece.counts[:, c], rest[:, c] - rest[:, c].mean(), 0.0), LARGEST_ORDER, spent)
+                for c in range(rest.shape[1])
+            )
+        )
+    return tuple(found)
+
+
+def _with_white(search: Search) -> Search:
+    """The same with white noise from what the best fit leaves, whose differences the motion itself is not in."""
+    best = search.rows()[0].fit
+    assert best is not None
+    pieces, noises = [], []
+    for piece, rest in zip(search.problem.pieces, best.residuals, strict=True):
+        least = 1e-2 * piece.white  # a log has no more digits than its converter
+        white = np.maximum([difference_noise(column) for column in rest.T], least)
+        pieces.append(replace(piece, white=white))
+        noises.append(tuple(AutoregressiveNoise(np.ones(1), float(w)) for w in white))
+    problem = replace(search.problem, pieces=tuple(pieces), noises=tuple(noises))
+    return Search(problem, search.until, [_again(problem, f, SHORT) for f in search.fits], search.untried)
+
+
+def _again(problem: Problem, fit: Fit, steps: int) -> Fit:
+    return polish(problem, fit.node, Start(fit.point, fit.nuisances), steps)
+
+
+def _with_own_noise(search: Search) -> Search:
+    """Everything again under the noise that the best fit leaves, from where it was."""
+    best = search.rows()[0].fit
+    assert best is not None
+    problem = with_noises(search.problem, own_noise(search.problem, best))
+    near = FAR_OFF * best.cost
+    fits = [
+        polish(problem, f.node, Start(f.point, f.nuisances), SHORT if f.cost < near or not f.node.members else 0)
+        for f in search.fits
+        if math.isfinite(f.cost)
+    ]
+    new = Search(problem, search.until, fits, search.untried)
+    _offered_back(new)
+    return new
+
+
+def _second(search: Search, say: Progress) -> None:
+    """A second effect, where the first one leaves more than noise in any shape."""
+    rows = search.rows()
+    named = [r for r in rows if len(r.ids) == 1 and not r.generic]
+    if not named or rows[0].log_evidence < SECOND:
+        return
+    first = named[0].fit
+    assert first is not None
+    paths = motion(search.problem, first)
+    offers = kinds(search.problem, paths)
+    own = [m for m in offers if m.tables and m.kind == first.node.members[0].kind]
+    shaped = [search.add(_near(search.problem, first, m, FULL)) for m in own]
+    least = min([r.over for r in rows if r.ids] + [row_of(f, search.problem).over for f in shaped])
+    if least < OVER_NOISE_SECOND:
+        return
+    short = []
+    others = [m for m in offers if m.kind != first.node.members[0].kind]
+    for index, member in enumerate(others):
+        say("second effects", index, len(others))
+        if search.late:
+            search.untried.append(f"{first.node.name} + {member.name}")
+            continue
+        short.append(_near(search.problem, first, member, SHORT))
+    for fit in sorted(short, key=lambda f: f.cost)[:2]:
+        full = search.add(polish(search.problem, fit.node, Start(fit.point, fit.nuisances), FULL))
+        if (
+            fit.node.generic
+            and row_of(full, search.problem).log_evidence > row_of(first, search.problem).log_evidence + SECOND
+        ):
+            _named(search, say, full, [first.node.members[0]])
+    if not search.late:
+        _named(search, say, min((*short, *shaped, first), key=lambda f: f.cost), [first.node.members[0]])
+
+
+def _near(problem: Problem, fit: Fit, member: Member, steps: int) -> Fit:
+    node = fit.node.with_member(member)
+    return polish(problem, node, Start(joined(node, fit), carried(node, fit)), steps)

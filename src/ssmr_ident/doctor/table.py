@@ -1,0 +1,72 @@
+"""The table of explanations: each fit in one unit, log evidence."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ssmr_ident.estimate.fit import Fit, Problem
+
+
+@dataclass(frozen=True, eq=False)
+class Row:
+    """A fitted node.
+
+    Parameters
+    ----------
+    ids : tuple of str
+        Effects, in the order in which they were found; empty for the baseline.
+    kinds : tuple of str
+    name : str
+        With formulas.
+    generic : bool
+        Whether a member of it takes any shape.
+    log_evidence : float
+        Natural; of the baseline 0.
+    chi2 : float
+        Of the whitened residuals.
+    samples : float
+        Number of them.
+    over : float
+        RMS of the residuals in sizes of the channels' white noise.
+    heldout : float
+        Error on what was kept back, in the metric; nan where nothing was, or it was not asked for.
+    fit : Fit or None
+    """
+
+    ids: tuple[str, ...]
+    kinds: tuple[str, ...]
+    name: str
+    generic: bool
+    log_evidence: float
+    chi2: float
+    samples: float
+    over: float = 1.0
+    heldout: float = math.nan
+    fit: Fit | None = None
+
+
+def log_evidence(fit: Fit, samples: float) -> float:
+    """Schwarz's (1978) approximation, with the parameters that the data decide in place of their number."""
+    return -0.5 * fit.cost - 0.5 * fit.dof * math.log(samples)
+
+
+def row_of(fit: Fit, problem: Problem, zero: float = 0.0) -> Row:
+    members = fit.node.members
+    return Row(
+        tuple(m.id for m in members), tuple(m.kind for m in members), fit.node.name, fit.node.generic,
+        log_evidence(fit, problem.samples) - zero, fit.chi2, problem.samples, over_noise(problem, fit), fit=fit,
+    )  # fmt: skip
+
+
+def over_noise(problem: Problem, fit: Fit) -> float:
+    """RMS of the residuals in sizes of white noise, which is what they show from sample to sample at the least."""
+    total, count = 0.0, 0
+    for piece, rest in zip(problem.pieces, fit.residuals, strict=True):
+        for c in range(rest.shape[1]):
+            own = rest[piece.counts[:, c], c]
+            total += float(np.sum((own - own.mean()) ** 2)) / float(piece.white[c]) ** 2
+            count += len(own)
+    return math.sqrt(total / max(count, 1))

@@ -1,0 +1,191 @@
+"""Generic members: for each kind of physics one that can take any shape, linear in its coefficients."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.interpolate import BSpline
+from scipy.linalg import eigh
+
+from ssmr_ident.estimate.fit import Problem
+from ssmr_ident.estimate.motion_kernel import BY_INERTIA, BY_POSITION, BY_VELOCITY
+from ssmr_ident.estimate.node import BRANCH, LAG, RIDER, Coordinate, Member, Tables
+
+Array = np.ndarray
+
+STATIC, MEMORY, EXTRA, CHANGING, SENSOR = "static_force", "memory", "extra_motion", "changing", "sensor_chain"
+ANY = "any shape"
+
+CELLS = 400
+"""Of a table: straight lines between."""
+
+KNOTS, SHAPES = 15, 10
+"""Of the spline over deflection, and how many of its smoothest shapes are taken."""
+
+STEEP = (0.02, 0.08, 0.3)
+"""Widths of steps in velocity, in the largest: the narrowest is as sharp as a law without memory can be seen."""
+
+YIELDS = (0.01, 0.04, 0.12, 0.25, 0.5, 0.9)
+"""Deflections at which spring-slider elements slide, in the largest."""
+
+LOOSE = 3.0
+"""Prior standard deviation of a coefficient, in the forces that the linear rig shows."""
+
+
+def static(problem: Problem, paths: Sequence[Array]) -> Member:
+    """f(x) + g(v) + h(x) v, x and v that the linear rig has left out.
+
+    Parameters
+    ----------
+    problem : Problem
+    paths : sequence of (n, 3) float
+        Position, velocity, acceleration per piece; they say where the tables are.
+    """
+    x, v = np.concatenate([p[:, 0] for p in paths]), np.concatenate([p[:, 1] for p in paths])
+    reach, fastest = 1.1 * float(np.abs(x).max()), float(np.abs(v).max())
+    low = 0.5 * STEEP[0] * fastest
+    top = float(np.arcsinh(1.1 * fastest / low))
+    grid = np.linspace(-1.0, 1.0, CELLS + 1)
+    by_x = _smooth_shapes(grid, x / reach)
+    u = low * np.sinh(top * grid) / fastest
+    by_v = np.column_stack([*(np.tanh(u / width) for width in STEEP), u * np.abs(u), u**3, np.abs(u), u**2])
+    by_v = _without(by_v, np.column_stack([u]), np.interp(np.arcsinh(v / low) / top, grid, np.arange(CELLS + 1.0)))
+    both = np.column_stack([grid, np.abs(grid), grid**2]) / fastest
+    tables = Tables(by_x, by_v, both, reach, low, top)
+    return _member("unlisted", STATIC, tables, problem)
+
+
+def memory(problem: Problem, paths: Sequence[Array]) -> Member:
+    """Spring-slider (Jenkins) elements in parallel (Iwan 1966)."""
+    reach = max(float(np.abs(p[:, 0]).max()) for p in paths)
+    yields = reach * np.array(YIELDS)
+    coordinates = tuple(
+        Coordinate(f"slider_{k}", _force(problem) / y, mean=0.0, std=LOOSE) for k, y in enumerate(yields.tolist())
+    )
+    return Member("unlisted", MEMORY, ANY, coordinates, Tables(yields=yields))
+
+
+def changing(problem: Problem) -> Member:
+    """Stiffness, damping and inertia as slow functions of the time since a recording began."""
+    courses, longest = [], max(p.time[-1] - p.time[0] for p in problem.pieces)
+    driven = any(p.driven and not p.based for p in problem.pieces)
+    kinds = [BY_POSITION] * 3 + [BY_VELOCITY] * 2 + [BY_INERTIA] * (2 if driven else 0)
+    for piece in problem.pieces:
+        t = (piece.time - piece.time[0]) / longest
+        shapes = np.column_stack([t, t**2, t**3])
+        courses.append(np.ascontiguousarray(np.hstack([shapes, shapes[:, :2], shapes[:, : len(kinds) - 5]])))
+    return _courses(problem, courses, kinds, "over time")
+
+
+def by_recording(problem: Problem) -> Member | None:
+    """Another stiffness and damping in every recording."""
+    count = max(p.recording for p in problem.pieces) + 1
+    if count < 2:
+        return None
+    courses = []
+    for piece in problem.pieces:
+        own = np.zeros((len(piece.y), count))
+        own[:, piece.recording] = 1.0
+        own -= 1.0 / count
+        courses.append(np.ascontiguousarray(np.hstack([own[:, 1:], own[:, 1:]])))
+    return _courses(problem, courses, [BY_POSITION] * (count - 1) + [BY_VELOCITY] * (count - 1), "by recording")
+
+
+def _courses(problem: Problem, courses: Sequence[Array], kinds: Sequence[int], form: str) -> Member:
+    stiffness, damping = _force(problem) / problem.size, _force(problem) / problem.speed
+    size = {BY_POSITION: stiffness, BY_VELOCITY: damping, BY_INERTIA: 1.0}
+    coordinates = tuple(Coordinate(f"course_{k}", 0.1 * size[kind], std=10.0 * LOOSE) for k, kind in enumerate(kinds))
+    tables = Tables(courses=tuple(courses), kinds=np.array(kinds, dtype=np.int64))
+    return Member("unlisted", CHANGING, f"{ANY}, {form}", coordinates, tables)
+
+
+def rider(problem: Problem, hz: float) -> Member:
+    """A part of the mass on a spring of its own."""
+    return Member(
+        "unlisted", EXTRA, "a part of the mass rides",
+        (
+            Coordinate("rider_share", 1.0, False, 1e-5, 0.9, 0.0, 0.5, "1"),
+            Coordinate("rider_Hz", hz, True, 0.05 * hz, 20.0 * hz, 0.0, 1.0, "Hz"),
+            Coordinate("rider_ratio", 0.02, True, 2e-4, 0.1, 0.0, 1.5, "1"),
+        ),
+        linear=RIDER,
+    )  # fmt: skip
+
+
+def branch(problem: Problem, seconds: float, form: str = "one branch") -> Member:
+    """A Maxwell branch."""
+    stiff = _force(problem) / problem.size
+    return Member(
+        "viscoelastic_relaxation", MEMORY, form,
+        (
+            Coordinate("K_m_N_m", 0.3 * stiff, False, 0.0, 1e3 * stiff, 0.0, 10.0, "N/m"),
+            Coordinate("tau_s", seconds, True, 1e-3 * seconds, 1e3 * seconds, 0.0, 2.0, "s"),
+        ),
+        linear=BRANCH,
+    )  # fmt: skip
+
+
+def lag(hz: float) -> Member:
+    """A slow accelerometer: second-order Butterworth."""
+    bandwidth = Coordinate("bandwidth_hz", hz, True, 0.05 * hz, 50.0 * hz, 0.0, 2.0, "Hz")
+    return Member("sensor_bandwidth", SENSOR, "", (bandwidth,), linear=LAG)
+
+
+def delay(step: float) -> Member:
+    """The motion comes later than the force by a constant time."""
+    late = Coordinate("delay_s", step, False, -50.0 * step, 50.0 * step, 0.0, 10.0, "s")
+    return Member("sensor_delay", SENSOR, "", (late,), after="delay")
+
+
+def clip(channel: str, limit: float, parameter: str, unit: str) -> Member:
+    """A channel's range."""
+    at = Coordinate(parameter, limit, True, 0.1 * limit, 3.0 * limit, 0.0, 1.0, unit)
+    return Member("sensor_saturation", SENSOR, "", (at,), after="clip", channel=channel)
+
+
+def _force(problem: Problem) -> float:
+    """Force that the linear rig shows [N]."""
+    mass = problem.baseline[0].scale
+    return float(mass * (2.0 * np.pi * problem.frequency) ** 2 * problem.size)
+
+
+def _member(effect: str, kind: str, tables: Tables, problem: Problem) -> Member:
+    force = _force(problem)
+    coordinates = tuple(Coordinate(f"shape_{k}", force, std=LOOSE) for k in range(tables.size))
+    return Member(effect, kind, ANY, coordinates, tables)
+
+
+def _smooth_shapes(grid: Array, where: Array) -> Array:
+    """Smoothest shapes over the grid that are no straight line where the motion is, each of unit size there.
+
+    Demmler and Reinsch (1975): eigenvectors of a spline's roughness against its size.
+    """
+    inner = np.linspace(-1.0, 1.0, KNOTS)
+    knots = np.concatenate([[-1.0] * 3, inner, [1.0] * 3])
+    count = len(knots) - 4
+    basis = BSpline(knots, np.eye(count), 3)
+    density = np.histogram(where, bins=len(grid) - 1, range=(-1.0, 1.0))[0] / len(where)
+    centres = 0.5 * (grid[1:] + grid[:-1])
+    density = density + 1e-4
+    own = basis(centres)
+    straight = np.column_stack([np.ones(len(centres)), centres])
+    q = np.linalg.qr(straight * np.sqrt(density)[:, None])[0]
+    weighted = own * np.sqrt(density)[:, None]
+    weighted -= q @ (q.T @ weighted)
+    size = weighted.T @ weighted
+    bend = np.diff(basis(grid), 2, axis=0)
+    values, vectors = eigh(bend.T @ bend + 1e-12 * np.eye(count), size + 1e-9 * np.trace(size) * np.eye(count))
+    shapes = vectors[:, np.argsort(values)]
+    line = np.linalg.lstsq(straight * np.sqrt(density)[:, None], own * np.sqrt(density)[:, None], rcond=None)[0]
+    table = basis(grid) @ shapes - np.column_stack([np.ones(len(grid)), grid]) @ (line @ shapes)
+    rms = np.sqrt(np.sum(density[:, None] * ((table[1:] + table[:-1]) / 2.0) ** 2, axis=0))
+    good = rms > 1e-3 * rms.max()
+    return np.ascontiguousarray((table[:, good] / rms[good])[:, 2 : SHAPES + 2])
+
+
+def _without(table: Array, lines: Array, places: Array) -> Array:
+    """A table less its part along given columns where the motion is, each of unit size there."""
+    weight = np.sqrt(np.histogram(places, bins=len(table), range=(-0.5, len(table) - 0.5))[0] / len(places))[:, None]
+    table = table - lines @ np.linalg.lstsq(lines * weight, table * weight, rcond=None)[0]
+    return np.ascontiguousarray(table / np.maximum(np.linalg.norm(table * weight, axis=0), 1e-12))

@@ -1,0 +1,376 @@
+"""The rig's motion with its slopes, stretch by stretch: exact linear steps, kicks of the forces beside them.
+
+The scheme is the simulator's own (``simulate/rig.py``: Strang splitting about the exact propagator), so that a fit and
+the simulator agree; here every state carries its derivatives with respect to where its stretch begins, to the model's
+parameters and to what else drives it (forward sensitivities).
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ssmr_ident.core.kernel import kernel
+from ssmr_ident.physics.effects import unlisted
+from ssmr_ident.physics.element import STATES, element_force, element_next
+from ssmr_ident.physics.slots import UNLISTED
+
+_unlisted = unlisted.force
+
+TINY = 1e-6
+"""Relative step of the differences that give a law's slopes; laws are scalar functions, run in double precision."""
+
+NEWTON = 4
+"""Iterations for the velocity after a kick, whose force depends on it."""
+
+BY_POSITION, BY_VELOCITY, CONSTANT, BY_INERTIA = range(4)
+"""What a course over time multiplies."""
+
+
+@kernel
+def _cell(table, place):
+    """Cell and share of a table that is even over -1 … 1; beyond, the last straight line goes on."""
+    cells = table.shape[0] - 1
+    at = 0.5 * (place + 1.0) * cells
+    index = min(max(math.floor(at), 0), cells - 1)
+    return index, at - index, 0.5 * cells
+
+
+@kernel
+def law_force(x, v, z, time, stiffness, e, terms):
+    f = element_force(x, v, z, stiffness, 1.0, 1.0, True, e)
+    return f + _unlisted(x, v, time, 1.0, e[UNLISTED:]) if terms else f
+
+
+@kernel
+def _force(x, v, z, time, row, drive, g, slopes, with_slopes):
+    """Force beside the linear rig [N], its slopes over x and v; those over hidden states and parameters into
+    ``slopes``, (hidden + parameters,)."""
+    (reach, steep, tab_x, tab_v, tab_xv, courses, course_kind, c, linear, yields, has_law, e, law_index, law_scale,
+     size_x, size_v, remembers) = g  # fmt: skip
+    jenkins = len(yields)
+    hidden = jenkins + (STATES if has_law else 0)
+    f, fx, fv = 0.0, 0.0, 0.0
+    at = 0
+    first = hidden + linear.shape[1]
+    n = tab_x.shape[1]
+    if n:
+        i, share, per = _cell(tab_x, x / reach)
+        for k in range(n):
+            slope = tab_x[i + 1, k] - tab_x[i, k]
+            value = tab_x[i, k] + share * slope
+            f += c[at] * value
+            fx += c[at] * slope * per / reach
+            if with_slopes:
+                slopes[first + at] = value
+            at += 1
+    n = tab_v.shape[1]
+    if n:
+        low, top, _ = steep
+        place = math.asinh(v / low) / top
+        change = 1.0 / (top * math.sqrt(v * v + low * low))
+        i, share, per = _cell(tab_v, place)
+        for k in range(n):
+            slope = tab_v[i + 1, k] - tab_v[i, k]
+            value = tab_v[i, k] + share * slope
+            f += c[at] * value
+            fv += c[at] * slope * per * change
+            if with_slopes:
+                slopes[first + at] = value
+            at += 1
+    n = tab_xv.shape[1]
+    if n:
+        i, share, per = _cell(tab_xv, x / reach)
+        for k in range(n):
+            slope = tab_xv[i + 1, k] - tab_xv[i, k]
+            value = tab_xv[i, k] + share * slope
+            f += c[at] * value * v
+            fv += c[at] * value
+            fx += c[at] * slope * per / reach * v
+            if with_slopes:
+                slopes[first + at] = value * v
+            at += 1
+    for k in range(courses.shape[1]):
+        psi = courses[row, k]
+        kind = course_kind[k]
+        if kind == BY_POSITION:
+            value = psi * x
+            fx += c[at] * psi
+        elif kind == BY_VELOCITY:
+            value = psi * v
+            fv += c[at] * psi
+        elif kind == CONSTANT:
+            value = psi
+        else:  # the mass is another: what acts on it moves it by another share
+            value = psi * (linear[0, 2] * x + linear[0, 1] * v - steep[2] * drive)
+            fx += c[at] * psi * linear[0, 2]
+            fv += c[at] * psi * linear[0, 1]
+            if with_slopes:
+                slopes[hidden + 2] += c[at] * psi * x * linear[1, 2]
+                slopes[hidden + 1] += c[at] * psi * v * linear[1, 1]
+        f += c[at] * value
+        if with_slopes:
+            slopes[first + at] = value
+        at += 1
+    for k in range(jenkins):
+        f += c[at] * z[k]
+        if with_slopes:
+            slopes[k] = c[at]
+            slopes[first + at] = z[k]
+        at += 1
+    if has_law:
+        h = (z[jenkins], z[jenkins + 1], z[jenkins + 2])
+        stiffness = linear[0, 2]
+        dx, dv = TINY * size_x, TINY * size_v
+        dk = TINY * stiffness if stiffness > 0.0 else TINY
+        centre, above = 0.0, 0.0
+        # one place from which the law is called, or the compiler writes it out a dozen times
+        for q in range(9 + len(law_index) if with_slopes else 3):
+            if 5 <= q < 8 and not remembers[q - 5]:
+                continue
+            was = e[law_index[q - 9]] if q >= 9 else 0.0
+            if q >= 9:
+                e[law_index[q - 9]] = was + TINY * law_scale[q - 9]
+            at_x = x + dx if q == 3 else x - dx if q == 4 else x
+            at_v = v + dv if q == 1 else v - dv if q == 2 else v
+            at_h = (h[0] + dx if q == 5 else h[0], h[1] + dx if q == 6 else h[1], h[2] + dx if q == 7 else h[2])
+            at_k = stiffness + dk if q == 8 else stiffness
+            value = law_force(at_x, at_v, at_h, time, at_k, e, remembers[3])
+            if q == 0:
+                centre = value
+                f += value
+            elif q == 1 or q == 3:
+                above = value
+            elif q == 2:
+                fv += (above - value) / (2.0 * dv)
+            elif q == 4:
+                fx += (above - value) / (2.0 * dx)
+            elif q < 8:
+                slopes[jenkins + q - 5] = (value - centre) / dx
+            elif q == 8:
+                slopes[hidden + 2] += (value - centre) / dk * linear[1, 2]
+            else:
+                slopes[first + at + q - 9] = (value - centre) / (TINY * law_scale[q - 9])
+                e[law_index[q - 9]] = was
+    return f, fx, fv
+
+
+@kernel
+def _advance(z, tangents, change, change_slopes, step, first, by_v, g):
+    """Hidden states one step later, with their slopes; ``change`` : deflection over the step,
+    ``first`` : column of the first parameter of a law; ``by_v`` : (3,) float to work in."""
+    (_, _, _, _, _, _, _, _c, _linear, yields, has_law, e, law_index, law_scale, size_x, size_v, remembers) = g
+    jenkins = len(yields)
+    columns = tangents.shape[1]
+    for k in range(jenkins):
+        moved = z[k] + change
+        if abs(moved) <= yields[k]:
+            z[k] = moved
+            for j in range(columns):
+                tangents[k, j] += change_slopes[j]
+        else:
+            z[k] = yields[k] if moved > 0.0 else -yields[k]
+            tangents[k, :] = 0.0
+    if has_law and (remembers[0] or remembers[1] or remembers[2]):
+        v = change / step
+        h = (z[jenkins], z[jenkins + 1], z[jenkins + 2])
+        dx, dv = TINY * size_x, TINY * size_v
+        new = h
+        for q in range(3 + len(law_index)):
+            was = e[law_index[q - 3]] if q >= 3 else 0.0
+            difference = TINY * law_scale[q - 3] if q >= 3 else dv if q == 1 else dx
+            if q >= 3:
+                e[law_index[q - 3]] = was + difference
+            begun = (h[0] + dx, h[1] + dx, h[2] + dx) if q == 2 else h
+            other = element_next(begun, v + dv if q == 1 else v, step, True, e)
+            if q == 0:
+                new = other
+            elif q == 1:
+                for k in range(STATES):
+                    by_v[k] = (other[k] - new[k]) / dv / step
+            elif q == 2:
+                for k in range(STATES):
+                    by_z = (other[k] - new[k]) / dx
+                    for j in range(columns):
+                        tangents[jenkins + k, j] = by_z * tangents[jenkins + k, j] + by_v[k] * change_slopes[j]
+            else:
+                e[law_index[q - 3]] = was
+                for k in range(STATES):
+                    tangents[jenkins + k, first + q - 3] += (other[k] - new[k]) / difference
+        for k in range(STATES):
+            z[jenkins + k] = new[k]
+
+
+@kernel
+def run(
+    lin, slopes_lin, rows, slopes_rows, g, beside, starts, borders, drive, drives, every, step, begin,
+    y, dy, ends, dends,
+):  # fmt: skip
+    """Simulate stretches of a recording.
+
+    Parameters
+    ----------
+    lin, slopes_lin : tuples of float
+        (T, now, later, kick), and the same with a first axis over the linear parameters: the exact step of the linear
+        states, what the drive at its begin and end adds, and what one newton takes away in half a step.
+    rows, slopes_rows : tuples of float
+        (C, from_drive, from_force): channels over states, drive and force beside.
+    g : tuple
+        The forces beside, as ``_force`` unpacks them.
+    beside : bool
+        Whether there are any.
+    starts : (s, states) float
+        Linear states, then hidden ones, at the begin of each stretch.
+    borders : (s + 1,) int
+        Samples at which stretches begin; the last is the number of samples.
+    drive, drives : (m,), (e, m) float
+        On the fine grid; the last value goes on. ``drives`` are its slopes over what may change in it: 1 for its zero.
+    every : int
+        Steps a sample.
+    step, begin : float [s]
+        Of the fine grid, and the time of the first sample.
+    y, dy : (n, channels), (n, channels, columns) float
+        Filled. Columns are starts, parameters (linear, beside), slopes of the drive.
+    ends, dends : (s, states), (s, states, columns) float
+        Filled: the state at each border's end.
+    """
+    transition, now, later, kick = lin
+    d_transition, d_now, d_later, d_kick = slopes_lin
+    c, from_drive, from_force = rows
+    d_c, d_from_drive, d_from_force = slopes_rows
+    states = starts.shape[1]
+    n_lin = transition.shape[0]
+    hidden = states - n_lin
+    n_par = d_transition.shape[0]
+    columns = dy.shape[2]
+    extra = drives.shape[0]
+    zero = columns - extra
+    channels = c.shape[0]
+    s, new = np.empty(n_lin), np.empty(n_lin)
+    z = np.zeros(max(hidden, 1))
+    ds, dnew = np.zeros((n_lin, columns)), np.zeros((n_lin, columns))
+    dz = np.zeros((max(hidden, 1), columns))
+    df, change = np.zeros(columns), np.zeros(columns)
+    slopes, by_v = np.zeros(hidden + columns), np.zeros(STATES)
+    last = len(drive) - 1
+    for stretch in range(starts.shape[0]):
+        ds[:], dz[:], df[:] = 0.0, 0.0, 0.0
+        for k in range(n_lin):
+            s[k] = starts[stretch, k]
+            ds[k, k] = 1.0
+        for k in range(hidden):
+            z[k] = starts[stretch, n_lin + k]
+            dz[k, n_lin + k] = 1.0
+        f = 0.0
+        first, after = borders[stretch], borders[stretch + 1]
+        total = (after - first) * every
+        for n in range(total + 1):
+            at = first * every + n
+            here = drive[min(at, last)]
+            if beside:
+                moved = s[1]
+                row = min(at // every, y.shape[0] - 1)
+                time = begin + at * step
+                half = 1.0 if n else 0.0
+                v = moved - half * kick[1] * f
+                slopes[:] = 0.0
+                fx, fv = 0.0, 0.0
+                turn = NEWTON if n == 0 else 0
+                while True:
+                    f, fx, fv = _force(s[0], v, z, time, row, here, g, slopes, turn == NEWTON)
+                    if turn == NEWTON:
+                        break
+                    better = v - (v - moved + kick[1] * f) / max(1.0 + kick[1] * fv, 0.1)
+                    # once it has settled, a last turn takes the slopes as well
+                    turn = NEWTON if abs(better - v) <= 1e-7 * g[15] else turn + 1
+                    v = better
+                denominator = 1.0 + half * kick[1] * fv
+                for j in range(columns):
+                    own = fx * ds[0, j]
+                    if j >= states:
+                        own += slopes[hidden + j - states]
+                    for k in range(hidden):
+                        own += slopes[k] * dz[k, j]
+                    change[j] = own
+                for p in range(n_par):
+                    j = states + p
+                    dv = ds[1, j] - half * (kick[1] * change[j] + d_kick[p, 1] * f)
+                    df[j] = change[j] + fv * dv / denominator
+                for j in range(columns):
+                    if j < states or j >= states + n_par:
+                        df[j] = change[j] + fv * (ds[1, j] - half * kick[1] * change[j]) / denominator
+                if n:
+                    for k in range(n_lin):
+                        s[k] -= kick[k] * f
+                        for j in range(columns):
+                            ds[k, j] -= kick[k] * df[j]
+                        for p in range(n_par):
+                            ds[k, states + p] -= d_kick[p, k] * f
+            if n % every == 0 and n < total:
+                row = at // every
+                for k in range(channels):
+                    value = from_drive[k] * here + from_force[k] * f
+                    for i in range(n_lin):
+                        value += c[k, i] * s[i]
+                    y[row, k] = value
+                    out = dy[row, k]
+                    for j in range(columns):
+                        out[j] = from_force[k] * df[j]
+                    for i in range(n_lin):
+                        weight = c[k, i]
+                        if weight != 0.0:
+                            for j in range(columns):
+                                out[j] += weight * ds[i, j]
+                    for p in range(n_par):
+                        own = d_from_drive[p, k] * here + d_from_force[p, k] * f
+                        for i in range(n_lin):
+                            own += d_c[p, k, i] * s[i]
+                        out[states + p] += own
+                    for q in range(extra):
+                        out[zero + q] += from_drive[k] * drives[q, min(at, last)]
+            if n == total:
+                break
+            if beside:
+                for k in range(n_lin):
+                    s[k] -= kick[k] * f
+                    for j in range(columns):
+                        ds[k, j] -= kick[k] * df[j]
+                    for p in range(n_par):
+                        ds[k, states + p] -= d_kick[p, k] * f
+            x_was = s[0]
+            for j in range(columns):
+                change[j] = ds[0, j]
+            there = drive[min(at + 1, last)]
+            for k in range(n_lin):
+                value = now[k] * here + later[k] * there
+                for i in range(n_lin):
+                    value += transition[k, i] * s[i]
+                new[k] = value
+                for j in range(columns):
+                    dnew[k, j] = 0.0
+                for i in range(n_lin):
+                    weight = transition[k, i]
+                    for j in range(columns):
+                        dnew[k, j] += weight * ds[i, j]
+                for p in range(n_par):
+                    own = d_now[p, k] * here + d_later[p, k] * there
+                    for i in range(n_lin):
+                        own += d_transition[p, k, i] * s[i]
+                    dnew[k, states + p] += own
+                for q in range(extra):
+                    dnew[k, zero + q] += now[k] * drives[q, min(at, last)] + later[k] * drives[q, min(at + 1, last)]
+            for k in range(n_lin):
+                s[k] = new[k]
+                for j in range(columns):
+                    ds[k, j] = dnew[k, j]
+            if hidden:
+                for j in range(columns):
+                    change[j] = ds[0, j] - change[j]
+                _advance(z, dz, s[0] - x_was, change, step, zero - len(g[12]), by_v, g)
+        for k in range(n_lin):
+            ends[stretch, k] = s[k]
+            dends[stretch, k] = ds[k]
+        for k in range(hidden):
+            ends[stretch, n_lin + k] = z[k]
+            dends[stretch, n_lin + k] = dz[k]

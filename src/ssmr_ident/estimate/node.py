@@ -1,0 +1,378 @@
+"""Models as values: a rig's baseline and the members beside it, and how they become numbers for the kernel."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from scipy.linalg import expm
+
+from ssmr_ident.physics.effects import CATALOGUE
+from ssmr_ident.physics.element import STATES
+from ssmr_ident.physics.slots import SLOTS, effect_vector
+
+Array = np.ndarray
+
+MASS, DAMPING, STIFFNESS = range(3)
+LAG, BRANCH, RIDER = "lag", "branch", "rider"
+"""Linear members: a slow sensor, a Maxwell branch, a part of the mass on a spring of its own."""
+
+
+@dataclass(frozen=True)
+class Coordinate:
+    """A parameter as the fit moves it.
+
+    Parameters
+    ----------
+    name : str
+    scale : float
+        What one unit of the coordinate is; of a logarithm, the value at 0.
+    log : bool
+    lower, upper : float
+        Of the value.
+    mean, std : float
+        Prior in coordinates.
+    unit : str
+    """
+
+    name: str
+    scale: float
+    log: bool = False
+    lower: float = -math.inf
+    upper: float = math.inf
+    mean: float = 0.0
+    std: float = math.inf
+    unit: str = ""
+
+    def value(self, at: float) -> float:
+        value = self.scale * (math.exp(min(at, 200.0)) if self.log else at)
+        return min(max(value, self.lower), self.upper)
+
+    def at(self, value: float) -> float:
+        value = min(max(value, self.lower), self.upper)
+        return math.log(value / self.scale) if self.log else value / self.scale
+
+    def slope(self, at: float) -> float:
+        """d value / d coordinate."""
+        return self.scale * (math.exp(min(at, 200.0)) if self.log else 1.0)
+
+
+@dataclass(frozen=True, eq=False)
+class Tables:
+    """A generic member: forces linear in their coefficients, by tables.
+
+    Parameters
+    ----------
+    by_position, by_velocity, by_both : (g, k) float
+        Over -1 … 1 of x/reach; of asinh(v/low)/top; of x/reach, times v.
+    reach, low, top : float
+    courses : tuple of (n, k) float
+        Per piece: over its samples.
+    kinds : (k,) int
+        What a course multiplies.
+    yields : (k,) float
+        Of spring-slider elements.
+    """
+
+    by_position: Array = field(default_factory=lambda: np.zeros((2, 0)))
+    by_velocity: Array = field(default_factory=lambda: np.zeros((2, 0)))
+    by_both: Array = field(default_factory=lambda: np.zeros((2, 0)))
+    reach: float = 1.0
+    low: float = 1.0
+    top: float = 1.0
+    courses: tuple[Array, ...] = ()
+    kinds: Array = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    yields: Array = field(default_factory=lambda: np.zeros(0))
+
+    @property
+    def size(self) -> int:
+        tables = self.by_position.shape[1] + self.by_velocity.shape[1] + self.by_both.shape[1]
+        return tables + len(self.kinds) + len(self.yields)
+
+    @property
+    def linear(self) -> int:
+        """Coefficients whose forces a path alone gives: all but those of spring-slider elements."""
+        return self.size - len(self.yields)
+
+    def along(self, path: Array, courses: Array, mass: float) -> Array:
+        """(n, linear) float: forces of unit coefficients along a path.
+
+        Parameters
+        ----------
+        path : (n, 3) float
+            Position, velocity, acceleration.
+        courses : (n, k) float
+            Of the piece.
+        mass : float [kg]
+        """
+        x, v = path[:, 0], path[:, 1]
+        columns = [np.zeros((len(path), 0))]
+        for table, place, times in (
+            (self.by_position, x / self.reach, np.ones(len(x))),
+            (self.by_velocity, np.arcsinh(v / self.low) / self.top, np.ones(len(x))),
+            (self.by_both, x / self.reach, v),
+        ):
+            grid = np.linspace(-1.0, 1.0, len(table))
+            columns += [(np.interp(place, grid, c) * times)[:, None] for c in table.T]
+        factors = (x, v, np.ones(len(x)), -mass * path[:, 2])
+        columns += [(courses[:, i] * factors[kind])[:, None] for i, kind in enumerate(self.kinds.tolist())]
+        return np.hstack(columns)
+
+
+@dataclass(frozen=True, eq=False)
+class Member:
+    """A piece of physics beside the linear rig, in one formula.
+
+    Parameters
+    ----------
+    id : str
+        Effect of the catalogue, or ``unlisted``.
+    kind : str
+    form : str
+        Which formula, short; ``any shape`` for a generic one.
+    coordinates : tuple of Coordinate
+    tables : Tables or None
+        Of a generic member.
+    linear : str
+        ``lag``, ``branch`` or ``rider``.
+    law : mapping of str to float
+        Parameters of the effect that are held, where it is a law of the catalogue.
+    after : str
+        ``clip`` or ``delay``: what is done to the channel, or to the drive.
+    channel : str
+        Which channel that is.
+    """
+
+    id: str
+    kind: str
+    form: str
+    coordinates: tuple[Coordinate, ...]
+    tables: Tables | None = None
+    linear: str = ""
+    law: Mapping[str, float] | None = None
+    after: str = ""
+    channel: str = ""
+
+    @property
+    def name(self) -> str:
+        return f"{self.kind} in {self.form}" if self.tables else f"{self.id} ({self.form})" if self.form else self.id
+
+
+@dataclass(frozen=True, eq=False)
+class Node:
+    """The baseline's coordinates and the members beside it."""
+
+    baseline: tuple[Coordinate, ...]
+    members: tuple[Member, ...] = ()
+    fixed: Mapping[int, float] = field(default_factory=dict)
+
+    @property
+    def name(self) -> str:
+        return " + ".join(m.name for m in self.members) or "baseline"
+
+    @property
+    def generic(self) -> bool:
+        return any(m.tables for m in self.members)
+
+    @property
+    def coordinates(self) -> tuple[Coordinate, ...]:
+        """Linear ones, then those of tables, laws, and what is done afterwards."""
+        rest = [m for m in self.members if not m.linear]
+        order = [m for m in self.members if m.linear]
+        order += sorted(rest, key=_place)
+        return (*self.baseline, *(c for m in order for c in m.coordinates))
+
+    def count(self, kind: str) -> int:
+        chosen = {
+            "linear": [m for m in self.members if m.linear],
+            "tables": [m for m in self.members if m.tables],
+            "law": [m for m in self.members if m.law is not None],
+            "after": [m for m in self.members if m.after],
+        }[kind]
+        return sum(len(m.coordinates) for m in chosen)
+
+    def of(self, member: Member, point: Array) -> dict[str, float]:
+        """Values of a member's parameters."""
+        names = {id(c): float(v) for c, v in zip(self.coordinates, self.values(point), strict=True)}
+        return {c.name: names[id(c)] for c in member.coordinates}
+
+    def values(self, point: Array) -> Array:
+        return np.array([c.value(float(p)) for c, p in zip(self.coordinates, point, strict=True)])
+
+    def slopes(self, point: Array) -> Array:
+        return np.array([c.slope(float(p)) for c, p in zip(self.coordinates, point, strict=True)])
+
+    def with_member(self, member: Member) -> Node:
+        return Node(self.baseline, (*self.members, member))
+
+    def without(self, member: Member) -> Node:
+        return Node(self.baseline, tuple(m for m in self.members if m is not member))
+
+    @property
+    def linear_states(self) -> int:
+        return 2 + sum({LAG: 2, BRANCH: 1, RIDER: 2}[m.linear] for m in self.members if m.linear)
+
+    @property
+    def hidden_states(self) -> int:
+        jenkins = sum(len(m.tables.yields) for m in self.members if m.tables)
+        return jenkins + (STATES if any(m.law is not None for m in self.members) else 0)
+
+    @property
+    def states(self) -> int:
+        return self.linear_states + self.hidden_states
+
+    @property
+    def beside(self) -> bool:
+        return any(m.tables or m.law is not None for m in self.members)
+
+
+def _place(member: Member) -> int:
+    """Order of the kernel's parameters: tables by what they hold, laws, what is done afterwards."""
+    if member.tables:
+        return 2 if len(member.tables.yields) else 1 if len(member.tables.kinds) else 0
+    return 3 if member.law is not None else 4
+
+
+def matrices(node: Node, values: Array, orders: Array, based: bool) -> tuple[Array, ...]:
+    """A, what the drive and a force beside do to the states, and channels over states, drive and force.
+
+    Parameters
+    ----------
+    node : Node
+    values : (linear,) float
+        Of the baseline and the linear members.
+    orders : (c,) int
+        Derivatives of the deflection that the channels show.
+    based : bool
+        Whether the drive is the acceleration of the base, to which the deflection is relative.
+    """
+    mass, damping, stiffness = values[:3]
+    n = node.linear_states
+    a = np.zeros((n, n))
+    riders = [m for m in node.members if m.linear == RIDER]
+    at, place = 3, 2
+    share = 0.0
+    places: dict[str, list[tuple[int, Array]]] = {}
+    for member in (m for m in node.members if m.linear):
+        size = len(member.coordinates)
+        places.setdefault(member.linear, []).append((place, values[at : at + size]))
+        at, place = at + size, place + {LAG: 2, BRANCH: 1, RIDER: 2}[member.linear]
+    if riders:
+        share = sum(float(own[0]) for _, own in places[RIDER])
+    body = mass * (1.0 - share)
+    a[0, 1] = 1.0
+    a[1, :2] = -stiffness / body, -damping / body
+    for i, (stiff, tau) in places.get(BRANCH, []):
+        a[1, i] = -stiff / body
+        a[i, 1], a[i, i] = 1.0, -1.0 / tau
+    kick, drive = np.zeros(n), np.zeros(n)
+    kick[1] = 1.0 / body
+    for i, (own, hz, ratio) in places.get(RIDER, []):
+        turning = 2.0 * math.pi * hz
+        pull = np.array([turning**2, 2.0 * ratio * turning])
+        a[1, i : i + 2] += pull * own * mass / body
+    for i, (_, hz, ratio) in places.get(RIDER, []):
+        turning = 2.0 * math.pi * hz
+        a[i, i + 1] = 1.0
+        a[i + 1] = -a[1]
+        a[i + 1, i : i + 2] -= np.array([turning**2, 2.0 * ratio * turning])
+        kick[i + 1] = -kick[1]
+    drive[:] = kick
+    if based:
+        drive[:] = 0.0
+        drive[1] = -1.0
+    rows, by_drive, by_force = np.zeros((len(orders), n)), np.zeros(len(orders)), np.zeros(len(orders))
+    for c, order in enumerate(orders):
+        if order < 2:
+            rows[c, order] = 1.0
+        else:
+            rows[c], by_drive[c], by_force[c] = a[1], drive[1] + (1.0 if based else 0.0), -kick[1]
+    for i, (hz,) in places.get(LAG, []):
+        turning, slow = 2.0 * math.pi * hz, np.zeros(n)
+        slow[i], slow[i + 1] = -(turning**2), -math.sqrt(2.0) * turning
+        a[i, i + 1] = 1.0
+        a[i + 1] = turning**2 * a[1] + slow
+        kick[i + 1] = turning**2 * kick[1]
+        drive[i + 1] = turning**2 * (drive[1] + (1.0 if based else 0.0))
+        for c in np.flatnonzero(orders == 2).tolist():
+            rows[c], by_drive[c], by_force[c] = 0.0, 0.0, 0.0
+            rows[c, i] = 1.0
+    return a, drive, kick, rows, by_drive, by_force
+
+
+def stepped(node: Node, values: Array, orders: Array, based: bool, step: float) -> tuple[tuple[Array, ...], ...]:
+    """Exact step under a drive in a straight line, and the channels: ((T, now, later, half a kick), rows)."""
+    a, drive, kick, *rows = matrices(node, values, orders, based)
+    n = len(a)
+    block = np.zeros((n + 2, n + 2))
+    block[:n, :n] = a * step
+    block[:n, n] = drive * step
+    block[n, n + 1] = 1.0
+    e = expm(block)
+    later = e[:n, n + 1]
+    return (e[:n, :n].copy(), e[:n, n] - later, later.copy(), 0.5 * step * kick), tuple(rows)
+
+
+def stepped_with_slopes(node: Node, values: Array, slopes: Array, orders: Array, based: bool, step: float):
+    """``stepped`` and its derivatives over the linear coordinates by central differences of the small matrices."""
+    lin, rows = stepped(node, values, orders, based, step)
+    d_lin, d_rows = [], []
+    for k in range(len(values)):
+        change = 1e-5 * max(abs(values[k]), 1e-3 * abs(slopes[k]))
+        both = []
+        for sign in (1.0, -1.0):
+            moved = values.copy()
+            moved[k] += sign * change
+            both.append(stepped(node, moved, orders, based, step))
+        scale = slopes[k] / (2.0 * change)
+        d_lin.append([(p - m) * scale for p, m in zip(both[0][0], both[1][0], strict=True)])
+        d_rows.append([(p - m) * scale for p, m in zip(both[0][1], both[1][1], strict=True)])
+    return (
+        lin,
+        tuple(np.array([d[i] for d in d_lin]) for i in range(4)),
+        rows,
+        tuple(np.array([d[i] for d in d_rows]) for i in range(3)),
+    )
+
+
+def law_places(node: Node) -> tuple[Array, Array]:
+    """Slots of the laws' coordinates in the effect vector, and their scales."""
+    index, scale = [], []
+    for member in node.members:
+        if member.law is None:
+            continue
+        for c in member.coordinates:
+            index.append(SLOTS.index(f"{member.id}.{c.name}"))
+            scale.append(abs(c.scale))
+    return np.array(index, dtype=np.int64), np.array(scale)
+
+
+def effects_of(node: Node, point: Array) -> dict[str, dict[str, float]]:
+    """The members that the simulator knows, with their parameters."""
+    found: dict[str, dict[str, float]] = {}
+    for member in node.members:
+        own = node.of(member, point)
+        if member.law is not None:
+            found[member.id] = CATALOGUE[member.id].begun({**member.law, **own})
+        elif member.linear or member.after:
+            found[member.id] = CATALOGUE[member.id].begun(own)
+    return found
+
+
+def law_vector(node: Node, point: Array) -> Array:
+    return effect_vector({m.id: effects_of(node, point)[m.id] for m in node.members if m.law is not None})
+
+
+def merged(node: Node, pieces: int) -> Tables:
+    """The tables of a node's generic members side by side; each kind fills places of its own."""
+    found = Tables(courses=tuple(np.zeros((1, 0)) for _ in range(pieces)))
+    for own in (m.tables for m in node.members if m.tables):
+        if own.by_position.shape[1]:
+            found = replace(own, courses=found.courses, kinds=found.kinds, yields=found.yields)
+        if len(own.kinds):
+            found = replace(found, courses=own.courses, kinds=own.kinds)
+        if len(own.yields):
+            found = replace(found, yields=own.yields)
+    return found

@@ -1,0 +1,228 @@
+"""A rig's recordings as pieces to be fitted: from a release, or the begin of a log, to the next one."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.ndimage import median_filter
+
+from ssmr_ident.core.errors import InputError
+from ssmr_ident.core.recording import Recording
+from ssmr_ident.experiments.campaign import Measurement
+from ssmr_ident.experiments.quantities import UNITS
+from ssmr_ident.signals.grid import even_samples
+from ssmr_ident.signals.noise import rounding
+
+Array = np.ndarray
+
+ORDER = {"position": 0, "angle": 0, "velocity": 1, "angular_rate": 1, "acceleration": 2}
+"""Time derivatives of the deflection that a channel shows."""
+
+FORCES, BASE = ("force", "torque"), "base_acceleration"
+
+FINEST = 60
+"""Samples a period that are kept; faster logs are averaged over blocks, by which a sine of 60 samples loses 0.05 %."""
+
+STEPS = 60
+"""Least integration steps a period: kicks err by (2 pi / steps)^2 / 24, half a per mille."""
+
+FAST = 0.02
+"""Share of a channel's size beyond which differences are taken to see the motion as well as noise, until a fit has
+told the two apart."""
+
+QUIET = 0.1
+"""Share of the loudest stretch below which a stretch is at rest."""
+
+
+@dataclass(frozen=True, eq=False)
+class Piece:
+    """A stretch of a recording that has one start.
+
+    Parameters
+    ----------
+    name : str
+        Of the recording.
+    recording : int
+        Number among those of the problem.
+    channels : tuple of str
+    orders : (c,) int
+        Time derivatives of the deflection.
+    time : (n,) float [s]
+        The recording's own.
+    y : (n, c) float [SI]
+    counts : (n, c) bool
+        False for single samples far off their neighbours.
+    drive : (n·every + 1,) float [N], or [m/s^2] of the base
+    based : bool
+        Whether the base drives it.
+    driven : bool
+    step : float [s]
+        Of the integration.
+    every : int
+        Steps a sample.
+    white : (c,) float
+        Standard deviation of white noise: by differences of the log, at most ``FAST`` of its size, until that of what a
+        fit leaves is known.
+    """
+
+    name: str
+    recording: int
+    channels: tuple[str, ...]
+    orders: Array
+    time: Array
+    y: Array
+    counts: Array
+    drive: Array
+    based: bool
+    driven: bool
+    step: float
+    every: int
+    white: Array
+
+    @property
+    def rate(self) -> float:
+        return 1.0 / (self.step * self.every)
+
+    @property
+    def units(self) -> tuple[str, ...]:
+        return tuple(UNITS[name] for name in self.channels)
+
+
+def pieces_of(measurement: Measurement, index: int, frequency: float) -> tuple[Piece, ...]:
+    """Prepare a recording.
+
+    Parameters
+    ----------
+    measurement : Measurement
+    index : int
+        Its number.
+    frequency : float [Hz]
+        Highest at which the rig is expected to move on its own.
+
+    Raises
+    ------
+    InputError
+        No motion, or one that does not change.
+    """
+    recording = measurement.recording
+    channels, drive_name = channels_of(recording)
+    wanted = [*channels, *([drive_name] if drive_name else [])]
+    even = even_samples(recording.time, np.column_stack([recording[name] for name in wanted]))
+    y, rate = even.samples[:, : len(channels)], even.sample_rate
+    drive = even.samples[:, -1] if drive_name else np.zeros(len(y))
+    found = []
+    for first, after in stretches(y, rate, frequency) if not drive_name else [(0, len(y))]:
+        part, force, block = y[first:after], drive[first:after], max(1, int(rate / (FINEST * frequency)))
+        count = len(part) // block
+        counts = ~np.column_stack([_single(column) for column in part.T])
+        part = np.where(counts, part, np.column_stack([median_filter(column, 5) for column in part.T]))
+        averaged = part[: count * block].reshape(count, block, -1).mean(axis=1)
+        kept = counts[: count * block].reshape(count, block, -1).mean(axis=1) > 0.5
+        finer = max(1, math.ceil(STEPS * frequency / rate))
+        every = block if block > 1 else finer
+        fine = (
+            force
+            if block > 1 or not drive_name
+            else np.interp(np.arange((len(force) - 1) * finer + 1) / finer, np.arange(len(force)), force)
+        )
+        if not drive_name:
+            fine = np.zeros(2)
+        least = np.array([rounding(column) for column in part.T]) / math.sqrt(block)
+        fast = np.array([difference_noise(column) for column in averaged.T])
+        white = np.maximum(np.minimum(fast, FAST * averaged.std(axis=0)), least)
+        middle = even.start + (first + (np.arange(count) + 0.5 * (block - 1) / block) * block) / rate
+        if block > 1 and drive_name:  # samples stand in the middle of their blocks
+            fine = np.interp(np.arange(count * block + 1) + 0.5 * (block - 1), np.arange(len(force)), force)
+        found.append(
+            Piece(
+                measurement.name,
+                index,
+                channels,
+                np.array([ORDER[name] for name in channels]),
+                middle,
+                averaged,
+                kept,
+                fine,
+                drive_name == BASE,
+                bool(drive_name),
+                1.0 / (rate * (every if block == 1 else 1)),
+                every,
+                white,
+            )
+        )
+    return tuple(found)
+
+
+def channels_of(recording: Recording) -> tuple[tuple[str, ...], str]:
+    """Motions that change, and the name of what drives (empty for none).
+
+    Raises
+    ------
+    InputError
+        None does.
+    """
+    motions = tuple(name for name in ORDER if name in recording and np.ptp(recording[name]) > 0)
+    drive = next((name for name in (*FORCES, BASE) if name in recording), "")
+    if not motions:
+        where, found = recording.provenance.file, ", ".join(recording.names)
+        raise InputError(where, f"needs a motion that changes; found {found}", "Map the columns by channels:")
+    return motions, drive
+
+
+def stretches(y: Array, rate: float, frequency: float) -> list[tuple[int, int]]:
+    """From each release to the next: begins where the motion jumps up by several times out of what was before.
+
+    Parameters
+    ----------
+    y : (n, c) float
+    rate, frequency : float [Hz]
+    """
+    width = max(4, round(0.5 * rate / frequency))
+    count = len(y) // width
+    if count < 6:
+        return [(0, len(y))]
+    # of differences, so that a mass held aside before the release is quiet as one at rest is
+    moves = np.abs(np.diff(y / np.maximum(y.std(axis=0), 1e-300), axis=0, append=y[-1:])).sum(axis=1)
+    level = np.sqrt((moves[: count * width] ** 2).reshape(count, width).mean(axis=1))
+    loud = np.quantile(level, 0.98)
+    begins: list[int] = []
+    for k in range(1, count - 2):
+        before = level[max(0, k - 3) : k].max()
+        after = level[k : k + 3].max()
+        if after > 3.0 * before and after > 3.0 * QUIET * loud and (not begins or k - begins[-1] > 4):
+            begins.append(k)
+    if not begins:
+        return [(0, len(y))]
+    exact = []
+    for k in begins:
+        stop = min((k + 3) * width, len(moves))
+        inside = moves[(k - 1) * width : stop]
+        noise = np.quantile(moves[max(0, (k - 4)) * width : max(1, k - 1) * width], 0.9)
+        onset = (k - 1) * width + int(np.argmax(inside > max(4.0 * noise, 0.15 * inside.max())))
+        # the release itself lasts a few samples, and a hit as long as its peak
+        exact.append(onset + 1 + int(np.argmax(moves[onset : min(onset + width // 2 + 1, len(moves))])))
+    first = [0] if level[: max(begins[0] - 1, 1)].max() > QUIET * loud else []
+    edges = [*first, *exact, len(y)]
+    return [(a, b) for a, b in itertools.pairwise(edges) if b - a > 4 * width]
+
+
+def difference_noise(samples: Array) -> float:
+    """Standard deviation of white noise from third differences, by their median: motion hardly shows in them."""
+    return float(np.median(np.abs(np.diff(samples, 3)))) / 0.6745 / math.sqrt(20.0) + 1e-300
+
+
+def _single(samples: Array) -> Array:
+    """(n,) bool: samples far off both neighbours, which the motion is too slow for."""
+    rest = samples - median_filter(samples, 5)
+    size = 1.4826 * np.median(np.abs(rest)) + 1e-3 * samples.std()
+    wild = np.abs(rest) > 8.0 * size
+    return wild & (np.convolve(wild, np.ones(3), "same") <= 1.0)
+
+
+def largest(pieces: Sequence[Piece]) -> float:
+    """Number of samples in all."""
+    return float(sum(p.y.size for p in pieces))

@@ -1,0 +1,113 @@
+"""From measurements and what is known of a rig to one inverse problem: its scales, priors and first noise."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from ssmr_ident.core.parameter import ParameterSet
+from ssmr_ident.estimate.fit import Problem
+from ssmr_ident.estimate.node import Coordinate
+from ssmr_ident.estimate.pieces import BASE, FORCES, ORDER, Piece, channels_of, pieces_of
+from ssmr_ident.experiments.campaign import Measurement
+from ssmr_ident.physics.rig import RIG_KEYS
+from ssmr_ident.signals.grid import even_samples
+from ssmr_ident.signals.noise import AutoregressiveNoise
+
+Array = np.ndarray
+
+VAGUE = 1.0
+"""Standard deviation of the logarithm of a mass or stiffness of which the file says no uncertainty."""
+
+LEAST_NOISE = 1e-4
+"""Of a channel's size: below it a log has no digits."""
+
+
+FAR = 3.0
+"""Factor between the file's natural frequency and the motion's from which the motion is believed."""
+
+
+def problem_of(measurements: Sequence[Measurement], parameters: ParameterSet) -> Problem:
+    """Prepare recordings of a rig.
+
+    Parameters
+    ----------
+    measurements : sequence of Measurement
+    parameters : ParameterSet
+        Mass, damping, stiffness, as known.
+    """
+    frequency = natural_hz(parameters)
+    seen = [_seen_hz(m) for m in measurements]
+    moving = float(np.median(seen))
+    if not 1.0 / FAR < frequency / moving < FAR:
+        frequency = moving
+    pieces = tuple(p for i, m in enumerate(measurements) for p in pieces_of(m, i, max(frequency, moving)))
+    size = float(np.sqrt(np.mean([_size(p, frequency) ** 2 for p in pieces])))
+    driven = any(p.driven and not p.based for p in pieces)
+    noises = tuple(
+        tuple(
+            AutoregressiveNoise(np.ones(1), max(w, LEAST_NOISE * s))
+            for w, s in zip(p.white, p.y.std(axis=0), strict=True)
+        )
+        for p in pieces
+    )
+    return Problem(pieces, baseline_of(parameters, driven, size, frequency), noises, frequency, size)
+
+
+def natural_hz(parameters: ParameterSet) -> float:
+    """Of the file's mass and stiffness; 0 without a spring."""
+    mass, _, stiffness = RIG_KEYS["inertia_kg_m2" in parameters]
+    stiff = float(parameters[stiffness].value)
+    return math.sqrt(max(stiff, 0.0) / float(parameters[mass].value)) / (2.0 * math.pi)
+
+
+def baseline_of(parameters: ParameterSet, driven: bool, size: float, frequency: float) -> tuple[Coordinate, ...]:
+    """Mass, damping and stiffness with their priors. Without a measured force the mass only scales, and stays."""
+    keys = RIG_KEYS["inertia_kg_m2" in parameters]
+    mass, damping, stiffness = (parameters[key] for key in keys)
+    m = float(mass.value)
+    omega = 2.0 * math.pi * frequency
+    spread = (mass.std / m if mass.std else VAGUE) if driven and not mass.fixed else 0.0
+    found = [Coordinate(keys[0], m, True, 0.05 * m, 20.0 * m, 0.0, spread or 1e-9, mass.unit)]
+    unit, value = m * omega, float(damping.value)
+    known = damping.std / unit if damping.std else 3.0
+    known = 1e-9 if damping.fixed else known
+    found.append(Coordinate(keys[1], unit, False, 0.0, 50.0 * unit, value / unit, known, damping.unit))
+    k = float(stiffness.value)
+    if k <= 0.0:
+        found.append(Coordinate(keys[2], m * omega**2, False, 0.0, math.inf, 0.0, 1e-9, stiffness.unit))
+        return tuple(found)
+    own = stiffness.std / k if stiffness.std else VAGUE
+    own = 1e-9 if stiffness.fixed else own
+    found.append(Coordinate(keys[2], k, True, 0.01 * k, 100.0 * k, 0.0, own, stiffness.unit))
+    return tuple(found)
+
+
+def _seen_hz(measurement: Measurement) -> float:
+    """Frequency of the deflection, from the loudest motion's spectrum, in acceleration divided by its square."""
+    channels, drive = channels_of(measurement.recording)
+    name = channels[0]
+    even = even_samples(measurement.recording.time, measurement.recording[name][:, None])
+    y = even.samples[:, 0] - even.samples[:, 0].mean()
+    frequency = np.fft.rfftfreq(len(y), 1.0 / even.sample_rate)
+    power = np.abs(np.fft.rfft(y * np.hanning(len(y)))) ** 2
+    low = 3.0 / (len(y) / even.sample_rate)
+    # what noise has at every frequency would win once it is weighed by its square
+    weight = np.where((frequency >= low) & (power > 0.01 * power.max()), power - np.median(power), 0.0)
+    if ORDER[name] and drive:
+        weight = weight / np.maximum(frequency, low) ** (2 * ORDER[name])
+    if weight.sum() <= 0.0:
+        return float(frequency[int(np.argmax(power[1:])) + 1])
+    return float(np.interp(0.5, np.cumsum(weight) / weight.sum(), frequency))
+
+
+def _size(piece: Piece, frequency: float) -> float:
+    """RMS deflection, from whatever was measured."""
+    order = int(piece.orders[0])
+    return float(piece.y[:, 0].std()) / (2.0 * math.pi * frequency) ** order
+
+
+def driven_by_force(measurement: Measurement) -> bool:
+    return any(name in measurement.recording for name in FORCES) and BASE not in measurement.recording

@@ -1,0 +1,84 @@
+"""The decision on tables written by hand: no simulation."""
+
+from __future__ import annotations
+
+from ssmr_ident.doctor.decide import MISSING, NOTHING, UNDETERMINED, decide
+from ssmr_ident.doctor.table import Row
+
+SAMPLES = 5000.0
+
+
+def row(ids: str, kinds: str, evidence: float, chi2: float, over: float = 1.0, generic: bool = False) -> Row:
+    return Row(tuple(ids.split()), tuple(kinds.split()), ids or "baseline", generic, evidence, chi2, SAMPLES, over)
+
+
+BASE = row("", "", 0.0, 50_000.0, 3.0)
+
+
+def test_nothing_beats_the_baseline() -> None:
+    quiet = row("", "", 0.0, 5000.0, 1.0)
+    found = decide([quiet, row("dry_friction", "static_force", 4.0, 4990.0)])
+    assert found.verdict == NOTHING
+    assert found.chosen is None
+
+
+def test_much_is_left_and_nothing_takes_it() -> None:
+    assert decide([BASE, row("dry_friction", "static_force", 4.0, 49_990.0, 3.0)]).verdict == UNDETERMINED
+
+
+def test_a_named_law_beside_its_kind_in_any_shape() -> None:
+    law = row("nonlinear_stiffness", "static_force", 22_500.0, 5000.0)
+    shape = row("unlisted", "static_force", 22_450.0, 4980.0, generic=True)
+    other = row("hysteresis", "memory", 9000.0, 32_000.0, 2.5)
+    found = decide([BASE, law, shape, other])
+    assert found.verdict == MISSING
+    assert found.chosen is law
+    assert found.listed
+    assert found.ties == ()
+    assert found.confidence > 0.99
+    assert [s.kind for s in found.kinds] == ["static_force", "memory"]
+    assert found.kinds[0].share > 0.99 > found.kinds[1].share
+
+
+def test_two_laws_fit_alike() -> None:
+    first = row("quadratic_damping", "static_force", 22_500.0, 5000.0)
+    second = row("dry_friction", "static_force", 22_498.0, 5004.0)
+    found = decide([BASE, first, second])
+    assert found.chosen is first
+    assert found.ties == ("dry_friction",)
+    assert 0.8 < found.confidence < 0.95
+
+
+def test_a_shape_that_no_law_has_is_unlisted() -> None:
+    law = row("nonlinear_stiffness", "static_force", 18_000.0, 14_000.0, 1.6)
+    shape = row("unlisted", "static_force", 22_400.0, 5000.0, generic=True)
+    found = decide([BASE, law, shape])
+    assert found.verdict == MISSING
+    assert not found.listed
+    assert found.chosen is shape
+
+
+def test_a_formula_a_little_off_is_still_that_law() -> None:
+    law = row("nonlinear_stiffness", "static_force", 22_200.0, 5600.0, 1.05)
+    shape = row("unlisted", "static_force", 22_400.0, 5000.0, generic=True)
+    found = decide([BASE, law, shape])
+    assert found.listed
+    assert found.chosen is law
+    assert 0.0 < found.left < 0.02
+
+
+def test_a_second_effect_has_to_beat_the_first_in_any_shape() -> None:
+    law = row("dry_friction", "static_force", 20_000.0, 9000.0, 1.34)
+    shape = row("unlisted", "static_force", 22_300.0, 5200.0, 1.02, generic=True)
+    pair = row("dry_friction sensor_bandwidth", "static_force sensor_chain", 22_310.0, 5180.0, 1.02)
+    found = decide([BASE, law, shape, pair])
+    assert found.chosen is not pair
+
+
+def test_a_second_effect_that_is_there() -> None:
+    law = row("dry_friction", "static_force", 20_000.0, 9000.0, 1.34)
+    shape = row("unlisted", "static_force", 20_100.0, 8700.0, 1.32, generic=True)
+    pair = row("dry_friction sensor_bandwidth", "static_force sensor_chain", 22_400.0, 5000.0, 1.0)
+    found = decide([BASE, law, shape, pair])
+    assert found.chosen is pair
+    assert found.listed

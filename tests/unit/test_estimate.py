@@ -1,0 +1,196 @@
+"""The fit of rigs: kernel against simulator, elimination against dense algebra, recovery against closed forms."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.special import ellipj
+
+from ssmr_ident.estimate import fit as fits
+from ssmr_ident.estimate.fit import Problem, Start, polish, regressed, shot
+from ssmr_ident.estimate.generic import static
+from ssmr_ident.estimate.node import Coordinate, Member, Node
+from ssmr_ident.estimate.pieces import Piece, stretches
+from ssmr_ident.estimate.shoot_kernel import eliminate
+from ssmr_ident.estimate.smoother import smoothed
+from ssmr_ident.physics.rig import Rig
+from ssmr_ident.signals.noise import AutoregressiveNoise
+from ssmr_ident.simulate.rig import simulate_rig
+
+MASS, DAMPING, STIFFNESS = 2.0, 1.5, 800.0
+HZ = math.sqrt(STIFFNESS / MASS) / (2.0 * math.pi)
+
+
+def baseline(mass_std: float = 0.01) -> tuple[Coordinate, ...]:
+    return (
+        Coordinate("mass_kg", MASS, True, 0.1, 40.0, 0.0, mass_std, "kg"),
+        Coordinate("damping_N_s_m", MASS * 2 * math.pi * HZ, False, 0.0, 1e4, 0.03, 3.0, "N s/m"),
+        Coordinate("stiffness_N_m", STIFFNESS, True, 8.0, 8e4, 0.0, 1.0, "N/m"),
+    )
+
+
+def piece(time, y, channel: str, noise: float, drive: np.ndarray | None = None, every: int = 1) -> Piece:
+    order = {"position": 0, "velocity": 1, "acceleration": 2}[channel]
+    step = (time[1] - time[0]) / every
+    white = np.array([noise])
+    fine = np.zeros(2) if drive is None else drive
+    return Piece("log.csv", 0, (channel,), np.array([order]), time, y[:, None], np.ones((len(y), 1), bool), fine, False,
+                 drive is not None, float(step), every, white)  # fmt: skip
+
+
+def problem(*pieces: Piece, mass_std: float = 0.01) -> Problem:
+    noises = tuple((AutoregressiveNoise(np.ones(1), float(p.white[0])),) for p in pieces)
+    size = float(np.mean([p.y.std() / (2 * math.pi * HZ) ** int(p.orders[0]) for p in pieces]))
+    return Problem(tuple(pieces), baseline(mass_std), noises, HZ, size)
+
+
+def cubic(size: float) -> Member:
+    k3 = Coordinate("k3_N_m3", 0.1 * STIFFNESS / size**2, unit="N/m^3")
+    return Member("nonlinear_stiffness", "static_force", "cubic", (k3,), law={})
+
+
+def friction(force: float) -> Member:
+    declared = (Coordinate("F_c_N", force), Coordinate("rounding_m_s", 0.02, True, 1e-5, 1.0))
+    return Member("dry_friction", "static_force", "tanh", declared, law={})
+
+
+def driven(k3: float, noise: float, seed: int = 3, seconds: float = 8.0, rate: float = 100.0) -> Piece:
+    random = np.random.default_rng(seed)
+    count = int(seconds * rate)
+    force = np.convolve(random.standard_normal(count + 12), np.ones(12) / 12, "valid")[:count] * 60.0
+    fine = np.interp(np.arange((count - 1) * 2 + 1) / 2, np.arange(count), force)
+    run = simulate_rig(Rig(MASS, DAMPING, STIFFNESS), fine, rate, oversampling=2, fine=True,
+                       effects={"nonlinear_stiffness": {"k3_N_m3": k3}})  # fmt: skip
+    y = run[:, 2] + noise * random.standard_normal(count)
+    return piece(np.arange(count) / rate, y, "acceleration", max(noise, 1e-3), fine, 2)
+
+
+def compiled(p: Problem, node: Node, point: np.ndarray):
+    return fits._Compiled.of(p, node, point, p.pieces)
+
+
+@pytest.mark.parametrize(
+    ("member", "agree"),
+    # the simulator iterates the velocity that friction acts on three times, the kernel until it holds
+    [(cubic, 1e-9), (lambda size: friction(5.0), 1e-3)],
+)
+def test_kernel_is_the_simulator_and_its_slopes_are_differences(member, agree: float) -> None:
+    own = driven(2e5, 0.0, seconds=2.0)
+    p = problem(own)
+    node = Node(p.baseline, (member(p.size),))
+    point = np.array([0.01, 0.04, -0.02, *([0.7] if member is cubic else [0.7, 0.1])])
+    start = np.zeros((1, node.states))
+    start[0, :2] = p.size, -p.speed
+    borders = np.array([0, len(own.y)])
+    found = fits.simulate(compiled(p, node, point), 0, start, borders, 0.0)
+    values = node.values(point)
+    effects = {node.members[0].id: dict(zip([c.name for c in node.members[0].coordinates], values[3:], strict=True))}
+    rig = Rig(values[0], values[1], values[2])
+    true = simulate_rig(rig, own.drive, own.rate, *start[0, :2], oversampling=2, fine=True, effects=effects)
+    assert np.abs(found.y[:, 0] - true[:, 2]).max() < agree * true[:, 2].std()
+    for k in range(len(point)):
+        moved = point.copy()
+        moved[k] += 1e-5
+        other = fits.simulate(compiled(p, node, moved), 0, start, borders, 0.0)
+        differences = (other.y - found.y)[:, 0] / 1e-5
+        slopes = found.dy[:, 0, node.states + k]
+        assert np.abs(differences - slopes).max() < 3e-3 * np.abs(differences).max()
+
+
+def test_elimination_is_dense_algebra() -> None:
+    random = np.random.default_rng(5)
+    count, n, m = 5, 2, 3
+    rows = random.standard_normal((count, 9, n + m))
+    h = np.einsum("sri,srj->sij", rows, rows)
+    g = random.standard_normal((count, n + m))
+    f = random.standard_normal((count, n, n + m))
+    rest, weight = random.standard_normal((count, n)), np.array([3.0, 7.0])
+    left, right, gain, by_par, base = eliminate(h, g, f, rest, weight, n, np.zeros(n))
+    full, line = np.zeros((count * n + m,) * 2), np.zeros(count * n + m)
+    for s in range(count):
+        place = [*range(s * n, s * n + n), *range(count * n, count * n + m)]
+        full[np.ix_(place, place)] += h[s]
+        line[place] += g[s]
+        if s < count - 1:
+            jump = np.zeros((n, len(line)))
+            jump[:, place] = f[s]
+            jump[:, s * n + n : s * n + 2 * n] -= np.eye(n)
+            full += jump.T @ (weight[:, None] * jump)
+            line += jump.T @ (weight * rest[s])
+    dense = -np.linalg.solve(full, line)
+    parameters = -np.linalg.solve(left, right)
+    assert parameters == pytest.approx(dense[-m:])
+    last = by_par[-1] @ parameters + base[-1]
+    before = gain[-2] @ last + by_par[-2] @ parameters + base[-2]
+    assert last == pytest.approx(dense[-m - n : -m])
+    assert before == pytest.approx(dense[-m - 2 * n : -m - n])
+
+
+@pytest.mark.parametrize(("stiff", "damp"), [(1.0, 1.0), (3.0, 10.0), (1.0 / 3.0, 0.1)])
+def test_multiple_shooting_comes_from_far_away(stiff: float, damp: float) -> None:
+    k3 = 2e5
+    p = problem(driven(k3, 0.05), mass_std=1.0)
+    wrong = (p.baseline[0], replace(p.baseline[1], mean=0.03 * damp), replace(p.baseline[2], mean=math.log(stiff)))
+    p = replace(p, baseline=wrong)
+    node = Node(p.baseline, (cubic(p.size),))
+    paths = tuple(smoothed(own, p.frequency, p.size) for own in p.pieces)
+    point = regressed(p, paths, node)
+    found = polish(p, node, shot(p, node, Start(point, paths=paths)))
+    assert found.value("stiffness_N_m") == pytest.approx(STIFFNESS, rel=0.01)
+    assert found.value("k3_N_m3") == pytest.approx(k3, rel=0.02)
+    assert found.value("damping_N_s_m") == pytest.approx(DAMPING, rel=0.1)
+    assert found.chi2 / p.samples == pytest.approx(1.0, abs=0.25)
+
+
+def test_duffing_oscillation_in_elliptic_functions() -> None:
+    """x = A cn(w t | m), w^2 = (k + k3 A^2)/m, m = k3 A^2/(2 (k + k3 A^2)): Kovacic and Brennan (2011), section 3.2."""
+    k3, amplitude = 1.5e5, 0.05
+    stiff = STIFFNESS + k3 * amplitude**2
+    time, random = np.arange(500) / 200.0, np.random.default_rng(1)
+    cn = ellipj(math.sqrt(stiff / MASS) * time, k3 * amplitude**2 / (2.0 * stiff))[1]
+    p = problem(piece(time, amplitude * cn + 1e-4 * random.standard_normal(500), "position", 1e-4, every=2))
+    node = Node(p.baseline, (cubic(p.size),))
+    paths = (smoothed(p.pieces[0], HZ, p.size),)
+    found = polish(p, node, shot(p, node, Start(np.array([0.0, 0.0, 0.0, 0.0]), paths=paths)))
+    ratio = MASS / found.value("mass_kg")  # a free motion gives ratios to the mass alone
+    assert ratio * found.value("stiffness_N_m") == pytest.approx(STIFFNESS, rel=0.01)
+    assert ratio * found.value("k3_N_m3") == pytest.approx(k3, rel=0.01)
+
+
+def test_coulomb_decay_falls_by_four_lags_a_cycle() -> None:
+    """Half cycles about a centre that the friction shifts by F/k (Den Hartog 1934)."""
+    force, amplitude, omega = 4.0, 0.1, math.sqrt(STIFFNESS / MASS)
+    shift = force / STIFFNESS
+    time = np.arange(270) / 200.0  # nine half cycles, before it stops
+    half = np.floor(time * omega / math.pi)
+    x = (amplitude - (2.0 * half + 1.0) * shift) * np.cos(omega * time) + shift * (-1.0) ** half
+    p = problem(piece(time, x + 2e-5 * np.random.default_rng(2).standard_normal(270), "position", 2e-5, every=4))
+    node = Node(p.baseline, (friction(1.0),))
+    paths = (smoothed(p.pieces[0], HZ, p.size),)
+    found = polish(p, node, shot(p, node, Start(np.array([0.0, 0.0, 0.0, 1.0, 0.0]), paths=paths)))
+    assert found.value("F_c_N") * MASS / found.value("mass_kg") == pytest.approx(force, rel=0.01)
+
+
+def test_any_shape_takes_a_cubic_and_leaves_noise() -> None:
+    p = problem(driven(4e4, 0.05))
+    paths = tuple(smoothed(own, p.frequency, p.size) for own in p.pieces)
+    node = Node(p.baseline, (static(p, paths),))
+    point = regressed(p, paths, node)
+    found = polish(p, node, shot(p, node, Start(point, paths=paths)))
+    assert found.chi2 / p.samples < 1.3
+    plain = polish(p, Node(p.baseline), shot(p, Node(p.baseline), Start(point[:3], paths=paths)))
+    assert plain.chi2 > 20.0 * found.chi2
+
+
+def test_releases_are_found() -> None:
+    rate, random = 500.0, np.random.default_rng(4)
+    time = np.arange(3000) / rate
+    y = 0.01 * random.standard_normal(3000)
+    for begin in (1.0, 3.4):
+        since = np.maximum(time - begin, 0.0)
+        y += np.where(time >= begin, 10.0 * np.exp(-3.0 * since) * np.cos(40.0 * since), 0.0)
+    found = stretches(y[:, None], rate, 40.0 / (2 * math.pi))
+    assert [a / rate for a, _ in found] == pytest.approx([1.0, 3.4], abs=0.02)
