@@ -93,14 +93,28 @@ def test_external_entity(tmp_path: Path) -> None:
 )  # fmt: skip
 @pytest.mark.parametrize("long", [False, True])
 def test_one_stray_cell_at_the_end_of_the_sheet(workbook: Path, cell: bytes, long: bool) -> None:
-    """17 thousand million cells would be laid out for it."""
+    """17 thousand million cells would be laid out for it; the row goes, with a word."""
+    (clean,) = read(workbook)
     padding = b" " * (LONG if long else 0)
     row = b'<row r="1048576">' + cell + b"</row>" + padding + b"</sheetData>"
-    refused(repack(workbook, SHEET, lambda data: data.replace(b"</sheetData>", row)), "sheet reaches to row 1048576")
+    begin = time.perf_counter()
+    (recording,) = read(repack(workbook, SHEET, lambda data: data.replace(b"</sheetData>", row)))
+    assert time.perf_counter() - begin < 2.0
+    assert any("row(s) from 1048576 on stand alone" in note.text for note in recording.warnings)
+    for name in clean.names:
+        np.testing.assert_array_equal(recording[name], clean[name])
+
+
+def test_a_cell_far_to_the_right_is_refused(workbook: Path) -> None:
+    row = b'<row r="900"><c r="XFD900"><v>1</v></c></row></sheetData>'
+    refused(repack(workbook, SHEET, lambda data: data.replace(b"</sheetData>", row)), "sheet reaches to row 900")
 
 
 def test_rows_without_references_are_counted(workbook: Path) -> None:
-    rows = b"".join(b"<row>" + b"<c><v>1</v></c>" * 40 + b"</row>" for _ in range(2000)) + b'<row r="900000"><c/></row>'
+    rows = (
+        b"".join(b"<row>" + b"<c><v>1</v></c>" * 40 + b"</row>" for _ in range(2000))
+        + b'<row r="9999"><c r="XFD9999"/></row>'
+    )
     refused(
         repack(workbook, SHEET, lambda data: data.replace(b"</sheetData>", rows + b"</sheetData>")), "sheet reaches"
     )

@@ -20,7 +20,7 @@ def command(
     paths: Annotated[list[Path], typer.Argument(metavar="FILE...", help="Logs, or folders with logs in them.")],
     reader: Annotated[
         str | None,
-        typer.Option("--reader", help="labview-xlsx, lvm, tdms, mtestquattro or csv; left out, the content decides."),
+        typer.Option("--reader", help="Such as csv, lvm, tdms, labview-xlsx, mat; left out, the content decides."),
     ] = None,
     columns: Annotated[
         str | None, typer.Option("--columns", metavar="QUANTITY=COLUMN,...", help="Such as time=0,force=2.")
@@ -43,6 +43,10 @@ def command(
     on_bad: Annotated[
         Literal["error", "nan"], typer.Option("--on-bad", help="What a cell that is no number does.")
     ] = "error",
+    stamps: Annotated[
+        Literal["auto", "even", "logged"],
+        typer.Option("--stamps", help="Stamps in bursts or too coarse: made even by regression (auto), or kept."),
+    ] = "auto",
     trim: Annotated[bool, typer.Option("--trim", help="Cut axes of different length to what all have.")] = False,
     load_scale: Annotated[
         float | None, typer.Option("--load-scale", metavar="N", help="Newton per unit of LOAD in .mtwData.")
@@ -62,6 +66,7 @@ def command(
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Only warnings and errors.")] = False,
 ) -> None:
     """What a log holds: reader, channels, units, rate, length, gaps, clipping, mains hum."""
+    from ssmr_ident.cli.inspect_folder import common_lines, in_common, line_of
     from ssmr_ident.cli.inspect_log import summary_of
     from ssmr_ident.cli.inspect_save import save_choices
     from ssmr_ident.cli.inspect_screen import show
@@ -80,6 +85,7 @@ def command(
             sheets=_pairs("--sheets", sheets),
             time_unit=time_unit,
             on_bad=on_bad,
+            stamps=stamps,
             trim=trim,
             load_scale=load_scale,
             sample=sample,
@@ -90,6 +96,7 @@ def command(
     if not 0 < mains < float("inf"):
         raise InputError("--mains", f"{mains} is no frequency", "Give 50 or 60.")
     files, unread = logs_in(paths)
+    overview = any(path.is_dir() for path in paths)
     summaries, errors = [], list(unread)
     for file in files:
         try:
@@ -99,8 +106,15 @@ def command(
             errors.append(error)
             continue
         summaries += found
-        if not as_json:
+        if overview and not as_json and not quiet:
+            for summary in found:
+                typer.echo(line_of(summary))
+        elif not as_json:
             show(found, quiet=quiet)
+    common = in_common(summaries) if overview else {}
+    if overview and not as_json and not quiet:
+        for line in common_lines(common, len(summaries)):
+            typer.echo(line)
     if save is not None:
         if len(files) != 1 or errors:
             raise errors[0] if errors else InputError("--save", f"{len(files)} logs are named", "Name one log.")
@@ -112,6 +126,7 @@ def command(
 
         answer = {
             "logs": [summary.as_dict() for summary in summaries],
+            **({"in_common": common} if overview else {}),
             "errors": [{"where": e.where, "problem": e.problem, "mend": e.mend} for e in errors],
         }
         print_json(answer)

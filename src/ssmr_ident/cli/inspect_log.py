@@ -44,7 +44,7 @@ class LogSummary:
             "reader": provenance.reader,
             "sha256": provenance.sha256,
             "samples": health.samples,
-            "start_s": float(self.recording.time[0]),
+            "start_s": min(channel.start_s for channel in health.channels),
             "duration_s": health.duration,
             "sample_rate_hz": health.sample_rate,
             "jitter_s": health.jitter,
@@ -71,7 +71,8 @@ def summary_of(recording: Recording, mains_hz: float) -> LogSummary:
     hum = {}
     for channel in recording.channels:
         try:
-            line = mains_line(channel.samples, recording.sample_rate, mains_hz)
+            logged = recording.series(channel.name)
+            line = mains_line(logged.samples, logged.rate, mains_hz)
         except (InputError, np.linalg.LinAlgError):
             continue  # the screen shows a dash: the record cannot tell, which is no fault of the log
         if math.isfinite(line.amplitude) and math.isfinite(line.amplitude_std):

@@ -38,6 +38,7 @@ def save_choices(session: Path, log: Path, options: ReadOptions) -> None:
         "skip_rows": None if options.skip == "auto" else int(options.skip),
         "time_unit": options.time_unit,
         "decimal": options.decimal,
+        "stamps": None if options.stamps == "auto" else options.stamps,
         "on_bad": None if options.on_bad == "error" else options.on_bad,
         "trim": options.trim or None,
         "load_scale": options.load_scale,

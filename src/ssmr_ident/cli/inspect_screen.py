@@ -36,7 +36,8 @@ def _head(console: Console, summary: LogSummary) -> None:
     console.print(f"{provenance.file}{part}", soft_wrap=True)
     console.print(
         f"  reader {provenance.reader}, {health.samples} samples, {health.duration:.6g} s from "
-        f"t = {summary.recording.time[0]:.6g} s, {health.sample_rate:.6g} Hz, jitter {health.jitter:.2g} s, "
+        f"t = {min(channel.start_s for channel in health.channels):.6g} s, {health.sample_rate:.6g} Hz, "
+        f"jitter {health.jitter:.2g} s, "
         f"{health.gaps} gap(s), SHA-256 {provenance.sha256[:12]}…",
         soft_wrap=True,
     )
@@ -47,9 +48,13 @@ def _head(console: Console, summary: LogSummary) -> None:
 
 def _table(summary: LogSummary) -> Table:
     table = Table(box=None, pad_edge=False, padding=(0, 1, 0, 1))
+    own = summary.recording.clocks_differ
     for heading in ("channel", "header", "unit"):
-        table.add_column(heading, overflow="fold")
-    for heading in ("min", "max", "mean", "std", f"{summary.mains_hz:g} Hz", "repeats", "clipped", "missing"):
+        table.add_column(heading, overflow="fold", min_width=len(heading) + 1 if own else None)
+    if own:
+        table.add_column("own clock", no_wrap=True)
+    more = () if own else (f"{summary.mains_hz:g} Hz", "repeats")
+    for heading in ("min", "max", "mean", "std", *more, "clipped", "missing"):
         table.add_column(heading, justify="right", no_wrap=True)
     for channel in summary.health.channels:
         hum = summary.hum.get(channel.name)
@@ -57,12 +62,12 @@ def _table(summary: LogSummary) -> Table:
             channel.name,
             channel.label[:40],
             channel.unit or "?",
+            *((f"{channel.samples} at {channel.rate_hz:.5g} Hz from {channel.start_s:.4g} s",) if own else ()),
             f"{channel.minimum:.5g}",
             f"{channel.maximum:.5g}",
             f"{channel.mean:.5g}",
             f"{channel.std:.3g}",
-            f"{hum[0]:.2g}±{hum[1]:.1g}" if hum else "-",
-            f"{100 * channel.repeated:.0f} %",
+            *(() if own else (f"{hum[0]:.2g}±{hum[1]:.1g}" if hum else "-", f"{100 * channel.repeated:.0f} %")),
             str(channel.clipped),
             str(channel.missing),
         )

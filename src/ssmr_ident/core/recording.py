@@ -221,6 +221,28 @@ class Recording(Shown):
         )
         return replace(self, time=time, channels=channels)
 
+    def on_even_grid(self, most: float = 0.01) -> Recording:
+        """The recording with lost samples taken between their neighbours, where few are lost and the rest is even.
+
+        Parameters
+        ----------
+        most : float
+            Share of lost samples from which on nothing is filled.
+        """
+        steps = np.diff(self.time)
+        typical = float(np.median(steps)) if len(steps) else 0.0
+        counts = np.round(steps / typical) if typical > 0 else steps
+        lost = int(counts.sum() - len(counts))
+        uneven = np.abs(steps - counts * typical) > 0.1 * typical
+        if not 0 < lost <= most * len(self.time) or bool(uneven.any()):
+            return self
+        index = np.r_[0, np.cumsum(counts)].astype(int)
+        time = np.interp(np.arange(index[-1] + 1), index, self.time)
+        channels = [replace(c, samples=Series(self.time, c.samples).at(time), logged=None) for c in self.channels]
+        first = self.time[np.flatnonzero(counts > 1)[0]]
+        text = f"{lost} sample(s) missing, the first after t = {first:.6g} s: taken between their neighbours"
+        return replace(self, time=time, channels=tuple(channels), notes=(*self.notes, Note("warning", text)))
+
     @property
     def sample_rate(self) -> float:
         """Samples per second from first and last time [Hz]; robust against rounded time stamps."""

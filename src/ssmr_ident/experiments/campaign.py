@@ -88,7 +88,7 @@ def load(path: str | Path, progress: Callable[[int, int], None] | None = None) -
 def _measure(session: Session, entry: Entry, accelerometer: Accelerometer) -> Measurement:
     options = read_options(entry)
     recording = to_quantities(read_one(session.path(entry), options), entry, accelerometer)
-    recording = on_its_clock(recording, EXPERIMENTS[entry.experiment])
+    recording = on_its_clock(recording, EXPERIMENTS[entry.experiment]).on_even_grid()
     for group in EXPERIMENTS[entry.experiment].channels:
         if not any(name in recording for name in group):
             raise InputError(
@@ -127,6 +127,7 @@ def read_options(entry: Entry) -> ReadOptions:
         channels=dict(entry.channels),
         time_unit=entry.time_unit,
         on_bad=entry.on_bad,
+        stamps=entry.stamps,
         trim=entry.trim,
         load_scale=entry.load_scale,
         sample=entry.sample,

@@ -2,22 +2,76 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from functools import cache
+from importlib.metadata import entry_points
 from pathlib import Path
-from types import ModuleType
+from typing import Protocol
 
 from ssmr_ident.core.errors import InputError, did_you_mean
 from ssmr_ident.core.recording import Recording
 from ssmr_ident.readers.admet import mtwdata
+from ssmr_ident.readers.archive import reader as archive
+from ssmr_ident.readers.frames import reader as frames
+from ssmr_ident.readers.hdf5 import reader as hdf5
+from ssmr_ident.readers.json import reader as json
 from ssmr_ident.readers.lvm import reader as lvm
+from ssmr_ident.readers.mat import reader as mat
 from ssmr_ident.readers.options import ReadOptions
+from ssmr_ident.readers.ros import reader as ros
 from ssmr_ident.readers.source import Source, open_source
 from ssmr_ident.readers.tdms import reader as tdms
 from ssmr_ident.readers.text import delimited
+from ssmr_ident.readers.uff import reader as uff
+from ssmr_ident.readers.wav import reader as wav
 from ssmr_ident.readers.xlsx import labview_xlsx
 
+ENTRY_POINT = "ssmr_ident.readers"
+"""Group under which a package of a lab's own names its readers."""
+
+
+class Reader(Protocol):
+    """What a reader's module, or any object in its place, offers."""
+
+    @property
+    def NAMES(self) -> tuple[str, ...]:
+        """What ``--reader`` and session.yaml call it."""
+
+    def recognises(self, source: Source) -> bool:
+        """Whether the content is this reader's; it must say no to every other format's files."""
+
+    def read(self, source: Source, options: ReadOptions) -> list[Recording]:
+        """The recordings in it."""
+
+
+class _Archive:
+    """Zips: their members go through the door again."""
+
+    NAMES = archive.NAMES
+
+    def recognises(self, source: Source) -> bool:
+        return archive.recognises(source)
+
+    def read(self, source: Source, options: ReadOptions) -> list[Recording]:
+        return archive.read_with(source, options, _read_source)
+
+
 # Asked in this order; the last takes any text.
-FORMATS: tuple[ModuleType, ...] = (labview_xlsx, lvm, tdms, mtwdata, delimited)
-READERS = tuple(sorted({name for module in FORMATS for name in module.NAMES}))
+FORMATS: tuple[Reader, ...] = (
+    labview_xlsx, lvm, tdms, mtwdata, mat, hdf5, frames, wav, ros, _Archive(), uff, json, delimited,
+)  # fmt: skip
+READERS = tuple(sorted({name for reader in FORMATS for name in reader.NAMES}))
+
+
+@cache
+def installed() -> tuple[Reader, ...]:
+    """Readers that other packages bring; they are asked first."""
+    return tuple(point.load() for point in entry_points(group=ENTRY_POINT))
+
+
+def formats() -> Sequence[Reader]:
+    """All readers, in the order in which they are asked."""
+    return (*installed(), *FORMATS)
 
 
 def read(path: str | Path, options: ReadOptions = ReadOptions()) -> tuple[Recording, ...]:  # noqa: B008 - frozen
@@ -39,8 +93,7 @@ def read(path: str | Path, options: ReadOptions = ReadOptions()) -> tuple[Record
         Whatever is wrong with the file, with the place in it and the mend.
     """
     source = open_source(path)
-    module = _reader_for(source, options)
-    recordings = tuple(module.read(source, options))
+    recordings = tuple(_read_source(source, options))
     if options.sample is not None:
         if options.sample > len(recordings):
             raise source.error(
@@ -48,6 +101,10 @@ def read(path: str | Path, options: ReadOptions = ReadOptions()) -> tuple[Record
             )
         return (recordings[options.sample - 1],)
     return recordings
+
+
+def _read_source(source: Source, options: ReadOptions) -> list[Recording]:
+    return list(_reader_for(source, options).read(source, options))
 
 
 def read_one(path: str | Path, options: ReadOptions = ReadOptions()) -> Recording:  # noqa: B008 - frozen
@@ -73,18 +130,18 @@ def read_one(path: str | Path, options: ReadOptions = ReadOptions()) -> Recordin
     return recordings[0]
 
 
-def _reader_for(source: Source, options: ReadOptions) -> ModuleType:
-    if options.reader is not None:
-        if options.reader not in READERS:
-            raise source.error(f"reader {options.reader!r} is not known", did_you_mean(options.reader, READERS))
-        candidates = [module for module in FORMATS if options.reader in module.NAMES]
-        for module in candidates:
-            if module.recognises(source):
-                return module
-        taken = next((module for module in FORMATS if module.recognises(source)), None)
+def _reader_for(source: Source, options: ReadOptions) -> Reader:
+    known = formats()
+    taken = next((reader for reader in known if reader.recognises(source)), None)
+    names = sorted({name for reader in known for name in reader.NAMES})
+    if options.reader is not None and source.shown == "":
+        if options.reader not in names:
+            raise source.error(f"reader {options.reader!r} is not known", did_you_mean(options.reader, names))
+        for reader in known:
+            if options.reader in reader.NAMES and reader.recognises(source):
+                return reader
         looks = f"it looks like {taken.NAMES[0]}" if taken else f"it is {source.kind}"
         raise source.error(f"is not what reader {options.reader!r} reads; {looks}", "Leave the reader out.")
-    for module in FORMATS:
-        if module.recognises(source):
-            return module
-    raise source.error(f"is {source.kind} that no reader takes", f"Readers: {', '.join(READERS)}.")
+    if taken is None:
+        raise source.error(f"is {source.kind} that no reader takes", f"Readers: {', '.join(names)}.")
+    return taken

@@ -8,7 +8,11 @@ from pathlib import Path
 from ssmr_ident.core.errors import InputError
 
 LOG_EXTENSIONS = frozenset(
-    {".xlsx", ".xlsm", ".lvm", ".tdms", ".csv", ".txt", ".dat", ".asc", ".tsv", ".mtwdata", ".mtxdata"}
+    {
+        *(".xlsx", ".xlsm", ".lvm", ".tdms", ".csv", ".txt", ".dat", ".asc", ".tsv", ".mtwdata", ".mtxdata"),
+        *(".mat", ".h5", ".hdf5", ".parquet", ".feather", ".jsonl", ".ndjson", ".npz", ".uff", ".unv", ".wav", ".zip"),
+        *(".bag", ".mcap", ".db3"),
+    }
 )
 
 

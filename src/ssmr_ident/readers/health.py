@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ssmr_ident.core.recording import Channel, Note, Recording
+from ssmr_ident.core.recording import Channel, Note, Recording, Series
 from ssmr_ident.core.shown import Shown
 
 # The thesis' accelerometer: 2.6 V at rest and 5/(3.4*9.8) V per m/s^2, so that +-1.7 g is 0.1 to 5.1 V; its supply
@@ -33,6 +33,10 @@ class ChannelHealth:
         Share of samples that equal the one before: 0 for a noisy signal, high for a slow clock or coarse steps.
     clipped : int
         Samples at the rails of the accelerometer (axes in volts), or at a value that the channel does not leave.
+    samples : int
+        As logged, on the channel's own clock.
+    rate_hz, start_s, last_time_s : float
+        Of that clock.
     """
 
     name: str
@@ -45,11 +49,15 @@ class ChannelHealth:
     missing: int
     repeated: float
     clipped: int
+    samples: int = 0
+    rate_hz: float = 0.0
+    start_s: float = 0.0
+    last_time_s: float = 0.0
 
 
 @dataclass(frozen=True)
 class LogHealth(Shown):
-    """The time axis and the channels of a recording.
+    """The time axis and the channels of a recording; of channels with clocks of their own, the fastest clock.
 
     Parameters
     ----------
@@ -88,22 +96,23 @@ def health_of(recording: Recording) -> LogHealth:
     ----------
     recording : Recording
     """
-    time = recording.time
+    longest = max(recording.names, key=lambda name: len(recording.series(name).time))
+    time = recording.series(longest).time
     grid = np.linspace(time[0], time[-1], len(time))
     steps = np.diff(time)
     gaps = int((steps > 1.5 * np.median(steps)).sum())
     return LogHealth(
         len(time),
-        recording.duration,
-        recording.sample_rate,
+        float(time[-1] - time[0]),
+        recording.series(longest).rate,
         float(np.abs(time - grid).max()),
         gaps,
-        tuple(_channel_health(channel) for channel in recording.channels),
+        tuple(_channel_health(channel, recording.series(channel.name)) for channel in recording.channels),
     )
 
 
-def _channel_health(channel: Channel) -> ChannelHealth:
-    finite = channel.samples[np.isfinite(channel.samples)]
+def _channel_health(channel: Channel, logged: Series) -> ChannelHealth:
+    finite = logged.samples[np.isfinite(logged.samples)]
     repeated = float(np.mean(np.diff(finite) == 0)) if len(finite) > 1 else 0.0
     return ChannelHealth(
         channel.name,
@@ -113,9 +122,13 @@ def _channel_health(channel: Channel) -> ChannelHealth:
         float(finite.max(initial=-np.inf)),
         float(finite.mean()) if len(finite) else float("nan"),
         float(finite.std()) if len(finite) else float("nan"),
-        len(channel.samples) - len(finite),
+        len(logged.samples) - len(finite),
         repeated,
-        at_rails(channel) or saturated(channel.samples),
+        at_rails(channel) or saturated(logged.samples),
+        len(logged.samples),
+        logged.rate,
+        float(logged.time[0]),
+        float(logged.time[-1]),
     )
 
 

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import hashlib
+import io
 import threading
+import zipfile
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -16,6 +18,8 @@ _BESIDE = 2**20  # bytes from which on a thread pays
 
 _OLE2 = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"
 _LFS = b"version https://git-lfs"
+_MARKS = {b"PAR1": "parquet", b"ARROW1": "feather", b"FEA1": "feather", b"#ROSBAG V2.0": "rosbag1",
+          b"\x89MCAP0\r\n": "mcap", b"SQLite format 3": "db3"}  # fmt: skip
 
 
 class Digest:
@@ -44,7 +48,10 @@ class Source:
     path : Path
     data : bytes
     kind : str
-        ``workbook``, ``tdms``, ``xml`` or ``text``.
+        ``workbook``, ``tdms``, ``xml``, ``text``, ``zip``, ``npz``, ``mat``, ``hdf5``, ``parquet``, ``feather``,
+        ``wav``, ``rosbag1``, ``mcap`` or ``db3``.
+    shown : str
+        What messages call it, where that is not the path: a member of a zip.
     notes : list of Note
         Collected while the file is opened, passed on to its recordings.
     """
@@ -54,10 +61,11 @@ class Source:
     kind: str
     digest: Digest
     notes: list[Note] = field(default_factory=list)
+    shown: str = ""
 
     @property
     def name(self) -> str:
-        return str(self.path)
+        return self.shown or str(self.path)
 
     @property
     def vocabulary(self) -> Vocabulary:
@@ -76,6 +84,22 @@ class Source:
 
     def inform(self, text: str, where: str = "") -> None:
         self.notes.append(Note("info", text, where))
+
+
+def source_of(path: Path, data: bytes, digest: Digest, shown: str) -> Source:
+    """Bytes that stand within a file, as a source of their own.
+
+    Raises
+    ------
+    InputError
+        Their content is no log.
+    """
+    return Source(path, data, _kind(Path(shown.rsplit("/", 1)[-1]), data), digest, shown=shown)
+
+
+def missing_library(source: Source, what: str, library: str, extra: str) -> InputError:
+    """A format whose library is not installed."""
+    return source.error(f"is {what}, which needs {library}", f'Run: pip install "ssmr_ident[{extra}]"')
 
 
 def open_source(path: str | Path) -> Source:
@@ -116,7 +140,16 @@ def _kind(path: Path, data: bytes) -> str:
         raise InputError(where, "is Excel's lock file, not the workbook", "Name the file without '~$'.")
     head = data[:1024]
     if head.startswith(b"PK"):
-        return "workbook"
+        return _kind_of_zip(data)
+    for mark, kind in _MARKS.items():
+        if head.startswith(mark):
+            return kind
+    if head.startswith(b"RIFF") and head[8:12] == b"WAVE":
+        return "wav"
+    if b"\x89HDF\r\n\x1a\n" in (data[:8], data[512:520]):
+        return "hdf5"
+    if len(data) > 128 and head.startswith(b"MATLAB") and data[126:128] in (b"IM", b"MI"):
+        return "mat"
     if head.startswith(_OLE2):
         raise InputError(where, "is a password-protected workbook or an old .xls", "Save it as unprotected .xlsx.")
     if head.startswith(_LFS):
@@ -138,6 +171,20 @@ def _kind(path: Path, data: bytes) -> str:
             "In LabVIEW use 'Export Data To Excel', not 'Export Simplified Image'.",
         )
     return "text"
+
+
+def _kind_of_zip(data: bytes) -> str:
+    """A workbook has a part of that name; NumPy's archives hold arrays; what holds tables is a zip of logs."""
+    try:
+        names = zipfile.ZipFile(io.BytesIO(data)).namelist()
+    except (zipfile.BadZipFile, ValueError, NotImplementedError, OverflowError, EOFError, OSError):
+        return "workbook"  # damaged: what reads workbooks says so
+    if any("workbook." in name or name.startswith("[Content_Types]") for name in names):
+        return "workbook"
+    if names and all(name.endswith(".npy") for name in names):
+        return "npz"
+    logs = (".csv", ".txt", ".tsv", ".dat", ".json", ".jsonl", ".lvm")
+    return "zip" if any(name.lower().endswith(logs) for name in names) else "workbook"
 
 
 def _compare_with_extension(source: Source) -> None:

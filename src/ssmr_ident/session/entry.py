@@ -11,7 +11,6 @@ from ssmr_ident.core.domain import Choice, Either, FileName, Keyed, Listed, Mapp
 BASELINES = ("rigid6", "decoupled", "sdof", "drag")
 EXPERIMENTS = ("free_response", "swivel", "straight", "pull", "wheel_drag", "vertical_compression", "forced")
 ROLES = ("target", "calibration", "heldout")
-READERS = ("labview-xlsx", "lvm", "tdms", "mtestquattro", "csv")
 CABLES = ("steel", "rope")
 QUANTITIES = (
     *("force", "torque", "acceleration", "acceleration_2", "velocity", "position", "position_reference"),
@@ -40,7 +39,8 @@ class Entry:
     role: Annotated[str, Choice(ROLES), "calibration: made without the puzzling condition; heldout: never fitted"] = (
         "target"
     )
-    reader: Annotated[str | None, Choice(READERS), "left out, the content decides"] = None
+    # a lab may bring a reader of its own, which only the readers' door knows
+    reader: Annotated[str | None, Text(longest=80), "left out, the content decides"] = None
     trial: Annotated[int | None, Whole(least=-(2**31)), "number of the repetition"] = None
     motion: Annotated[str | None, Choice(("roll", "pitch", "yaw")), "of a robot's free response"] = None
     yaw_rate_deg_s: Annotated[float | None, TURN, "wanted yaw rate of a swivel"] = None
@@ -76,6 +76,9 @@ class Entry:
     time_unit: Annotated[str | None, Text(), "of the time column"] = None
     decimal: Annotated[str | None, Choice((".", ",")), "decimal sign"] = None
     on_bad: Annotated[str, Choice(("error", "nan")), "what becomes of a cell that is no number"] = "error"
+    stamps: Annotated[str, Choice(("auto", "even", "logged")), "stamps in bursts made even by regression, or kept"] = (
+        "auto"
+    )
     trim: Annotated[bool, YesNo(), "whether rows before the first whole one are cut"] = False
     load_scale: Annotated[float | None, Number("N", least=1e-12, most=1e12), "newtons per unit of a machine's load"] = (
         None

@@ -11,7 +11,7 @@ import numpy as np
 
 from ssmr_ident.core.recording import Note, Recording
 from ssmr_ident.readers.options import ReadOptions
-from ssmr_ident.readers.source import Source
+from ssmr_ident.readers.source import Source, missing_library
 from ssmr_ident.readers.table.assemble import recordings_of
 from ssmr_ident.readers.table.columns import Column, Table, facts
 from ssmr_ident.readers.table.headings import quantity_of, split_header
@@ -35,7 +35,7 @@ def read(source: Source, options: ReadOptions) -> list[Recording]:
         from nptdms import TdmsFile
         from nptdms.log import log_manager
     except ImportError as error:
-        raise source.error("is a TDMS file, which needs npTDMS", 'Run: pip install "ssmr_ident[tdms]"') from error
+        raise missing_library(source, "a TDMS file", "npTDMS", "tdms") from error
     _check_segments(source)
     level = log_manager.log_level
     log_manager.set_level(logging.CRITICAL)  # what it would say about a cut file is said below, with the mend

@@ -6,6 +6,7 @@ lines or columns. The longest run of rows gives delimiter and decimal sign, the 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -18,7 +19,7 @@ from ssmr_ident.readers.table.columns import Column, Table, facts
 from ssmr_ident.readers.table.vocabulary import words_of
 from ssmr_ident.readers.text.blocks import Block, blocks_of, refuse_many_broken
 from ssmr_ident.readers.text.dialect import Layout, sniff
-from ssmr_ident.readers.text.encoding import text_of
+from ssmr_ident.readers.text.encoding import Text, text_of
 from ssmr_ident.readers.text.header_rows import rate_from
 from ssmr_ident.readers.text.last_line import without_cut_line
 from ssmr_ident.readers.text.line_forms import plain_rows
@@ -42,8 +43,34 @@ def read(source: Source, options: ReadOptions) -> list[Recording]:
         No numbers, no time, no unit of a force, ambiguous numbers, too many broken lines.
     """
     text = plain_rows(source, text_of(source))
-    layout = sniff(source, text, options)
-    text = without_cut_line(source, text, layout.dialect.delimiter)
+    return recordings_of_text(source, text, options, "csv", lambda line: f"line {line}")
+
+
+def recordings_of_text(
+    source: Source,
+    text: Text,
+    options: ReadOptions,
+    reader: str,
+    place: Callable[[int], str],
+    within: str = "",
+    delimiters: str = "\t;,| ",
+) -> list[Recording]:
+    """Recordings of rows of cells.
+
+    Parameters
+    ----------
+    reader : str
+        What the recordings say read them.
+    place : function of int to str
+        Names a line for the user.
+    within : str
+        The part of the file that the text is.
+    delimiters : str
+        Those that may be the text's.
+    """
+    layout = sniff(source, text, options, delimiters=delimiters)
+    if not within:
+        text = without_cut_line(source, text, layout.dialect.delimiter)
     items = list(walk(text, layout))
     blocks = _data_blocks(source, blocks_of(source, items, layout))
     _refuse_split_decimals(source, items, blocks)
@@ -53,7 +80,8 @@ def read(source: Source, options: ReadOptions) -> list[Recording]:
         part = f"lines {block.lines[0]}-{block.lines[-1]}"
         if len(blocks) > 1:
             part = f"block {number} of {len(blocks)}, {part}"
-        recordings += _recordings_of_block(source, block, part, layout, options)
+        part = f"{within}, {part}" if within and len(blocks) > 1 else within or part
+        recordings += _recordings_of_block(source, block, part, layout, options, reader, place)
     return recordings
 
 
@@ -102,7 +130,13 @@ def _refuse_split_decimals(source: Source, items: list[NumberRun | TextRow], blo
 
 
 def _recordings_of_block(
-    source: Source, block: Block, part: str, layout: Layout, options: ReadOptions
+    source: Source,
+    block: Block,
+    part: str,
+    layout: Layout,
+    options: ReadOptions,
+    reader: str,
+    place: Callable[[int], str],
 ) -> list[Recording]:
     words = [h.label or f"column {k}" for k, h in enumerate(block.headings) if k in block.text]
     columns = [
@@ -117,19 +151,19 @@ def _recordings_of_block(
     rate, told = rate_from(block.facts, source.vocabulary) or (0.0, "")
     table = Table(
         columns,
-        lambda row: f"line {block.lines[row]}",
+        lambda row: place(int(block.lines[row])),
         part,
         facts(block.facts),
         [Note("info", f"{len(block.values)} rows, {layout.dialect}", part)],
-        "V" if graph else None,
-        axes_in_volts=graph or not block.named,
+        "V" if graph or reader == "labview-xlsx" else None,
+        axes_in_volts=graph or reader == "labview-xlsx" or not block.named,
         split=True,
         rate=rate,
         rate_from=told,
         words=words,
     )
-    recordings = recordings_of(source, "csv", table, options)
-    if _is_testing_machine(columns):
+    recordings = recordings_of(source, reader, table, options)
+    if reader == "csv" and _is_testing_machine(columns):
         return [_by_machine(recording) for recording in recordings]
     return recordings
 

@@ -100,6 +100,8 @@ def _fitting(raw: str, width: int, dialect: Dialect) -> list[str] | None:
     if len(raw) > _LONGEST:
         return None
     text = _unmarked(raw)
+    if width == 1 and len(_names(raw, dialect)) > 1:
+        return None  # several names over one number
     ways = [dialect.cells(text)]
     ways += [Dialect(sign).cells(text) for sign in "\t;,|" if sign != dialect.delimiter]
     if dialect.delimiter == " ":

@@ -12,12 +12,12 @@ from ssmr_ident.readers.health import warnings_of
 from ssmr_ident.readers.options import ReadOptions
 from ssmr_ident.readers.source import Source
 from ssmr_ident.readers.table import time_axis
-from ssmr_ident.readers.table.assemble import recordings_of
 from ssmr_ident.readers.table.columns import Column, Table
 from ssmr_ident.readers.table.headings import split_header
 from ssmr_ident.readers.table.stamp_units import clock_of
-from ssmr_ident.readers.xlsx.sheet_axes import axes_of, is_filled
+from ssmr_ident.readers.xlsx.sheet_axes import axes_of
 from ssmr_ident.readers.xlsx.sheet_numbers import SheetNumbers, numbers_of
+from ssmr_ident.readers.xlsx.value_sheets import read_values, value_sheets
 from ssmr_ident.readers.xlsx.workbook import Sheet, open_sheets, what_is_in
 
 NAMES = ("labview-xlsx",)
@@ -39,43 +39,12 @@ def read(source: Source, options: ReadOptions) -> list[Recording]:
         Sheets that do not say which axis they are, axes that do not fit together, cells that are no numbers.
     """
     sheets = open_sheets(source)
-    single = _single_table(sheets, options)
-    if single is not None:
-        return _one_sheet(source, single, options)
+    wide = value_sheets(source, sheets, options)
+    if wide:
+        return read_values(source, sheets, wide, options)
     axes = axes_of(source, sheets, options)
     numbers = {axis: _axis_numbers(source, sheet, axis, options) for axis, sheet in axes.items()}
     return [_recording(source, axes, numbers, options)]
-
-
-def _single_table(sheets: list[Sheet], options: ReadOptions) -> Sheet | None:
-    """The sheet of a workbook in which one sheet holds everything, or None."""
-    if options.sheets and set(options.sheets) != {"data"}:
-        return None
-    filled = [sheet for sheet in sheets if is_filled(sheet)]
-    if len(filled) != 1:
-        return None
-    widths = [sum(cell != "" for cell in row) for row in filled[0].rows[-3:]]
-    headers = [split_header(cell) for row in filled[0].rows[:60] for cell in row if isinstance(cell, str) and cell]
-    united = any(unit and find_unit(unit) for _, unit in headers)
-    return filled[0] if widths and (max(widths) > 2 or (united and max(widths) == 2)) else None
-
-
-def _one_sheet(source: Source, sheet: Sheet, options: ReadOptions) -> list[Recording]:
-    found = numbers_of(source, sheet, "data", options)
-    columns = []
-    for index, header in enumerate(found.labels):
-        label, unit = split_header(header)
-        columns.append(Column(label, unit, np.ascontiguousarray(found.values[:, index]), found.dated and index == 0))
-    columns[0].quantity = "time" if found.dated or columns[0].label == "X_Value" else None
-    table = Table(
-        columns,
-        lambda row: f"{sheet.name}, row {found.rows[row]}",
-        f"sheet {sheet.name}",
-        notes=found.notes,
-        assumed_unit="V",
-        axes_in_volts=True,
-    )
-    return recordings_of(source, "labview-xlsx", table, options)
 
 
 def _axis_numbers(source: Source, sheet: Sheet, axis: str, options: ReadOptions) -> SheetNumbers:

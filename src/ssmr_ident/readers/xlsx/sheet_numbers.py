@@ -236,7 +236,7 @@ def _seconds(cell: date | time | timedelta) -> float:
         return moment.replace(tzinfo=UTC).timestamp()
     if isinstance(cell, time):
         return cell.hour * 3600 + cell.minute * 60 + cell.second + cell.microsecond * 1e-6
-    return cell.total_seconds()
+    return float(cell.total_seconds())
 
 
 def _from_text(rows: list[list[Any]], sheet: Sheet, options: ReadOptions, notes: list[Note]) -> list[list[Any]] | None:

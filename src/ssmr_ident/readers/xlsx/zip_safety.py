@@ -7,6 +7,7 @@ A cell reference alone sets the size of the table that a parser lays out: one ce
 from __future__ import annotations
 
 import io
+import re
 import zipfile
 import zlib
 
@@ -14,6 +15,9 @@ from ssmr_ident.readers.source import Source
 from ssmr_ident.readers.xlsx.sheet_corner import corner_of
 
 MAX_UNPACKED = 150 * 2**20  # bytes of XML; three axes of 20 s at 1 kHz are 4 MB
+_ROW = re.compile(rb'<row r="(\d{1,9})"')
+_FAR = 10_000  # rows that may be blank between two others
+_FAR_APART = 4  # times as many rows as there are before them
 MAX_CELLS = 6_000_000  # cells of a sheet from A1 to its last corner; a parser holds about 50 bytes for each
 
 
@@ -64,6 +68,7 @@ def checked(source: Source) -> io.BytesIO:
             if member.filename.endswith("workbook.xml.rels") and b"sharedStrings.xml" in data:
                 _require_shared_strings(source, names)
             if "/worksheets/" in member.filename or b"<sheetData" in data[:65536]:
+                data = _without_strays(source, member.filename, data)
                 _check_corner(source, member.filename, data)
             if member.filename not in seen:
                 seen.add(member.filename)
@@ -94,6 +99,20 @@ def _unpack(source: Source, archive: zipfile.ZipFile, member: zipfile.ZipInfo, b
 def _require_shared_strings(source: Source, names: set[str]) -> None:
     if not any(name.lower().endswith("sharedstrings.xml") for name in names):
         raise source.error("workbook part sharedStrings.xml missing", "Save the workbook anew in Excel.")
+
+
+def _without_strays(source: Source, name: str, data: bytes) -> bytes:
+    """A sheet without rows that stand alone far below the rest: a parser would lay out all the rows between."""
+    row = _ROW.search(data, max(0, data.rfind(b"<row ")))
+    if row is None or int(row[1]) < _FAR or data.count(b"<row ") * _FAR_APART > int(row[1]):
+        return data
+    before, end = 0, data.rfind(b"</sheetData>")
+    for match in _ROW.finditer(data):
+        if int(match[1]) - before > max(_FAR, _FAR_APART * before):
+            source.warn(f"row(s) from {int(match[1])} on stand alone far below the rest and are left out", name)
+            return data[: match.start()] + data[end:] if end > match.start() else data
+        before = int(match[1])
+    return data
 
 
 def _check_corner(source: Source, name: str, data: bytes) -> None:

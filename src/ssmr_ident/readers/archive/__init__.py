@@ -1,0 +1,1 @@
+"""Zips with logs in them."""

@@ -1,0 +1,1 @@
+"""From named arrays with attributes, whatever file they come from, to tables."""

@@ -1,0 +1,1 @@
+"""HDF5, and MATLAB files of version 7.3, which are HDF5."""

@@ -1,0 +1,155 @@
+"""JSON: an object a line as brokers and microcontrollers write, a list of objects, or named arrays."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from typing import Any
+
+import numpy as np
+
+from ssmr_ident.core.recording import Recording
+from ssmr_ident.readers.arrays.named import NamedArray, recordings_of_arrays
+from ssmr_ident.readers.options import ReadOptions
+from ssmr_ident.readers.source import Source
+from ssmr_ident.readers.table.assemble import recordings_of
+from ssmr_ident.readers.table.columns import Column, Table
+from ssmr_ident.readers.table.headings import heading_of
+from ssmr_ident.readers.text.encoding import text_of
+from ssmr_ident.readers.text.stamps import is_stamp, seconds_of
+
+NAMES = ("json",)
+_DEEPEST = 8
+_LONGEST_LINE = 100_000  # bytes of an object
+
+
+def recognises(source: Source) -> bool:
+    """Text that begins with an object or a list of objects and names something in quotes."""
+    if source.kind != "text":
+        return False
+    head = source.data[:400].lstrip(b"\xef\xbb\xbf \t\r\n")
+    return (head[:1] == b"{" and b'"' in head) or (head[:1] == b"[" and head[1:].lstrip()[:1] == b"{")
+
+
+def read(source: Source, options: ReadOptions) -> list[Recording]:
+    """Recordings of a JSON text.
+
+    Raises
+    ------
+    InputError
+        No JSON, or no samples in it.
+    """
+    text = text_of(source)
+    lines = text.data.split(b"\n")
+    first = [line for line in lines[:50] if line.strip()][:2]
+    if len(first) == 2 and all(_object(line) is not None for line in first):
+        return _of_lines(source, [(k, line) for k, line in enumerate(lines, start=1) if line.strip()], options)
+    try:
+        content = json.loads(text.data)
+    except (ValueError, RecursionError) as error:
+        raise source.error(f"is JSON that is damaged ({str(error)[:80]})", "Export it again.") from error
+    if isinstance(content, list):
+        return _of_objects(source, [(k, one) for k, one in enumerate(content, start=1)], "object", options)
+    rows = next((v for v in content.values() if _are_objects(v)), None) if isinstance(content, dict) else None
+    if rows is not None:
+        return _of_objects(source, [(k, one) for k, one in enumerate(rows, start=1)], "object", options)
+    arrays: list[NamedArray] = []
+    _collect(arrays, (), content, 0)
+    return recordings_of_arrays(source, "json", arrays, options)
+
+
+def _are_objects(value: Any) -> bool:
+    return isinstance(value, list) and len(value) > 2 and all(isinstance(v, dict) for v in value)
+
+
+def _object(line: bytes) -> dict[str, Any] | None:
+    if len(line) > _LONGEST_LINE:
+        return None
+    try:
+        content = json.loads(line)
+    except (ValueError, RecursionError):
+        return None
+    return content if isinstance(content, dict) else None
+
+
+def _of_lines(source: Source, lines: list[tuple[int, bytes]], options: ReadOptions) -> list[Recording]:
+    objects = [(k, _object(line)) for k, line in lines]
+    broken = [k for k, one in objects if one is None]
+    if broken:
+        if len(broken) > max(3, 0.01 * len(lines)) and options.on_bad != "nan":
+            raise source.error(
+                f"{len(broken)} of {len(lines)} lines are no JSON objects",
+                "Leave them out with --on-bad nan.",
+                f"line {broken[0]}",
+            )
+        source.warn(f"{len(broken)} line(s) are no JSON objects and are left out", f"line {broken[0]}")
+    return _of_objects(source, [(k, one) for k, one in objects if one is not None], "line", options)
+
+
+def _of_objects(source: Source, objects: list[tuple[int, Any]], what: str, options: ReadOptions) -> list[Recording]:
+    """Objects as rows: those with the names that most have; others are events among the samples."""
+    flat = [(k, _flat(one)) for k, one in objects]
+    most = Counter(frozenset(n for n, v in row.items() if _is_number(v)) for _, row in flat).most_common(1)
+    if not most or not most[0][0]:
+        raise source.error("is JSON without samples", "A log has the same names with numbers in every object.")
+    wanted = most[0][0]
+    rows = [(k, row) for k, row in flat if any(_is_number(row.get(name)) for name in wanted)]
+    if len(rows) < len(flat):
+        source.inform(f"{len(flat) - len(rows)} object(s) that are no samples left out")
+    names = list(dict.fromkeys(name for _, row in rows for name in row))
+    columns, words = [], []
+    for number, name in enumerate(names):
+        cells = [row.get(name) for _, row in rows]
+        texts = [c.encode()[:64] if isinstance(c, str) else b"" for c in cells]
+        if any(isinstance(c, str) and is_stamp(c) for c in cells[:50]):
+            columns.append(Column(name, None, seconds_of(texts).seconds, True, "time", number=number))
+        elif any(_is_number(c) for c in cells):
+            heading = heading_of(name, None, source.vocabulary)
+            values = np.array([_number(c) for c in cells])
+            columns.append(Column(heading.label, heading.unit, values, source=heading.source, number=number))
+        else:
+            words.append(name)
+    places = [k for k, _ in rows]
+    table = Table(columns, lambda row: f"{what} {places[row]}", split=True, words=words)
+    return recordings_of(source, "json", table, options)
+
+
+def _flat(value: Any, prefix: str = "", depth: int = 0) -> dict[str, Any]:
+    """Nested names as one, with dots; lists of a few numbers as numbered names."""
+    found: dict[str, Any] = {}
+    pairs = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
+    for name, one in list(pairs)[:200]:
+        key = f"{prefix}.{name}" if prefix else str(name)
+        if isinstance(one, (dict, list)) and depth < _DEEPEST:
+            found |= _flat(one, key, depth + 1)
+        else:
+            found[key] = one
+    return found
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool)
+
+
+def _number(value: Any) -> float:
+    if not _is_number(value):
+        return float("nan")
+    try:
+        return float(value)
+    except OverflowError:  # a whole number of hundreds of digits
+        return float("nan")
+
+
+def _collect(arrays: list[NamedArray], path: tuple[str, ...], value: Any, depth: int) -> None:
+    if isinstance(value, dict) and depth < _DEEPEST:
+        for name, one in value.items():
+            _collect(arrays, (*path, str(name)), one, depth + 1)
+    elif isinstance(value, list) and value and path:
+        if all(isinstance(v, str) for v in value):
+            arrays.append(NamedArray(path, np.array(value, dtype=object)))
+        elif all(_is_number(v) or v is None for v in value):
+            arrays.append(NamedArray(path, np.array([_number(v) for v in value])))
+        elif all(isinstance(v, list) and len(v) == len(value[0]) and all(map(_is_number, v)) for v in value):
+            arrays.append(NamedArray(path, np.array([[_number(c) for c in v] for v in value])))
+    elif path and (isinstance(value, str) or _is_number(value)):
+        arrays.append(NamedArray(path, value if isinstance(value, str) else _number(value)))
