@@ -79,7 +79,57 @@ def own_logs() -> list[tuple[str, bytes]]:
             write_labview_xlsx(folder / f"{header}.xlsx", accelerometer, header=header)
         rows = "".join(f'<Sample TIME="{k}" POSN="{k}e-5" LOAD="{k}"/>\n' for k in range(20))
         (folder / "f.mtwData").write_text(f"<TestData><Samples>\n{rows}</Samples></TestData>")
+        through_libraries(folder)
+        as_strangers_write(folder)
         return [(file.name, file.read_bytes()) for file in sorted(folder.iterdir())]
+
+
+def through_libraries(folder: Path) -> None:
+    """A small log of every format that a library writes."""
+    import h5py
+    import pandas as pd
+    import pyuff
+    from scipy.io import savemat, wavfile
+
+    time_axis = np.arange(200) / 200.0
+    force = np.sin(9 * time_axis)
+    savemat(folder / "g.mat", {"run": {"t": time_axis, "force": force, "units": np.array(["s", "N"], dtype=object)}})
+    savemat(folder / "h.mat", {"y": np.column_stack([force, force]), "fs": 200.0}, do_compression=True)
+    with h5py.File(folder / "i.h5", "w") as file:
+        file["run/time"], file["run/force_N"] = time_axis, force
+        file["run"].attrs["fs"] = 200.0
+    frame = pd.DataFrame({"time_s": time_axis, "force_N": force, "state": ["on"] * 200})
+    frame.to_parquet(folder / "j.parquet")
+    frame.to_feather(folder / "k.feather")
+    wavfile.write(folder / "l.wav", 200, (1e4 * force).astype(np.int16))
+    np.savez(folder / "m.npz", time=time_axis, force_N=force)
+    with zipfile.ZipFile(folder / "n.zip", "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("log.csv", frame.to_csv(index=False))
+    function = {"type": 58, "binary": 0, "func_type": 1, "rsp_node": 1, "rsp_dir": 3, "ref_node": 0, "ref_dir": 0,
+                "data": force, "x": time_axis, "id1": "a", "rsp_ent_name": "B", "ref_ent_name": "NONE",
+                "abscissa_spacing": 1, "abscissa_spec_data_type": 17, "ordinate_spec_data_type": 13,
+                "orddenom_spec_data_type": 0, "ordinate_axis_lab": "Force", "ordinate_axis_units_lab": "N",
+                "ordinate_num_data": 2, "ver_num": 1, "load_case_id": 0, "z_axis_value": 0, "ord_data_type": 4,
+                "num_pts": 200, "abscissa_min": 0.0, "abscissa_inc": 0.005}  # fmt: skip
+    pyuff.UFF(str(folder / "o.uff")).write_sets(function, "add")
+
+
+def as_strangers_write(folder: Path) -> None:
+    """Text in the forms of loggers, phones and monitors."""
+    rows = [(k, 1_650_000_000 + k / 200, np.sin(k / 9)) for k in range(120)]
+    blanks = [f"{k / 200:.4f},{v:.4f},{'' if k % 4 else f'{v:.3f}'}\n" for k, _, v in rows]
+    dates = [f"01.03.2024 12:00:00,{5 * k:03d};{v:.3f};x\n" for k, _, v in rows]
+    counts = [f"{int(t * 1e9)},a,{v:.5f}\n" for _, t, v in rows]
+    texts = {
+        "p.csv": "%time,frame,field.linear_acceleration.x\n" + "".join(counts),
+        "q.txt": "".join(f"12:00:{k // 200:02d}.{5 * (k % 200):03d} -> ax:{v:.3f}\tay:{v:.3f}\n" for k, _, v in rows),
+        "r.jsonl": "".join(f'{{"ts": {t:.3f}, "imu": {{"force_N": {v:.5f}}}}}\n' for _, t, v in rows),
+        "s.csv": "Datum;Kraft [kN];Text\n" + "".join(dates),
+        "t.txt": "# fs = 200 Hz\n# ax [g], ay [g]\n" + "".join(f"{v:.4f} {v:.4f}\n" for _, _, v in rows),
+        "u.csv": "time [s],ax [m/s^2],force [N]\n" + "".join(blanks),
+    }  # fmt: skip
+    for name, text in texts.items():
+        (folder / name).write_text(text)
 
 
 def mutated(data: bytes, rng: np.random.Generator) -> bytes:

@@ -86,3 +86,13 @@ def test_the_site_builds_without_a_warning(tmp_path: Path) -> None:
         assert not re.search(
             r'(?:src|href)="https?://(?!squidfunk)[^"]+\.(?:js|css|woff2?)"', page.read_text("utf-8")
         ), page
+
+
+def test_tables_of_formats_and_vocabulary_are_those_of_the_code() -> None:
+    """python -m ssmr_ident.readers.formats_page docs/howto/formats.md"""
+    from ssmr_ident.readers.formats_page import with_tables
+
+    page = (DOCS / "howto" / "formats.md").read_text(encoding="utf-8")
+    assert page == with_tables(page)
+    assert all(f"`{name}`" in page for name in door.READERS)
+    assert "| force | N | force, load" in page

@@ -45,7 +45,7 @@ class Reader(Protocol):
 
 
 class _Archive:
-    """Zips: their members go through the door again."""
+    """Zips with logs in them, as phone apps export, and NumPy's archives of arrays."""
 
     NAMES = archive.NAMES
 
