@@ -21,6 +21,7 @@ LOW_PASS_HELP = "Of the trace and the amplitude. Left out: 50, for free response
 EXAMPLES = (
     "ident spectrum data/raw/free_response -o out/spectra",
     "ident spectrum roll-1.xlsx --range 0:2 --low-pass 20 -o spectra",
+    "ident spectrum data/raw/swivel-frame --appendix-a -o out/appendix-a",
     "ident spectrum rig.csv --band 0.2:20 --json",
 )
 
@@ -50,6 +51,10 @@ def command(
     ] = None,
     format: Annotated[Literal["png", "svg", "pdf"], typer.Option("--format", help="Of the figures.")] = "png",
     figures: Annotated[bool, typer.Option("--figures/--no-figures", help="Draw figures into OUT.")] = True,
+    appendix_a: Annotated[
+        bool,
+        typer.Option("--appendix-a", help="Write appendix A of the thesis to the letter beside ours, a dot per trial."),
+    ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print the answer as JSON, not as a table.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="No table.")] = False,
 ) -> None:
@@ -57,6 +62,7 @@ def command(
     from ssmr_ident.cli.called import called
     from ssmr_ident.core.errors import InputError
     from ssmr_ident.readers import ReadOptions
+    from ssmr_ident.workflows.spectrum import appendix_a as to_the_letter
     from ssmr_ident.workflows.spectrum.files import write
     from ssmr_ident.workflows.spectrum.page import write_spectrum_page
     from ssmr_ident.workflows.spectrum.run import SpectrumChoices, spectrum
@@ -64,6 +70,8 @@ def command(
     for option, value in (("--low-pass", low_pass), ("--half-width", half_width), ("--fs", fs)):
         if value is not None and not 0 < value < float("inf"):
             raise InputError(option, f"{value} is no positive frequency", "Give it in Hz.")
+    if appendix_a and out is None:
+        raise InputError("--appendix-a", "writes files", "Say where with -o")
     if sample is not None and sample < 1:
         raise InputError("--sample", f"{sample} is no recording", "Count from 1.")
     options = ReadOptions(reader=reader, sample=sample, fs=fs, units=_units(units or []))
@@ -74,6 +82,8 @@ def command(
         report = write(report, out, format=format, figures=figures, progress=progress)
         if figures:
             report = write_spectrum_page(report, out, called(), paths)
+        if appendix_a:
+            report = to_the_letter.write(report, out, format)
     if progress:
         progress("")
     if as_json:
