@@ -67,6 +67,15 @@ def test_a_formula_a_little_off_is_still_that_law() -> None:
     assert 0.0 < found.left < 0.02
 
 
+def test_friction_in_another_formula_is_friction_where_its_kind_needs_it() -> None:
+    law = row("dry_friction", "static_force", 20_000.0, 9600.0, 1.38)
+    shape = row("unlisted", "static_force", 20_500.0, 8600.0, 1.31, generic=True)
+    both = row("dry_friction unlisted", "static_force static_force", 22_300.0, 5000.0, 1.0, generic=True)
+    assert decide([BASE, law, shape, both]).chosen is law
+    smooth = row("dry_friction unlisted", "static_force static_force", 20_502.0, 8590.0, 1.31, generic=True)
+    assert not decide([BASE, law, shape, smooth]).listed
+
+
 def test_a_second_effect_has_to_beat_the_first_in_any_shape() -> None:
     law = row("dry_friction", "static_force", 20_000.0, 9000.0, 1.34)
     shape = row("unlisted", "static_force", 22_300.0, 5200.0, 1.02, generic=True)

@@ -59,6 +59,7 @@ def decide(rows: Sequence[Row]) -> Decision:
         The baseline among them.
     """
     base = next(r for r in rows if not r.ids)
+    everything = rows
     rows = [r for r in rows if stands(r, rows)]
     best = max(rows, key=lambda r: r.log_evidence)
     if best.log_evidence - base.log_evidence < CERTAIN:
@@ -71,11 +72,21 @@ def decide(rows: Sequence[Row]) -> Decision:
     least = min(r.chi2 for r in rows if math.isfinite(r.chi2))
     span = max(base.chi2 - least, 1e-12)
     left = max(top.chi2 - least, 0.0) / span
-    if top.log_evidence < best.log_evidence - TIE and left > FORMULA:
+    beaten = top.log_evidence < best.log_evidence - TIE and left > FORMULA
+    if beaten and not needed(top, left, everything):
         return Decision(MISSING, best, False, (), _confidence(best, [r for r in rows if r.ids], left), shares, left)
     alike = [r for r in named if r.log_evidence > top.log_evidence - TIE]
     ties = tuple(dict.fromkeys(i for r in alike for i in r.ids if i not in top.ids))
     return Decision(MISSING, top, True, ties, _confidence(top, named, left), shares, left)
+
+
+def needed(law: Row, left: float, rows: Sequence[Row]) -> bool:
+    """Whether a law that takes most of the misfit is there in another formula: its kind in any shape, as smooth as that
+    is, is certainly worse without it than beside it."""
+    own = [r for r in rows if r.generic and set(r.kinds) == {law.kinds[0]}]
+    beside = [r.log_evidence for r in own if len(r.ids) == 2 and r.ids[0] == law.ids[0]]
+    without = [r.log_evidence for r in own if len(r.ids) == 1]
+    return left < HALVED and bool(beside) and max(beside) > max(without, default=math.inf) + SECOND
 
 
 def stands(row: Row, rows: Sequence[Row]) -> bool:

@@ -4,22 +4,23 @@ UNIT = 1.0
 """A gain that counts as one at all: what is smaller is not followed."""
 
 SECOND = 10.0
-"""By which a second effect gains on the first one in any shape."""
+"""By which a second effect gains on the first one in any shape; the same odds."""
 
 HALVED = 0.5
 """Of the variance beyond noise that the first effect leaves in any shape, the share that a second one may leave: what
 gains less is the first one's formula."""
 
 CERTAIN = 10.0
-"""By which an explanation beats the baseline before anything is said to be missing: odds of 22,000 to one, which leaves
-1 in 1,000 for some twenty looks."""
+"""By which an explanation beats the baseline before anything is said to be missing: odds of 22,000 to one. With some
+twenty looks a session that is one false alarm in a thousand if noise is as it is taken to be; not yet calibrated on
+drawn nulls."""
 
 TIE = 5.0
 """Within which two explanations fit alike: odds of 150 to one."""
 
 FORMULA = 0.02
-"""Share of the baseline's misfit that a named law may leave beside its kind's generic member and still be that law: the
-world's formula is hardly ever the catalogue's."""
+"""Share of the baseline's misfit, in squares, that a named law may leave beside the best of any shape and still be that
+law: a seventh in size. Set by judgement, like ``HALVED``; not yet calibrated."""
 
 OVER_NOISE = 1.6
 """Ratio of what is left to white noise from which something is missing even if nothing names it."""
