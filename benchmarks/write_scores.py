@@ -139,7 +139,8 @@ def _sections() -> dict[str, str]:
 FROZEN = """`make bench-doctor`: drawn sessions of seeds that no tuning has seen, and the sessions and recordings that
 lie beside the checkout ([why](../decisions/0026-a-frozen-set-for-every-engine.md)). Of practice sessions what is held
 out is the further recordings that the diagnosis never sees, of the others what it keeps back. A later engine is laid
-beside this one by `bench_doctor.py --between`.
+beside this one by `bench_doctor.py --between`; a run that was stopped goes on where it was, so a table may hold a part
+of the set only. Seconds of processor are larger where the machine is shared.
 """
 
 

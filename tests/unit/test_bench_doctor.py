@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import inspect
+
 import pytest
 from doctor import session_process
+from doctor.engines import ENGINES, engine_named
 from doctor.frozen import FAMILIES, Case
 from doctor.judged import OUTCOMES
 from doctor.session_process import answered
@@ -25,6 +28,11 @@ def test_a_larger_set_holds_the_smaller_and_other_sessions_are_others() -> None:
     assert small < large
     assert {case.family for case in large} >= set(FAMILIES) - {"open"}
     assert not large & set(cases(FAMILIES, 50, start=50))
+
+
+def test_every_engine_of_the_table_takes_a_campaign_and_a_seed() -> None:
+    for name in ENGINES:
+        assert {"campaign", "seed"} <= set(inspect.signature(engine_named(name)).parameters)
 
 
 def test_what_is_drawn_for_nulls_has_nothing_missing_and_for_the_others_something() -> None:
