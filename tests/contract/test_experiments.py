@@ -112,7 +112,8 @@ def comparisons(text: str, where: str) -> Iterator[ast.AST]:
             if not absent and any(_names(o, where) or _is_experiment(o) for o in operands):
                 yield node
         elif isinstance(node, ast.Dict):
-            if any(key is not None and _names(key, where) for key in node.keys):
+            # a table by experiment, not one that happens to have a row of that name
+            if 2 * sum(key is not None and _names(key, where) for key in node.keys) >= max(len(node.keys), 1):
                 yield node
         elif isinstance(node, ast.MatchValue):
             if _names(node.value, where):

@@ -20,12 +20,14 @@ from ssmr_ident.doctor.search import searched
 from ssmr_ident.doctor.table import Row
 from ssmr_ident.estimate.fit import Problem
 from ssmr_ident.estimate.problem import problem_of
+from ssmr_ident.experiments import EXPERIMENTS
 from ssmr_ident.experiments.campaign import Campaign, Measurement
 
 Array = np.ndarray
 Progress = Callable[[str, int, int], None]
 
-EXPERIMENTS = ("forced", "free_response", "base_motion")
+RIG = "sdof"
+"""The baseline whose recordings this doctor takes."""
 
 SHOWN = 8
 """Rows of the table that are held against what was kept back."""
@@ -95,11 +97,12 @@ def examined(campaign: Campaign, known: ParameterSet, progress: Progress | None,
 
 def _checked(campaign: Campaign) -> None:
     for m in campaign.measurements:
-        if m.entry.experiment not in EXPERIMENTS:
+        if not m.experiment.fitted_under(RIG):
+            possible = [name for name, kind in EXPERIMENTS.items() if kind.fitted_under(RIG)]
             raise InputError(
                 f"{campaign.session.folder / 'session.yaml'}: {m.name}",
                 f"a {m.entry.experiment} cannot be diagnosed with baseline {campaign.session.baseline}",
-                f"Make a session of its own of it; here: {', '.join(EXPERIMENTS)}",
+                f"Make a session of its own of it; here: {', '.join(possible)}",
             )
 
 
