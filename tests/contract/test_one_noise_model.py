@@ -11,7 +11,7 @@ SOURCE = Path(__file__).resolve().parents[2] / "src" / "ssmr_ident"
 HERE = SOURCE / "signals" / "noise"
 MARKS = {
     "a standard deviation by the median": r"1\.4826|0\.6745|median_abs_deviation",
-    "second differences": r"np\.diff\([^()]*(\([^()]*\)[^()]*)*, (n=)?2\)",
+    "differences of differences": r"np\.diff\([^()]*(\([^()]*\)[^()]*)*, (n=)?[23]\)",
     "an autocovariance": r"irfft\(np\.abs\(np\.fft\.rfft",
     "the quietest part of a spectrum": r"quantile\(density",
     "steps of a converter": r"steps.*sqrt\(12",

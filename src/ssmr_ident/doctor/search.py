@@ -15,10 +15,9 @@ from ssmr_ident.doctor.table import Row, row_of
 from ssmr_ident.estimate.fit import Fit, Problem, Start, motion, polish, regressed, shot, with_noises
 from ssmr_ident.estimate.generic import branch, by_recording, changing, clip, delay, lag, memory, rider, static
 from ssmr_ident.estimate.node import Member, Node
-from ssmr_ident.estimate.pieces import difference_noise
 from ssmr_ident.estimate.smoother import smoothed
 from ssmr_ident.physics.effects import CATALOGUE
-from ssmr_ident.signals.noise import AutoregressiveNoise, fit_noise
+from ssmr_ident.signals.noise import AutoregressiveNoise, fit_noise, third_difference_std
 
 Array = np.ndarray
 Progress = Callable[[str, int, int], None]
@@ -258,7 +257,7 @@ def _with_white(search: Search) -> Search:
     pieces, noises = [], []
     for piece, rest in zip(search.problem.pieces, best.residuals, strict=True):
         least = 1e-2 * piece.white  # a log has no more digits than its converter
-        white = np.maximum([difference_noise(column) for column in rest.T], least)
+        white = np.maximum([third_difference_std(column) for column in rest.T], least)
         pieces.append(replace(piece, white=white))
         noises.append(tuple(AutoregressiveNoise(np.ones(1), float(w)) for w in white))
     problem = replace(search.problem, pieces=tuple(pieces), noises=tuple(noises))

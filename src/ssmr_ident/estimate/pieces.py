@@ -15,7 +15,7 @@ from ssmr_ident.core.recording import Recording
 from ssmr_ident.experiments.campaign import Measurement
 from ssmr_ident.experiments.quantities import UNITS
 from ssmr_ident.signals.grid import even_samples
-from ssmr_ident.signals.noise import rounding
+from ssmr_ident.signals.noise import median_std, rounding, third_difference_std
 
 Array = np.ndarray
 
@@ -132,7 +132,7 @@ def pieces_of(measurement: Measurement, index: int, frequency: float) -> tuple[P
         if not drive_name:
             fine = np.zeros(2)
         least = np.array([rounding(column) for column in part.T]) / math.sqrt(block)
-        fast = np.array([difference_noise(column) for column in averaged.T])
+        fast = np.array([third_difference_std(column) for column in averaged.T])
         white = np.maximum(np.minimum(fast, FAST * averaged.std(axis=0)), least)
         middle = even.start + (first + (np.arange(count) + 0.5 * (block - 1) / block) * block) / rate
         if block > 1 and drive_name:  # samples stand in the middle of their blocks
@@ -210,15 +210,10 @@ def stretches(y: Array, rate: float, frequency: float) -> list[tuple[int, int]]:
     return [(a, b) for a, b in itertools.pairwise(edges) if b - a > 4 * width]
 
 
-def difference_noise(samples: Array) -> float:
-    """Standard deviation of white noise from third differences, by their median: motion hardly shows in them."""
-    return float(np.median(np.abs(np.diff(samples, 3)))) / 0.6745 / math.sqrt(20.0) + 1e-300
-
-
 def _single(samples: Array) -> Array:
     """(n,) bool: samples far off both neighbours, which the motion is too slow for."""
     rest = samples - median_filter(samples, 5)
-    size = 1.4826 * np.median(np.abs(rest)) + 1e-3 * samples.std()
+    size = median_std(rest) + 1e-3 * samples.std()
     wild = np.abs(rest) > 8.0 * size
     return wild & (np.convolve(wild, np.ones(3), "same") <= 1.0)
 

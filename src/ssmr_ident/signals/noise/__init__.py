@@ -20,7 +20,15 @@ from ssmr_ident.signals.noise.mains import (
     rest_after,
     without_mains,
 )
-from ssmr_ident.signals.noise.white import force_noise, median_std, quietest_density, rounding, usable_band, white_std
+from ssmr_ident.signals.noise.white import (
+    force_noise,
+    median_std,
+    quietest_density,
+    rounding,
+    third_difference_std,
+    usable_band,
+    white_std,
+)
 
 __all__ = [
     "AutoregressiveNoise",
@@ -41,6 +49,7 @@ __all__ = [
     "rest_after",
     "rounding",
     "samples_together",
+    "third_difference_std",
     "usable_band",
     "white_noise",
     "white_std",

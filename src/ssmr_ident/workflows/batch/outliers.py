@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pandas as pd
 
+from ssmr_ident.signals.noise.white import NORMAL
+
 ENOUGH = 5
 """Sessions of one robot from which their median and spread say something."""
-NORMAL = 1.4826
-"""Standard deviation of a normal distribution over its median absolute deviation."""
 
 
 def farthest(parameters: pd.DataFrame) -> pd.DataFrame:
