@@ -175,6 +175,9 @@ def mutated_inside(data: bytes, rng: np.random.Generator) -> bytes:
     except (zipfile.BadZipFile, ValueError, OSError, NotImplementedError):
         return mutated(data, rng)
     names = [name for name in parts if "sheet" in name or "workbook" in name or rng.random() < 0.2]
+    names = names or list(parts)
+    if not names:
+        return mutated(data, rng)
     victim = names[int(rng.integers(len(names)))]
     parts[victim] = mutated(parts[victim], rng)
     buffer = io.BytesIO()

@@ -99,11 +99,13 @@ def test_hdf5_bombs_and_links_are_not_followed(tmp_path: Path) -> None:
     assert read_one(tmp_path / "b.h5").names == ("force",)
 
 
-def test_mat_bomb(tmp_path: Path) -> None:
+def test_mat_bomb(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     import zlib
 
+    monkeypatch.setattr("ssmr_ident.readers.mat.reader.MOST_BYTES", 20 * 2**20)
+
     head = b"MATLAB 5.0 MAT-file".ljust(124) + b"\x00\x01IM"
-    packed = zlib.compress(b"\x0e\x00\x00\x00" + bytes(600 * 2**20), 9)
+    packed = zlib.compress(b"\x0e\x00\x00\x00" + bytes(30 * 2**20), 9)
     element = (15).to_bytes(4, "little") + len(packed).to_bytes(4, "little") + packed
     (tmp_path / "a.mat").write_bytes(head + element)
     with pytest.raises(InputError, match="unpacks to more than"):
@@ -209,9 +211,10 @@ def test_zip_of_a_phone_and_npz(tmp_path: Path) -> None:
         read(tmp_path / "c.npz")
 
 
-def test_zip_bomb_of_logs(tmp_path: Path) -> None:
+def test_zip_bomb_of_logs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("ssmr_ident.readers.archive.reader.MOST_BYTES", 20 * 2**20)
     with zipfile.ZipFile(tmp_path / "a.zip", "w", zipfile.ZIP_DEFLATED) as archive, archive.open("a.csv", "w") as out:
-        for _ in range(500):
+        for _ in range(25):
             out.write(b"1,2\n" * 2**18)
     with pytest.raises(InputError, match="unpacks to more than"):
         read(tmp_path / "a.zip")

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.units import QUANTITY_OF_UNIT, find_unit, to_si
 from ssmr_ident.readers import ReadOptions, read_one
-from ssmr_ident.readers.table.headings import is_units_row, quantity_of, split_header
+from ssmr_ident.readers.table.headings import heading_of, is_units_row, quantity_of, split_header
 from ssmr_ident.readers.text.numbers import evidence_for_decimal, number
 from ssmr_ident.readers.text.stamps import is_date, is_stamp, seconds_of
 
@@ -220,3 +220,39 @@ def test_labels_of_a_rig_log_stay(tmp_path: Path) -> None:
     text = "time (s),F (N),a (m/s^2)\n" + "".join(f"{k / 1000:.3f},{k},{2 * k}\n" for k in range(12))
     recording = log(tmp_path, text)
     assert [(c.name, c.label) for c in recording.channels] == [("force", "F"), ("acceleration", "a")]
+
+
+def test_a_unit_of_another_quantity_decides_where_it_is_sure(tmp_path: Path) -> None:
+    text = "Time (s),Strain (mm),velocity [rad/s]\n" + "".join(f"{k / 10},{k},{2 * k}\n" for k in range(12))
+    recording = log(tmp_path, text)
+    assert [(c.name, c.unit) for c in recording.channels] == [("Strain", "m"), ("velocity", "rad/s")]
+    assert sum("taken by its unit" in note.text for note in recording.warnings) == 2
+    assert log(tmp_path, text, channels={"angular_rate": "velocity"}).names == ("Strain", "angular_rate")
+
+
+def test_a_vocabulary_beside_the_log_adds_words_and_units(tmp_path: Path) -> None:
+    text = "Time (s),pinch (furlong)\n" + "".join(f"{k / 10},{k}\n" for k in range(12))
+    (tmp_path / "vocabulary.yaml").write_text(
+        "quantities: {position: {words: {en: [pinch]}}}\nunits: {furlong: {unit: m, factor: 201.168}}\n"
+    )
+    np.testing.assert_allclose(log(tmp_path, text)["position"], 201.168 * np.arange(12))
+    (tmp_path / "vocabulary.yaml").write_text("quantity: {}\n")
+    with pytest.raises(InputError, match="unknown key 'quantity'"):
+        log(tmp_path, text)
+
+
+@pytest.mark.parametrize(
+    ("header", "quantity", "unit"),
+    [("force_N", "force", "N"), ("accel_x_g", "ax", "m/s^2"), ("ax_m_s2", "ax", "m/s^2"), ("TimeUS", "time", "s"),
+     ("Acc/(m/s^2)", "acceleration", "m/s^2"), ("AngVel/rad/s", "angular_rate", "rad/s"), ("a (in/s²)", "acceleration",
+     "m/s^2"), ("Fuerza [kip]", "force", "N"), ("Accélération Z [mg]", "az", "m/s^2"),
+     ("Prüfkraft in kN", "force", "N"),
+     ("Drehrate x [°/s]", "wx", "rad/s"), ("desplazamiento_mm", "position", "m"),
+     ("omega_rad_s", "angular_rate", "rad/s")],
+)  # fmt: skip
+def test_quantity_and_unit_in_one_name(header: str, quantity: str, unit: str) -> None:
+    heading = heading_of(header)
+    assert heading.quantity == quantity
+    found = find_unit(heading.unit or "")
+    assert found is not None
+    assert found.unit == unit

@@ -19,7 +19,7 @@ from ssmr_ident.readers.source import Source
 from ssmr_ident.readers.table.assemble import recordings_of
 from ssmr_ident.readers.table.columns import Column, Table, facts
 from ssmr_ident.readers.table.headings import heading_of
-from ssmr_ident.readers.table.vocabulary import Vocabulary, words_of
+from ssmr_ident.readers.table.vocabulary import Vocabulary, shipped, words_of
 from ssmr_ident.readers.text.header_rows import rate_from
 
 MOST_BYTES = 400 * 2**20  # of all arrays of a file together, unpacked
@@ -141,10 +141,14 @@ def _siblings(array: NamedArray, arrays: list[NamedArray], keys: tuple[str, ...]
 def _sibling_units(array: NamedArray, arrays: list[NamedArray]) -> list[str]:
     """The unit at this array's place among the arrays of its group."""
     units = _siblings(array, arrays, _UNIT_KEYS)
-    lengths = [one for one in arrays if one.group == array.group and _length(one) == _length(array) > 1]
-    if len(units) != len(lengths):
-        return units if _width(array) == len(units) else []
-    return [units[next(k for k, one in enumerate(lengths) if one is array)]]
+    if len(units) == 1:  # one text for all: "N, m/s^2"
+        units = [unit.strip() for unit in re.split(r"[,;|]", units[0])]
+    alike = [one for one in arrays if one.group == array.group and _length(one) == _length(array) > 1]
+    measured = [one for one in alike if not is_time_name(one.path[-1], shipped())]
+    for ones in (alike, measured):
+        if len(units) == len(ones):
+            return next(([units[k]] for k, one in enumerate(ones) if one is array), [])
+    return units if _width(array) == len(units) > 1 else []
 
 
 def _sibling_names(array: NamedArray, arrays: list[NamedArray], count: int) -> list[str]:

@@ -20,6 +20,7 @@ _EXAMPLES = {
 # Lengths that gravity has in what accelerometers count: in units, and in counts per g of cheap converters
 _GRAVITIES = {"m/s^2": STANDARD_GRAVITY, "g": 1.0, "mg": 1e3, "mm/s^2": 1e3 * STANDARD_GRAVITY, "cm/s^2": 980.665}
 _COUNTS = (16384.0, 8192.0, 4096.0, 2048.0, 1024.0, 256.0)
+_AMBIGUOUS = ("g", "mg", "G")  # of gravity to some, grams to others
 _NEAR = 0.04
 """Choice: share of its length by which a mean may miss gravity; tilted sensors keep the length, moving ones nearly."""
 _SUPPLY = (0.0, 5.0)  # V; what a sensor on a common supply gives never leaves it
@@ -177,6 +178,13 @@ def _ask_for_units(
                 f"unit {column.unit!r} of {column.shown} is not known", _mend([column], "N, mm or V"), table.part
             )
         elif conversion is not None and expected and conversion.unit not in (expected, "V"):
+            if column.unit not in _AMBIGUOUS and not column.given:
+                table.warn(
+                    f"{column.shown} is in {column.unit}, which is no unit of {column.quantity}: "
+                    f"taken by its unit, under its own name"
+                )
+                column.quantity = None
+                continue
             raise source.error(
                 f"{column.shown} is in {column.unit}, which is no unit of {column.quantity}",
                 _mend([column], _EXAMPLES.get(expected, expected))

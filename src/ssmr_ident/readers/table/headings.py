@@ -215,6 +215,8 @@ def _named(label: str, conversion: Conversion | None, known: Vocabulary) -> str 
         return None
     if words[-1] in _AXIS_NAMES:  # imu.ax, data/wz
         return words[-1]
+    if words[0] in _AXIS_NAMES and conversion is not None and SI_UNIT[words[0]] == conversion.unit:  # ax_m_s2
+        return words[0]
     quantity, rest = _phrase(words, conversion, known)
     if quantity is None or quantity in known.optional:
         return None
