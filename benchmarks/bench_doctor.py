@@ -15,6 +15,8 @@ beside the checkout and are absent are passed over with a word. Tables count the
 from __future__ import annotations
 
 import argparse
+import signal
+import sys
 import time
 from pathlib import Path
 
@@ -75,6 +77,7 @@ def main() -> None:
 
 def run(wanted: list[Case], engine_name: str, file: Path, limit: float, seconds: float) -> None:
     """What has no row yet, one session after the other."""
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # so that the session's own process ends as well
     done = {row["key"] for row in read(file)}
     end = time.monotonic() + seconds
     for case in wanted:

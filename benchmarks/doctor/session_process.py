@@ -55,8 +55,9 @@ def answered(case: Case, engine: str, limit: float) -> Row:
     except EOFError:  # it died without a word
         process.join()
         row["error"] = f"ended with {process.exitcode} (the limit is {limit:g} s of processor)"
-    process.kill()
-    process.join()
+    finally:  # also where this process is told to stop
+        process.kill()
+        process.join()
     return row
 
 
