@@ -1,7 +1,8 @@
 """Readers against what they stand on, side by side in one run.
 
 A workbook of 3 x 20,011 x 2 numbers: bare python-calamine to lists against a Recording (hash, checks, arrays).
-A force log of a million rows: pandas.read_csv with its C engine against a Recording.
+A force log of a million rows, without a column of text and with one: pandas.read_csv with its C engine against a
+Recording.
 
 Run: python benchmarks/bench_readers.py [repeats]
 """
@@ -35,12 +36,14 @@ def make_workbook(path: Path) -> None:
     write_labview_xlsx(path, recording, header="graph", decimals=15)
 
 
-def make_log(path: Path) -> None:
-    """Time, position and load as a testing machine prints them."""
+def make_log(path: Path, state: str = "") -> None:
+    """Time, position and load as a testing machine prints them, and a word in every row where one is given."""
     rng = np.random.default_rng(2)
     load = np.cumsum(rng.standard_normal(LOG_ROWS)) * 0.05
     rows = zip(range(LOG_ROWS), load.tolist(), strict=True)
-    lines = ["Time (s),Position (mm),Load (N)", *(f"{k * 1e-3:.3f},{k * 5e-4:.4f},{f:.3f}" for k, f in rows)]
+    named, word = (",state", f",{state}") if state else ("", "")
+    lines = [f"Time (s){named},Position (mm),Load (N)"]
+    lines += [f"{k * 1e-3:.3f}{word},{k * 5e-4:.4f},{f:.3f}" for k, f in rows]
     path.write_text("\n".join(lines) + "\n")
 
 
@@ -87,6 +90,14 @@ def main() -> int:
             lambda: read_one(log),
             repeats,
             1.0,
+        )
+        make_log(log, "run")
+        good &= side_by_side(
+            "log with a column of text: pandas.read_csv / Recording",
+            lambda: pd.read_csv(log, engine="c"),
+            lambda: read_one(log),
+            repeats,
+            1.5,
         )
     return 0 if good else 1
 

@@ -16,6 +16,7 @@ _RARE = 0.01
 """Choice: share of steps up to which wide or doubled ones are lost or repeated samples; more are the clock's way."""
 _COARSE = 0.2
 """Choice: step of the stamps over the sampling step from which on stamps are too coarse to be the samples' times."""
+_FEW = 3  # wide steps that any log may have lost samples in
 _FEWEST = 16  # steps that can show a pattern
 
 
@@ -238,19 +239,19 @@ def _why_even(stamps: np.ndarray, steps: np.ndarray) -> str:
     typical = float(np.median(steps[:: max(1, len(steps) // 10_000)]))
     wide = np.flatnonzero(steps > GAP_FACTOR * max(typical, 0.0) * (1 + TICK_FACTOR))
     still = int((steps <= 0).sum()) if least <= 0 else 0
-    tick = _tick(steps if len(wide) > _RARE * len(steps) else np.delete(steps, wide), mean)
+    tick = _tick(steps if len(wide) > max(_FEW, _RARE * len(steps)) else np.delete(steps, wide), mean)
     coarse = tick > 0
-    if len(wide) <= _RARE * len(steps) and not still and not coarse:
+    if len(wide) <= max(_FEW, _RARE * len(steps)) and not still and not coarse:
         return ""
     _, step, off = _line(stamps)
-    if step <= 0 or (coarse and not still and len(wide) <= _RARE * len(steps) and off > 1.05 * tick):
+    if step <= 0 or (coarse and not still and len(wide) <= max(_FEW, _RARE * len(steps)) and off > 1.05 * tick):
         return ""
     between = np.diff(np.r_[0, wide + 1]) if len(wide) else np.array([1])
     burst = float(np.median(between))
     longest = float(between.max()) if len(wide) else float(np.diff(np.flatnonzero(np.r_[True, steps > 0, True])).max())
     if off > (max(longest, 2.0) + 1.0) * step or (longest > 4 * max(burst, 2.0) and not coarse):
         return ""
-    if coarse and len(wide) <= _RARE * len(steps) and not still:
+    if coarse and len(wide) <= max(_FEW, _RARE * len(steps)) and not still:
         return f"stamps are whole steps of {tick:.4g} s, too coarse for the sampling"
     if still:
         return f"{still} of {len(stamps)} stamps repeat the one before: the clock is coarser than the sampling"
