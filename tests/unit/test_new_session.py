@@ -16,7 +16,7 @@ from ssmr_ident.session import read_session
 from ssmr_ident.session.parameters_file import read_parameters
 from ssmr_ident.workflows.fit.run import fit_session
 from ssmr_ident.workflows.new.log import DIES_AWAY, guess_log
-from ssmr_ident.workflows.new.run import draft_session
+from ssmr_ident.workflows.new.run import Told, draft_session
 from ssmr_ident.workflows.simulate import Request, simulate_to_file
 
 
@@ -92,25 +92,22 @@ def test_a_header_without_a_quantity_is_taken_by_its_unit() -> None:
     assert guess.fields["channels"] == {"force": "shaker", "position": "enc"}
 
 
-def test_two_columns_of_one_unit_are_asked_about(tmp_path: Path) -> None:
+def test_of_two_columns_of_one_unit_the_first_is_taken_and_said(tmp_path: Path) -> None:
     random = np.random.default_rng(4)
     columns = {name: (random.normal(size=2000), unit) for name, unit in (("push", "N"), ("enc", "m"), ("lvdt", "m"))}
     writers.write_csv(tmp_path / "a.csv", _recording(500.0, **columns))
-    draft = draft_session(tmp_path, mass=3.0)
+    draft = draft_session(tmp_path, Told(mass=3.0))
     assert draft.guesses[0].fields["experiment"] == "forced"
-    assert [q.text for q in draft.questions if q.file == "session.yaml"] == [
-        'channels: {"force": "push", "position": TODO}'
-    ]
-    draft.write()
-    with pytest.raises(InputError, match=r"session.yaml:11: still says TODO.*which of enc, lvdt"):
-        read_session(tmp_path)
+    assert draft.guesses[0].fields["channels"] == {"force": "push", "position": "enc"}
+    assert "which of enc, lvdt is the position?" in draft.session_text
+    assert not draft.questions
 
 
 def test_letters_without_units_are_guessed_and_said(tmp_path: Path) -> None:
     random = np.random.default_rng(4)
     rows = "".join(f"{k / 500},{a:.4f},{b:.4f}\n" for k, (a, b) in enumerate(random.normal(size=(500, 2))))
     (tmp_path / "a.csv").write_text("t,F,x\n" + rows)
-    draft = draft_session(tmp_path, mass=3.0)
+    draft = draft_session(tmp_path, Told(mass=3.0))
     assert draft.guesses[0].fields["channels"] == {"force": "F", "position": "x"}
     assert "the file has no units" in draft.session_text
 
@@ -128,7 +125,7 @@ def robot_logs(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_a_robot_s_folder_becomes_a_session_that_fit_takes(robot_logs: Path) -> None:
     before = {path.name: hashlib.sha256(path.read_bytes()).digest() for path in robot_logs.iterdir()}
-    draft = draft_session(robot_logs, robot="p3at-extended")
+    draft = draft_session(robot_logs, Told(robot="p3at-extended"))
     assert not draft.questions
     assert [name for name, _ in draft.aside] == ["broken.csv"]
     assert "broken.csv: " in draft.session_text
@@ -180,25 +177,25 @@ def test_a_rig_gets_its_first_values_from_the_logs(tmp_path: Path) -> None:
         assert draft.baseline == "sdof"
         assert not draft.questions
         draft.write()
-        known = read_parameters(folder / "robot.yaml")
+        known = read_parameters(folder / "rig.yaml")
         assert known.number("mass_kg") == pytest.approx(8.0, rel=0.1)
         assert known.number("stiffness_N_m") == pytest.approx(20000, rel=0.1)
     assert fit_session(folder).parameters.number("stiffness_N_m") == pytest.approx(20000, rel=0.02)
 
 
-def test_a_free_rig_needs_its_mass(tmp_path: Path) -> None:
+def test_a_free_rig_without_a_mass_is_one_of_a_kilogram_and_says_so(tmp_path: Path) -> None:
     course = 1e-3 * _decay(1000.0, 4.0, 0.01, hertz=7.0)
     writers.write_csv(tmp_path / "ring.csv", _recording(1000.0, position=(course, "m")))
-    assert {q.text.split(":")[0] for q in draft_session(tmp_path).questions} == {
-        "mass_kg",
-        "stiffness_N_m",
-        "damping_N_s_m",
-    }
-    draft = draft_session(tmp_path, mass=2.0)
+    bare = draft_session(tmp_path)
+    assert not bare.questions
+    assert [(guess.key, guess.value) for guess in bare.suggestions] == [("mass_kg", 1.0)]
+    assert "nobody said" in bare.parameters_text
+    draft = draft_session(tmp_path, Told(mass=2.0))
     assert not draft.questions
+    assert not draft.suggestions
     draft.write()
-    known = read_parameters(tmp_path / "robot.yaml")
-    assert known.number("stiffness_N_m") == pytest.approx(2.0 * (2 * np.pi * 7.0) ** 2, rel=0.05)
+    known = read_parameters(tmp_path / "rig.yaml")
+    assert known.number("stiffness_N_m") == pytest.approx(2.0 * (2 * np.pi * 7.0) ** 2, rel=0.02)
 
 
 def test_answers_go_to_every_recording_that_asks(tmp_path: Path) -> None:
@@ -206,11 +203,11 @@ def test_answers_go_to_every_recording_that_asks(tmp_path: Path) -> None:
     log = _recording(100.0, position=(head, "m"), force=(np.minimum(18e3 * head, 60.0), "N"))
     for trial in (1, 2):
         writers.write_csv(tmp_path / f"pull-lateral-{trial}.csv", log)
-    draft = draft_session(tmp_path, robot="p3at-platform", answers={"height_m": "0.05"})
+    draft = draft_session(tmp_path, Told(robot="p3at-platform", answers={"height_m": "0.05"}))
     assert not draft.questions
     assert draft.session_text.count("height_m: 0.05") == 2
     with pytest.raises(InputError, match="Did you mean 'height_m'"):
-        draft_session(tmp_path, answers={"heigt_m": "0.05"})
+        draft_session(tmp_path, Told(answers={"heigt_m": "0.05"}))
 
 
 @pytest.mark.parametrize(
@@ -219,7 +216,7 @@ def test_answers_go_to_every_recording_that_asks(tmp_path: Path) -> None:
 )
 def test_a_wrong_call_is_refused(robot_logs: Path, call: dict, told: str) -> None:
     with pytest.raises(InputError, match=told):
-        draft_session(robot_logs, **call)
+        draft_session(robot_logs, Told(**call))
 
 
 def test_a_folder_without_logs_is_refused(tmp_path: Path) -> None:

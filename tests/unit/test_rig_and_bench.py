@@ -13,8 +13,9 @@ from ssmr_ident.identify.trials.pull import QUICK
 from ssmr_ident.physics.rig import Block, Rig
 from ssmr_ident.physics.robot import Robot, robot_from_parameters
 from ssmr_ident.session import read_parameters
+from ssmr_ident.signals.grid import band_limited
 from ssmr_ident.simulate.bench import compress_wheel, drag_wheel, pull_block
-from ssmr_ident.simulate.rig import band_limited, simulate_rig
+from ssmr_ident.simulate.rig import simulate_rig
 
 RATE = 1000.0
 TIME = np.arange(2000) / RATE

@@ -31,7 +31,7 @@ def test_session_defaults(tmp_path: Path) -> None:
     session = read_session(_session(tmp_path, SESSION))
     entry = session.entries[0]
     assert (session.baseline, entry.role, entry.motion) == ("rigid6", "target", "roll")
-    assert session.path(entry) == tmp_path / "a.csv"
+    assert session.paths(entry) == (tmp_path / "a.csv",)
 
 
 @pytest.mark.parametrize(

@@ -13,8 +13,9 @@ from bank.robots import draw_robot
 from ssmr_ident.experiments.free_response import released
 from ssmr_ident.physics.linear import COORDINATES
 from ssmr_ident.physics.rig import Rig
+from ssmr_ident.signals.grid import band_limited
 from ssmr_ident.simulate import simulate
-from ssmr_ident.simulate.rig import band_limited, simulate_rig
+from ssmr_ident.simulate.rig import simulate_rig
 
 RIG = Rig(8.0, 50.0, 2e4)
 SAME = {

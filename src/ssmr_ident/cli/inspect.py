@@ -11,6 +11,7 @@ import typer
 EXAMPLES = (
     "ident inspect roll-1.xlsx pull-3.txt",
     "ident inspect data/raw/pulls",
+    "ident inspect press.csv daq.csv",
     "ident inspect press.txt --units load=lbf,position=in",
     "ident inspect roll-1.xlsx --json",
 )
@@ -65,7 +66,7 @@ def command(
     as_json: Annotated[bool, typer.Option("--json", help="Print the answer as JSON.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Only warnings and errors.")] = False,
 ) -> None:
-    """What a log holds: reader, channels, units, rate, length, gaps, clipping, mains hum."""
+    """What a log holds: reader, channels, units, rate, length, gaps, clipping, mains hum; of two, how clocks differ."""
     from ssmr_ident.cli.inspect_folder import common_lines, in_common, line_of
     from ssmr_ident.cli.inspect_log import summary_of
     from ssmr_ident.cli.inspect_save import save_choices
@@ -74,15 +75,16 @@ def command(
     from ssmr_ident.core.errors import InputError
     from ssmr_ident.readers import ReadOptions, read
     from ssmr_ident.readers.folder import logs_in
+    from ssmr_ident.workflows.clocks import clocks_of
 
     try:
         options = ReadOptions(
             reader=reader,
             fs=fs,
-            units=_pairs("--units", units),
-            columns=_pairs("--columns", columns),
+            units=pairs("--units", units),
+            columns=pairs("--columns", columns),
             skip=int(skip) if skip.isascii() and skip.isdigit() else skip,
-            sheets=_pairs("--sheets", sheets),
+            sheets=pairs("--sheets", sheets),
             time_unit=time_unit,
             on_bad=on_bad,
             stamps=stamps,
@@ -115,6 +117,14 @@ def command(
     if overview and not as_json and not quiet:
         for line in common_lines(common, len(summaries)):
             typer.echo(line)
+    clocks = None
+    try:
+        with doing("comparing clocks", hidden=quiet or as_json or len(files) != 2):
+            clocks = clocks_of([summary.recording for summary in summaries]) if len(files) == 2 else None
+    except InputError as error:
+        errors.append(error)
+    if clocks is not None and not as_json and not quiet:
+        typer.echo(f"both feel one event. {clocks}")
     if save is not None:
         if len(files) != 1 or errors:
             raise errors[0] if errors else InputError("--save", f"{len(files)} logs are named", "Name one log.")
@@ -126,6 +136,7 @@ def command(
 
         answer = {
             "logs": [summary.as_dict() for summary in summaries],
+            "clocks": [clocks.as_dict()] if clocks else [],
             **({"in_common": common} if overview else {}),
             "errors": [{"where": e.where, "problem": e.problem, "mend": e.mend} for e in errors],
         }
@@ -138,7 +149,7 @@ def command(
         raise typer.Exit(2)
 
 
-def _pairs(option: str, text: str | None) -> dict[str, str]:
+def pairs(option: str, text: str | None) -> dict[str, str]:
     """``a=1,b=2`` as a mapping."""
     from ssmr_ident.core.errors import InputError
 

@@ -1,19 +1,23 @@
-"""``ident new``: a session.yaml and a robot.yaml from a folder of logs."""
+"""``ident new``: a session from a folder of logs."""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from ssmr_ident.cli import completion
 
+if TYPE_CHECKING:
+    from ssmr_ident.workflows.new.draft import Draft
+
 EXAMPLES = (
-    "ident new my-logs",
+    "ident new my-logs --mass-kg 2.0",
     "ident new my-logs --robot p3at-extended",
     "ident new pulls --robot p3at-platform --set height_m=0.05 --set floor=carpet",
-    "ident new rig-logs --baseline sdof --mass-kg 8.2",
+    "ident new swings --inertia-kg-m2 0.012 --units theta=deg",
+    "ident new pulls --mass-kg 12 --set pull-1.csv:speed_mm_s=10",
 )
 
 
@@ -27,8 +31,10 @@ def command(
         ),
     ] = "",
     mass_kg: Annotated[
-        float | None,
-        typer.Option("--mass-kg", help="Moving mass of a rig, or mass of a block; kg m^2 for a rotary rig."),
+        float | None, typer.Option("--mass-kg", metavar="KG", help="Moving mass of a rig, or mass of a block.")
+    ] = None,
+    inertia_kg_m2: Annotated[
+        float | None, typer.Option("--inertia-kg-m2", metavar="KG_M2", help="Moment of inertia of a rotary rig.")
     ] = None,
     baseline: Annotated[
         str,
@@ -36,32 +42,94 @@ def command(
             help="rigid6, decoupled, sdof or drag; left out, the logs decide.", autocompletion=completion.baselines
         ),
     ] = "",
+    experiment: Annotated[
+        str, typer.Option(help="How every log of a rig or a block was made; left out, the samples decide.")
+    ] = "",
+    columns: Annotated[
+        str | None, typer.Option("--columns", metavar="QUANTITY=COLUMN,...", help="Such as time=0,force=2.")
+    ] = None,
+    units: Annotated[
+        str | None, typer.Option("--units", metavar="COLUMN=UNIT,...", help="Such as force=lbf,position=in.")
+    ] = None,
+    fs: Annotated[
+        float | None, typer.Option("--fs", metavar="HZ", help="Sampling rate, instead of the logs' own time.")
+    ] = None,
     answers: Annotated[
         list[str] | None,
-        typer.Option("--set", metavar="KEY=VALUE", help="Answer a question of every recording: height_m=0.05."),
+        typer.Option(
+            "--set",
+            metavar="[FILE:]KEY=VALUE",
+            help="Answer a question for every recording, or for one: height_m=0.05, pull-1.csv:speed_mm_s=2.",
+        ),
+    ] = None,
+    ask: Annotated[
+        bool | None,
+        typer.Option("--ask/--no-ask", help="Ask what is a guess, one question at a time. In a terminal: yes."),
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print what was found as JSON.")] = False,
     quiet: Annotated[bool, typer.Option("-q", "--quiet", help="Print nothing but errors.")] = False,
 ) -> None:
-    """Look at a folder of logs and write a commented session.yaml and robot.yaml; never overwrites."""
+    """Look at a folder of logs and write a commented session.yaml and a parameter file; never overwrites."""
+    import sys
+    from dataclasses import replace
+
     from ssmr_ident.cli.answer import print_json
+    from ssmr_ident.cli.inspect import pairs
     from ssmr_ident.cli.progress import progress
-    from ssmr_ident.workflows.new.run import draft_session, refuse_existing
+    from ssmr_ident.core.errors import InputError
+    from ssmr_ident.workflows.new.draft import refuse_existing
+    from ssmr_ident.workflows.new.run import Told, draft_session
 
     refuse_existing(session)
+    if mass_kg is not None and inertia_kg_m2 is not None:
+        raise InputError(
+            "--inertia-kg-m2", "stands beside --mass-kg", "A rig moves straight or turns: give one of them"
+        )
+    told = Told(
+        robot=robot,
+        mass=inertia_kg_m2 if mass_kg is None else mass_kg,
+        baseline=baseline,
+        experiment=experiment,
+        columns=pairs("--columns", columns),
+        units=pairs("--units", units),
+        sample_rate_hz=fs,
+        answers=_answers(answers or []),
+    )
     with progress("reading logs", hidden=quiet or as_json) as step:
-        draft = draft_session(session, robot, mass_kg, baseline, _pairs(answers or []), step)
+        draft = draft_session(session, told, step)
+    terminal = sys.stdin.isatty() and sys.stdout.isatty() and not quiet and not as_json
+    if terminal if ask is None else ask:
+        given = _asked(draft)
+        if given:
+            draft = draft_session(session, replace(told, answers={**told.answers, **given}))
     paths = draft.write()
     if as_json:
         print_json(draft.as_dict())
     elif not quiet:
         typer.echo(str(draft))
         typer.echo(f"written: {paths[0]}, {paths[1]}")
-        after = "Fill in what is asked, then" if draft.questions else "Look them over, then"
-        typer.echo(f"{after}: ident fit {session} -o params.yaml")
+        typer.echo(f"{'fill in what is asked, then' if draft.questions else 'next'}: {draft.next_command}")
 
 
-def _pairs(texts: list[str]) -> dict[str, str]:
+def _asked(draft: Draft) -> dict[str, str]:
+    """What the user answers; an empty line keeps the guess."""
+    given = {}
+    typer.echo(
+        f"{draft.folder}: {len(draft.guesses)} recordings of {draft.system}. An empty line keeps [what is shown]."
+    )
+    for guess in draft.suggestions:
+        typer.echo(f"  {guess.why}")
+        answer = typer.prompt(f"  {guess.key}", default=str(guess.value))
+        if answer != str(guess.value):
+            given[guess.key] = answer
+    for key, question in draft.open_keys:
+        answer = typer.prompt(f"  {key}: {question}", default="", show_default=False)
+        if answer:
+            given[key] = answer
+    return given
+
+
+def _answers(texts: list[str]) -> dict[str, str]:
     from ssmr_ident.core.errors import InputError
 
     pairs = {}

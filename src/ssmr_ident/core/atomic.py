@@ -17,19 +17,20 @@ _MENDS = {
     errno.ENOSPC: "Make room, or write elsewhere with -o",
     errno.EDQUOT: "Make room, or write elsewhere with -o",
     errno.EFBIG: "Files may not be larger here: write elsewhere with -o",
-    errno.ENOENT: "Make the folder first",
 }
 
 
 def write_bytes(path: str | Path, data: bytes) -> Path:
-    """Write bytes to a file at once.
+    """Write bytes to a file at once; its folder is made, with all that it lies in.
 
     Raises
     ------
     InputError
-        When the folder is missing or may not be written to, or the disk is full.
+        When the folder cannot be made or may not be written to, or the disk is full.
     """
     path = Path(path)
+    if not path.parent.exists():
+        make_folder(path.parent)
     # Named before it is made: a signal between its making and its name would leave it lying.
     temporary = path.with_name(f".{path.name[:60]}.{secrets.token_hex(4)}")
     _BEGUN.add(temporary)
@@ -54,7 +55,7 @@ def write_text(path: str | Path, text: str) -> Path:
     Raises
     ------
     InputError
-        When the folder is missing or may not be written to, or the disk is full.
+        When the folder cannot be made or may not be written to, or the disk is full.
     """
     return write_bytes(path, text.encode(errors="backslashreplace"))
 

@@ -262,10 +262,13 @@ class Keyed(Domain):
     keys : mapping of str to pair of Domain and str
         With what each means.
     needed : tuple of str
+    one_of : tuple of str
+        Of these exactly one is needed; none where it is empty.
     """
 
     keys: Mapping[str, tuple[Domain, str]]
     needed: tuple[str, ...] = ()
+    one_of: tuple[str, ...] = ()
 
     def check(self, place: Place, value: Any) -> dict[str, Any]:
         if not isinstance(value, Mapping):
@@ -276,6 +279,10 @@ class Keyed(Domain):
         for key in self.needed:
             if value.get(key) is None:
                 raise place.at(key).error("is missing", f"Needed here: {', '.join(self.needed)}")
+        given = [key for key in self.one_of if value.get(key) is not None]
+        if self.one_of and len(given) != 1:
+            problem = f"stands beside {given[1]}" if given else "is missing"
+            raise place.at(self.one_of[0]).error(problem, f"Needed here: one of {', '.join(self.one_of)}")
         return {
             str(key): self.keys[key][0].check(place.at(key), inner) for key, inner in value.items() if inner is not None
         }
@@ -286,7 +293,9 @@ class Keyed(Domain):
             for key, (domain, meaning) in self.keys.items()
         }
         made: Schema = {"type": "object", "properties": properties, "additionalProperties": False}
-        return made | ({"required": list(self.needed)} if self.needed else {})
+        made |= {"required": list(self.needed)} if self.needed else {}
+        ways = [{"required": [key], "properties": {key: {"not": {"type": "null"}}}} for key in self.one_of]
+        return made | ({"oneOf": ways} if ways else {})
 
 
 @dataclass(frozen=True)

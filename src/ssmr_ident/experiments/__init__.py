@@ -4,7 +4,8 @@ No other room compares the names of experiments. What depends on the kind asks t
 words:
 
 - **what drives it** (`drive`): `free` systems swing by themselves, from a state that has to be found; `driven` ones
-  follow a measured force, which tells the mass and keeps the phase; `on_a_testing_machine` a head moves and a load cell
+  follow a measured force, which tells the mass and keeps the phase, or the foot that they stand on (`on_a_base`), which
+  keeps the phase alone; `on_a_testing_machine` a head moves and a load cell
   reads; `on_wheels` the robot drives itself;
 - **by what it is compared** (`likelihood`, `repeats`): waveform, force or spectrum, and under which `baselines`;
 - **one wheel or everything** (`of_one_wheel`, `vertical`, `drags_everything`): a tire on a bench has no body that
@@ -18,6 +19,7 @@ What only one upper room needs, such as the panels of a page, stands there in on
 file here, a line in `EXPERIMENTS`, and its name in the format of session.yaml (`session/session_file.py`).
 """
 
+from ssmr_ident.experiments.base_motion import BASE_MOTION
 from ssmr_ident.experiments.conditions import Conditions
 from ssmr_ident.experiments.experiment import Drive, Experiment, Likelihood
 from ssmr_ident.experiments.forced import FORCED
@@ -30,10 +32,12 @@ from ssmr_ident.experiments.vertical_compression import VERTICAL_COMPRESSION
 from ssmr_ident.experiments.wheel_drag import WHEEL_DRAG
 
 EXPERIMENTS: dict[str, Experiment] = {
-    kind.name: kind for kind in (FREE_RESPONSE, SWIVEL, STRAIGHT, PULL, WHEEL_DRAG, VERTICAL_COMPRESSION, FORCED)
+    kind.name: kind
+    for kind in (FREE_RESPONSE, SWIVEL, STRAIGHT, PULL, WHEEL_DRAG, VERTICAL_COMPRESSION, FORCED, BASE_MOTION)
 }
 
 __all__ = [
+    "BASE_MOTION",
     "EXPERIMENTS",
     "FORCED",
     "FREE_RESPONSE",

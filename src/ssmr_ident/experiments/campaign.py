@@ -2,34 +2,43 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.core.recording import Recording
 from ssmr_ident.core.shown import Shown
-from ssmr_ident.experiments import EXPERIMENTS
-from ssmr_ident.experiments.experiment import Experiment
+from ssmr_ident.experiments import BASE_MOTION, EXPERIMENTS
+from ssmr_ident.experiments.experiment import BASES, Experiment
 from ssmr_ident.experiments.quantities import UNITS, to_quantities
+from ssmr_ident.experiments.releases import parts_of, release_sentence
+from ssmr_ident.experiments.together import Log, merged, one_of_each, undelayed
 from ssmr_ident.physics.robot import accelerometer_from_parameters
 from ssmr_ident.physics.sensor import Accelerometer
 from ssmr_ident.readers import ReadOptions, read_one
-from ssmr_ident.session import Entry, Session, read_parameters, read_session
+from ssmr_ident.session import Entry, Reading, Session, read_parameters, read_session
 
 
 @dataclass(frozen=True, eq=False)
 class Measurement:
-    """One recording of a campaign: how it was made, and what was measured (SI)."""
+    """One recording of a campaign: how it was made, and what was measured (SI).
+
+    ``release_s`` tells decays of one log apart, where it holds several; ``found`` says what was found out about it that
+    no file says, such as releases, or by how much two clocks differ.
+    """
 
     entry: Entry
     recording: Recording
     wheels: Recording | None = None
+    release_s: float | None = None
+    found: tuple[str, ...] = ()
 
     @property
     def name(self) -> str:
-        return self.entry.file if self.entry.sample is None else f"{self.entry.file}#{self.entry.sample}"
+        name = self.entry.file if self.entry.sample is None else f"{self.entry.file}#{self.entry.sample}"
+        return name if self.release_s is None else f"{name}@{self.release_s:.4g}s"
 
     @property
     def experiment(self) -> Experiment:
@@ -51,6 +60,11 @@ class Campaign(Shown):
             for m in self.measurements
             if m.entry.experiment == experiment and all(getattr(m.entry, k) == v for k, v in fields.items())
         )
+
+    @property
+    def found(self) -> tuple[str, ...]:
+        """What was found out about recordings that no file says, each once."""
+        return tuple(dict.fromkeys(sentence for m in self.measurements for sentence in m.found))
 
     def __str__(self) -> str:
         lines = [f"campaign {self.session.name}: {len(self.measurements)} recordings"]
@@ -77,29 +91,36 @@ def load(path: str | Path, progress: Callable[[int, int], None] | None = None) -
     session = read_session(path)
     parameters = read_parameters(session.robot)
     accelerometer = accelerometer_from_parameters(parameters)
-    measurements = []
+    measurements: list[Measurement] = []
     for index, entry in enumerate(session.entries):
-        measurements.append(_measure(session, entry, accelerometer))
+        measurements += _decays(_measure(session, entry, accelerometer), session.baseline)
         if progress:
             progress(index + 1, len(session.entries))
     return Campaign(session, parameters, tuple(measurements))
 
 
 def _measure(session: Session, entry: Entry, accelerometer: Accelerometer) -> Measurement:
-    options = read_options(entry)
-    recording = to_quantities(read_one(session.path(entry), options), entry, accelerometer)
-    recording = on_its_clock(recording, EXPERIMENTS[entry.experiment]).on_even_grid()
+    if entry.files:
+        recording = _of_several(session, entry, accelerometer)
+    else:
+        options = read_options(entry, entry.channels)
+        recording = to_quantities(read_one(session.folder / entry.file, options), entry, accelerometer)
+        recording = on_its_clock(recording, EXPERIMENTS[entry.experiment]).on_even_grid()
+    if any(entry.delay_s.values()):
+        recording = undelayed(recording, entry.delay_s)
+    entry = replace(entry, experiment=_as_logged(entry, recording).name)
     for group in EXPERIMENTS[entry.experiment].channels:
         if not any(name in recording for name in group):
             raise InputError(
-                str(session.path(entry)),
+                str(session.folder / entry.file),
                 f"{entry.experiment} needs {' or '.join(group)}; found {', '.join(recording.names) or 'nothing'}",
                 f"Map the header in session.yaml: channels: {{{group[0]}: HEADER}}",
             )
     wheels = None
     if entry.wheel_log:
         wheels = read_one(session.folder / entry.wheel_log, ReadOptions())
-    return Measurement(entry, recording, wheels)
+    clocks = tuple(note.text for note in recording.notes if entry.files and "its clock reads" in note.text)
+    return Measurement(entry, recording, wheels, found=clocks)
 
 
 def on_its_clock(recording: Recording, experiment: Experiment) -> Recording:
@@ -115,8 +136,61 @@ def on_its_clock(recording: Recording, experiment: Experiment) -> Recording:
     return recording.on_clock_of(slowest, among=used)
 
 
-def read_options(entry: Entry) -> ReadOptions:
-    """What the entry tells the reader."""
+def _as_logged(entry: Entry, recording: Recording) -> Experiment:
+    """A rig called forced of which the foot's motion was logged, and no force, stands on what moves it."""
+    experiment = EXPERIMENTS[entry.experiment]
+    forces = any(name in recording for name in ("force", "torque"))
+    if experiment.driven and not forces and any(name in recording for name in BASES):
+        return BASE_MOTION
+    return experiment
+
+
+def _of_several(session: Session, entry: Entry, accelerometer: Accelerometer) -> Recording:
+    """One recording of the logs that an entry names by quantity."""
+    owner = {quantity: log.file for quantity, log in entry.files.items()}
+    read: dict[str, Recording] = {}
+    delays: dict[str, float | None] = {}
+    for log in {log.file: log for log in entry.files.values()}.values():
+        own = {quantity: header for quantity, header in entry.channels.items() if owner.get(quantity) == log.file}
+        recording = read_one(session.folder / log.file, read_options(log.over(entry), own))
+        here = {
+            quantity: header
+            for quantity, header in entry.channels.items()
+            if owner.get(quantity, log.file) == log.file
+            and (quantity in owner or any(header in (c.label, c.name) for c in recording.channels))
+        }
+        recording = to_quantities(recording, replace(entry, file=log.file, channels=here), accelerometer)
+        kept = [c for c in recording.channels if owner.get(c.name, log.file) == log.file]
+        read[log.file], delays[log.file] = recording.with_channels(kept), log.delay_s
+    for quantity, file in owner.items():
+        if quantity not in read[file]:
+            raise InputError(
+                str(session.folder / file),
+                f"has no {quantity}; found {', '.join(read[file].names) or 'nothing'}",
+                f"Map its header: channels: {{{quantity}: HEADER}}",
+            )
+    one_of_each(read, owner)
+    return merged([Log(recording, delays[file]) for file, recording in read.items()])
+
+
+def _decays(measurement: Measurement, baseline: str) -> list[Measurement]:
+    """A rig's free response from each release on; a robot's finds its own in the fit."""
+    if baseline != "sdof" or not measurement.experiment.free:
+        return [measurement]
+    given = measurement.entry.release_s
+    parts = parts_of(measurement.recording, given)
+    if not parts:
+        return [measurement]
+    said = (*measurement.found, release_sentence(measurement.name, parts, bool(given)))
+    several = len(parts) > 1
+    return [
+        replace(measurement, recording=p.recording, release_s=p.release_s if several else None, found=said)
+        for p in parts
+    ]
+
+
+def read_options(entry: Reading, channels: Mapping[str, str]) -> ReadOptions:
+    """What an entry tells the reader."""
     return ReadOptions(
         reader=entry.reader,
         fs=entry.sample_rate_hz,
@@ -124,7 +198,7 @@ def read_options(entry: Entry) -> ReadOptions:
         columns=dict(entry.columns),
         skip="auto" if entry.skip_rows is None else entry.skip_rows,
         sheets=dict(entry.sheets),
-        channels=dict(entry.channels),
+        channels=dict(channels),
         time_unit=entry.time_unit,
         on_bad=entry.on_bad,
         stamps=entry.stamps,

@@ -18,6 +18,9 @@ ROBOT = ("rigid6", "decoupled")
 MOTIONS = ("acceleration", "velocity", "position", "angle", "angular_rate")
 """Channels of a rig's motion."""
 
+BASES = ("base_acceleration", "base_position")
+"""Channels of the foot that a rig stands on."""
+
 ACCELERATIONS = ("ax", "ay", "az")
 """Channels of a robot's accelerometers."""
 
@@ -27,6 +30,7 @@ class Drive(Enum):
 
     NOTHING = "nothing: it was let go or struck"
     FORCE = "a measured force or torque"
+    BASE = "the measured motion of the foot that it stands on"
     HEAD = "the head of a testing machine"
     WHEELS = "the robot's own wheels"
 
@@ -101,8 +105,13 @@ class Experiment(Shown):
 
     @property
     def driven(self) -> bool:
-        """Whether a measured force keeps the phase of the motion, and tells the mass."""
-        return self.drive is Drive.FORCE
+        """Whether something measured keeps the phase of the motion."""
+        return self.drive in (Drive.FORCE, Drive.BASE)
+
+    @property
+    def on_a_base(self) -> bool:
+        """Whether the foot drives it: what the mass does is then absolute, and nothing tells the mass."""
+        return self.drive is Drive.BASE
 
     @property
     def on_a_testing_machine(self) -> bool:

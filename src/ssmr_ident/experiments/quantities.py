@@ -14,7 +14,8 @@ from ssmr_ident.session import Entry
 
 UNITS = {
     **{"force": "N", "torque": "N m", "position": "m", "position_reference": "m", "velocity": "m/s"},
-    **dict.fromkeys(("acceleration", "acceleration_2", "ax", "ay", "az"), "m/s^2"),
+    **dict.fromkeys(("acceleration", "acceleration_2", "base_acceleration", "ax", "ay", "az"), "m/s^2"),
+    **{"base_position": "m"},
     **{"angle": "rad", "angular_rate": "rad/s", "wx": "rad/s", "wy": "rad/s", "wz": "rad/s"},
     **{"v_left": "m/s", "v_right": "m/s"},
 }

@@ -3,18 +3,33 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
-from typing import Annotated
+from dataclasses import dataclass, field, fields, replace
+from typing import Annotated, Any
 
-from ssmr_ident.core.domain import Choice, Either, FileName, Keyed, Listed, Mapped, Number, Pointer, Text, Whole, YesNo
+from ssmr_ident.core.domain import (
+    Choice,
+    Either,
+    FileName,
+    Keyed,
+    Listed,
+    Mapped,
+    Number,
+    Pointer,
+    Text,
+    Whole,
+    YesNo,
+    declared,
+)
 
 BASELINES = ("rigid6", "decoupled", "sdof", "drag")
-EXPERIMENTS = ("free_response", "swivel", "straight", "pull", "wheel_drag", "vertical_compression", "forced")
+EXPERIMENTS = (
+    *("free_response", "swivel", "straight", "pull", "wheel_drag", "vertical_compression", "forced", "base_motion"),
+)
 ROLES = ("target", "calibration", "heldout")
 CABLES = ("steel", "rope")
 QUANTITIES = (
     *("force", "torque", "acceleration", "acceleration_2", "velocity", "position", "position_reference"),
-    *("angle", "angular_rate", "ax", "ay", "az", "wx", "wy", "wz", "time"),
+    *("base_acceleration", "base_position", "angle", "angular_rate", "ax", "ay", "az", "wx", "wy", "wz", "time"),
 )
 
 CABLE = Keyed(
@@ -28,41 +43,16 @@ SPEED = Number("mm/s", least=1e-9, most=1e7)
 HEIGHT = Number("m", least=-1e3, most=1e3)
 TURN = Number("deg/s", least=-1e6, most=1e6)
 WHEELS = Listed(Choice((1, 2, 3, 4)), distinct=True)
+SECONDS = Number("s", least=-1e9, most=1e9)
+CHANNEL = Either(Text(), Keyed({"column": (Text(), "its header"), "delay_s": (SECONDS, "it comes late")}, ("column",)))
 
 
-@dataclass(frozen=True)
-class Entry:
-    """One recording of a session, as session.yaml describes it (units are in the names)."""
+@dataclass(frozen=True, kw_only=True)
+class Reading:
+    """What a log does not say of itself, for its reader."""
 
-    file: Annotated[str, FileName(), "log, relative to this file's folder"]
-    experiment: Annotated[str, Choice(EXPERIMENTS), "how it was made"]
-    role: Annotated[str, Choice(ROLES), "calibration: made without the puzzling condition; heldout: never fitted"] = (
-        "target"
-    )
     # a lab may bring a reader of its own, which only the readers' door knows
     reader: Annotated[str | None, Text(longest=80), "left out, the content decides"] = None
-    trial: Annotated[int | None, Whole(least=-(2**31)), "number of the repetition"] = None
-    motion: Annotated[str | None, Choice(("roll", "pitch", "yaw")), "of a robot's free response"] = None
-    yaw_rate_deg_s: Annotated[float | None, TURN, "wanted yaw rate of a swivel"] = None
-    wheel_speed_m_s: Annotated[float | None, Number("m/s", least=-1e4, most=1e4), "(right - left)/2 of a swivel"] = None
-    wheel_log: Annotated[str | None, FileName(), "log of the wheels: time, v_left, v_right"] = None
-    floor: Annotated[str | None, Text(), "label"] = None
-    frame: Annotated[str | None, Text(), "label"] = None
-    direction: Annotated[str | None, Choice(("lateral", "longitudinal")), "of a pull"] = None
-    speed_mm_s: Annotated[float | None, SPEED, "of the machine's head"] = None
-    height_m: Annotated[float | None, HEIGHT, "of the cable above the floor"] = None
-    wheels_gripping: Annotated[tuple[int, ...], WHEELS, "the others stand on oiled plates"] = (1, 2, 3, 4)
-    wheel_rate_rad_s: Annotated[float | None, Number("rad/s", least=-1e6, most=1e6), "of wheels spun in a pull"] = None
-    cable: Annotated[str | Mapping[str, float] | None, Either(Choice(CABLES), CABLE), "of a pull"] = None
-    free_normal: Annotated[bool, YesNo(), "whether a dragged wheel can move off the surface"] = True
-    channels: Annotated[Mapping[str, str], Mapped(Choice(QUANTITIES), Text()), "quantity: header without unit"] = field(
-        default_factory=dict
-    )
-    per_volt: Annotated[
-        Mapping[str, float],
-        Mapped(Choice(QUANTITIES), Number(least=-1e15, most=1e15, nonzero=True)),
-        "quantity: SI units per volt",
-    ] = field(default_factory=dict)
     columns: Annotated[
         Mapping[str, int | str], Mapped(Text(), Pointer()), "quantity: column by its number from 0, or its header"
     ] = field(default_factory=dict)
@@ -83,3 +73,87 @@ class Entry:
     load_scale: Annotated[float | None, Number("N", least=1e-12, most=1e12), "newtons per unit of a machine's load"] = (
         None
     )
+
+
+@dataclass(frozen=True)
+class LogEntry(Reading):
+    """One of the logs of a recording that several machines made."""
+
+    file: Annotated[str, FileName(), "log, relative to this file's folder"]
+    delay_s: Annotated[float | None, SECONDS, "by how much its clock reads more; left out, it is found"] = None
+
+    def over(self, entry: Reading) -> Reading:
+        """How it is read: as it says itself, and else as its recording's entry says."""
+        own = {f.name: getattr(self, f.name) for f in fields(Reading) if getattr(self, f.name) != f.default}
+        return replace(Reading(**{f.name: getattr(entry, f.name) for f in fields(Reading)}), **own)
+
+
+LOG = Either(FileName(), Keyed(declared(LogEntry), ("file",)))
+
+
+@dataclass(frozen=True)
+class Entry(Reading):
+    """One recording of a session, as session.yaml describes it (units are in the names).
+
+    Where several machines logged it, ``file`` is what it is called: the names of ``files`` together.
+    """
+
+    file: Annotated[str, FileName(), "log, relative to this file's folder"]
+    experiment: Annotated[str, Choice(EXPERIMENTS), "how it was made"]
+    role: Annotated[str, Choice(ROLES), "calibration: made without the puzzling condition; heldout: never fitted"] = (
+        "target"
+    )
+    trial: Annotated[int | None, Whole(least=-(2**31)), "number of the repetition"] = None
+    motion: Annotated[str | None, Choice(("roll", "pitch", "yaw")), "of a robot's free response"] = None
+    yaw_rate_deg_s: Annotated[float | None, TURN, "wanted yaw rate of a swivel"] = None
+    wheel_speed_m_s: Annotated[float | None, Number("m/s", least=-1e4, most=1e4), "(right - left)/2 of a swivel"] = None
+    wheel_log: Annotated[str | None, FileName(), "log of the wheels: time, v_left, v_right"] = None
+    floor: Annotated[str | None, Text(), "label"] = None
+    frame: Annotated[str | None, Text(), "label"] = None
+    direction: Annotated[str | None, Choice(("lateral", "longitudinal")), "of a pull"] = None
+    speed_mm_s: Annotated[float | None, SPEED, "of the machine's head"] = None
+    height_m: Annotated[float | None, HEIGHT, "of the cable above the floor"] = None
+    wheels_gripping: Annotated[tuple[int, ...], WHEELS, "the others stand on oiled plates"] = (1, 2, 3, 4)
+    wheel_rate_rad_s: Annotated[float | None, Number("rad/s", least=-1e6, most=1e6), "of wheels spun in a pull"] = None
+    cable: Annotated[str | Mapping[str, float] | None, Either(Choice(CABLES), CABLE), "of a pull"] = None
+    free_normal: Annotated[bool, YesNo(), "whether a dragged wheel can move off the surface"] = True
+    channels: Annotated[Mapping[str, str], Mapped(Choice(QUANTITIES), CHANNEL), "quantity: header without unit"] = (
+        field(default_factory=dict)
+    )
+    per_volt: Annotated[
+        Mapping[str, float],
+        Mapped(Choice(QUANTITIES), Number(least=-1e15, most=1e15, nonzero=True)),
+        "quantity: SI units per volt",
+    ] = field(default_factory=dict)
+    files: Annotated[
+        Mapping[str, LogEntry], Mapped(Choice(QUANTITIES), LOG), "in place of file: quantity: its log, one event in all"
+    ] = field(default_factory=dict)
+    release_s: Annotated[
+        tuple[float, ...], Either(SECONDS, Listed(SECONDS, 1, 1000, distinct=True)), "when it was let go, or struck"
+    ] = ()
+    delay_s: Annotated[
+        Mapping[str, float], Mapped(Choice(QUANTITIES), SECONDS), "quantity: by how much its channel comes late"
+    ] = field(default_factory=dict)
+
+    @property
+    def logs(self) -> tuple[str, ...]:
+        """Names of its files."""
+        return tuple(dict.fromkeys(log.file for log in self.files.values())) or (self.file,)
+
+
+def entry_of(values: Mapping[str, Any]) -> Entry:
+    """An entry from checked values: a log alone is its name, a release alone a list of one."""
+    made = dict(values)
+    files = {
+        quantity: LogEntry(**log) if isinstance(log, Mapping) else LogEntry(log)
+        for quantity, log in made.get("files", {}).items()
+    }
+    if files:
+        made |= {"files": files, "file": " + ".join(dict.fromkeys(log.file for log in files.values()))}
+    if isinstance(made.get("release_s"), float):
+        made["release_s"] = (made["release_s"],)
+    columns = {quantity: c for quantity, c in made.get("channels", {}).items() if isinstance(c, Mapping)}
+    late = {quantity: c["delay_s"] for quantity, c in columns.items() if "delay_s" in c}
+    made["channels"] = dict(made.get("channels", {})) | {quantity: c["column"] for quantity, c in columns.items()}
+    made["delay_s"] = dict(made.get("delay_s", {})) | late
+    return Entry(**made)

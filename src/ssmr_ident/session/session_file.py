@@ -9,7 +9,7 @@ from ssmr_ident.core.domain import Choice, Domain, FileName, Keyed, Listed, Text
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.place import Place, short
 from ssmr_ident.core.shown import Shown
-from ssmr_ident.session.entry import BASELINES, Entry
+from ssmr_ident.session.entry import BASELINES, Entry, entry_of
 from ssmr_ident.session.parameters_file import bundled_robots
 from ssmr_ident.session.yaml_file import expect_schema, load_with_lines
 
@@ -19,7 +19,10 @@ KEYS: dict[str, tuple[Domain, str]] = {
     "name": (Text(one_line=False), "of the session"),
     "robot": (FileName(), "parameter file, or the name of a bundled robot"),
     "baseline": (Choice(BASELINES), "rigid6: the robot; decoupled: pure rotations; sdof: a rig; drag: a pulled block"),
-    "recordings": (Listed(Keyed(declared(Entry), ("file", "experiment")), 1), "the logs, each with how it was made"),
+    "recordings": (
+        Listed(Keyed(declared(Entry), ("experiment",), ("file", "files")), 1),
+        "the logs, each with how it was made",
+    ),
 }
 """The keys of session.yaml."""
 
@@ -39,8 +42,9 @@ class Session(Shown):
     baseline: str
     entries: tuple[Entry, ...]
 
-    def path(self, entry: Entry) -> Path:
-        return self.folder / entry.file
+    def paths(self, entry: Entry) -> tuple[Path, ...]:
+        """The logs of an entry."""
+        return tuple(self.folder / name for name in entry.logs)
 
     def __str__(self) -> str:
         lines = [
@@ -72,20 +76,23 @@ def read_session(path: str | Path) -> Session:
     expect_schema(place, content, SCHEMA)
     values = FILE.check(place, content)
     rows = values["recordings"]
+    entries = tuple(entry_of(row) for row in rows)
     seen: set[tuple[str, int | None]] = set()
-    for index, row in enumerate(rows):
+    for index, (row, entry) in enumerate(zip(rows, entries, strict=True)):
         here = place.at("recordings", index)
-        for key in ("file", "wheel_log"):
-            if key in row and not _inside(here.at(key), file.parent, row[key]).is_file():
-                raise here.at(key).error(f"{short(row[key])} is not in {file.parent}", "Check the name")
-        log = (row["file"], row.get("sample"))
+        named: list[tuple[tuple[str, ...], str]] = [(("file",), row["file"])] if "file" in row else []
+        named += [(("files", quantity), log.file) for quantity, log in entry.files.items()]
+        named += [(("wheel_log",), row["wheel_log"])] if "wheel_log" in row else []
+        for keys, name in named:
+            if not _inside(here.at(*keys), file.parent, name).is_file():
+                raise here.at(*keys).error(f"{short(name)} is not in {file.parent}", "Check the name")
+        log = (entry.file, entry.sample)
         if log in seen:
-            raise here.at("file").error(f"{short(row['file'])} is listed twice", "Remove one of them")
+            raise here.at("file").error(f"{short(entry.file)} is listed twice", "Remove one of them")
         seen.add(log)
     robot = values["robot"]
     if robot not in bundled_robots():
         robot = str(_inside(place.at("robot"), file.parent, robot))
-    entries = tuple(Entry(**row) for row in rows)
     name = values.get("name", file.parent.name)
     return Session(name, file.parent, robot, values.get("baseline", "rigid6"), entries)
 

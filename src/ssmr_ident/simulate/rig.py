@@ -14,6 +14,7 @@ from ssmr_ident.physics.element import STATES, element_advance, element_force
 from ssmr_ident.physics.rig import Rig
 from ssmr_ident.physics.sensor import filter_step, low_pass_coefficients
 from ssmr_ident.physics.slots import UNLISTED, Effects, checked, effect_vector
+from ssmr_ident.signals.grid import band_limited
 from ssmr_ident.simulate.sensed import sensed
 
 _unlisted = unlisted.force
@@ -92,20 +93,6 @@ def simulate_rig(
     names = ("angle", "angular_rate") if rig.rotary else ("position", "velocity")
     logged = dict(zip((*names, "acceleration"), out.T, strict=True))
     return np.column_stack(list(sensed(np.arange(n) / sample_rate, logged, active).values()))
-
-
-def band_limited(signal: np.ndarray, factor: int) -> np.ndarray:
-    """Finer samples of a band-limited signal, (n,) to ((n - 1)·factor + 1,).
-
-    By Fourier series over the signal and its mirror image, so that the ends meet without a jump.
-    """
-    n = len(signal)
-    if n < 4:
-        return np.interp(np.arange((n - 1) * factor + 1) / factor, np.arange(n), signal)
-    from scipy.signal import resample  # half a second that a swivel from the command line need not wait for
-
-    mirrored = np.concatenate([signal, signal[-2:0:-1]])
-    return resample(mirrored, len(mirrored) * factor)[: (n - 1) * factor + 1]
 
 
 def _propagators(rig: Rig, free: np.ndarray, step: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

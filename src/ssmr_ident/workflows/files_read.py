@@ -21,6 +21,6 @@ def files_read(session: str | Path, params: str = "") -> list[Path]:
     file = given / "session.yaml" if given.is_dir() else given
     read = read_session(given)
     robots = [read.folder / read.robot, *([Path(params)] if params else [])]
-    logs = [read.path(entry) for entry in read.entries]
+    logs = [path for entry in read.entries for path in read.paths(entry)]
     logs += [read.folder / entry.wheel_log for entry in read.entries if entry.wheel_log]
     return [file, *(robot for robot in robots if robot.is_file()), *logs]

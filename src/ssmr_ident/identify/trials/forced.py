@@ -11,19 +11,20 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 
 from ssmr_ident.core.errors import InputError, SimulationError
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.experiments.campaign import Measurement
-from ssmr_ident.experiments.experiment import MOTIONS
+from ssmr_ident.experiments.experiment import BASES, MOTIONS
 from ssmr_ident.experiments.quantities import UNITS
 from ssmr_ident.identify.trials.trial import Array, Course, Trial, Values
 from ssmr_ident.physics.rig import RIG_KEYS, Rig, rig_from_parameters
 from ssmr_ident.physics.slots import Effects
-from ssmr_ident.signals.grid import even_samples
+from ssmr_ident.signals.grid import band_limited, even_samples
 from ssmr_ident.signals.metrics import LOW_PASS_HZ
 from ssmr_ident.signals.noise import AutoregressiveNoise, rounding, white_noise
-from ssmr_ident.simulate.rig import band_limited, simulate_rig
+from ssmr_ident.simulate.rig import simulate_rig
 
 COLUMN = {"position": 0, "angle": 0, "velocity": 1, "angular_rate": 1, "acceleration": 2, "acceleration_2": 2}
 INPUTS = ("force", "torque")
@@ -86,7 +87,9 @@ def forced_trial(measurement: Measurement, parameters: ParameterSet) -> Trial:
     builder = RigBuilder.of(parameters)
     rig, recording = builder.nominal, measurement.recording
     outputs = tuple(name for name in (*MOTIONS, "acceleration_2") if name in recording and np.ptp(recording[name]) > 0)
-    drive = next((name for name in INPUTS if name in recording), None)
+    on_a_base = measurement.experiment.on_a_base
+    inputs = BASES[::-1] if on_a_base else INPUTS  # a position can be differentiated, an acceleration drifts
+    drive = next((name for name in inputs if name in recording), None)
     if not outputs:
         where, found = recording.provenance.file, ", ".join(recording.names)
         raise InputError(where, f"needs a motion that changes; found {found}", "Map the columns by channels:")
@@ -94,6 +97,9 @@ def forced_trial(measurement: Measurement, parameters: ParameterSet) -> Trial:
     even = even_samples(recording.time, np.column_stack([recording[name] for name in wanted]))
     measured, rate = even.samples[:, : len(outputs)], even.sample_rate
     force = even.samples[:, -1] if drive else np.zeros(len(measured))
+    foot = foot_motion(force, str(drive), outputs, rate, recording.provenance.file) if on_a_base else None
+    if foot is not None:
+        force = foot[:, 2]
     bandwidth = parameters.number(BANDWIDTH, math.inf)
     if bandwidth >= 0.5 * rate:
         # the force comes through a sensor and a converter of the same kind: what both delay alike cancels
@@ -117,10 +123,12 @@ def forced_trial(measurement: Measurement, parameters: ParameterSet) -> Trial:
 
     def motion(values: Values, effects: Effects, nuisance: Array, factor: int, fine: Array, samples: int) -> Array:
         state = nuisance * scales
+        now = builder(values)
+        driving = fine + state[2] if drive else fine
         try:
             run = simulate_rig(
-                builder(values),
-                fine + state[2] if drive else fine,
+                now,
+                -now.mass * driving if on_a_base else driving,  # against its foot it moves as if pushed by its inertia
                 rate,
                 float(state[0]),
                 float(state[1]),
@@ -131,6 +139,8 @@ def forced_trial(measurement: Measurement, parameters: ParameterSet) -> Trial:
             )[:, columns]
         except SimulationError:
             return np.full((samples, len(columns)), math.nan)
+        if foot is not None:
+            run += foot[: len(run), columns]
         if second is not None:
             run[:, second] *= state[-1]
         return run
@@ -182,6 +192,27 @@ def forced_trial(measurement: Measurement, parameters: ParameterSet) -> Trial:
     )
     whole = len(measured) // block
     return assembled(whole, FINE)
+
+
+def foot_motion(logged: Array, name: str, outputs: tuple[str, ...], rate: float, file: str) -> Array:
+    """Position, velocity and acceleration of the foot, (n, 3) float; nought where only its acceleration is known.
+
+    Raises
+    ------
+    InputError
+        A motion that is logged for the mass, and of the foot only by integrals of an acceleration that drift.
+    """
+    if name == "base_position":
+        path = CubicSpline(np.arange(len(logged)) / rate, logged)
+        return np.stack([path(path.x, order) for order in range(3)], axis=1)
+    other = next((output for output in outputs if COLUMN[output] != 2), None)
+    if other is not None:
+        raise InputError(
+            file,
+            f"has base_acceleration beside {other}, which is absolute: the foot's own {other} is not logged",
+            "Map the foot's base_position, or an acceleration of the mass, by channels:",
+        )
+    return np.stack([np.zeros_like(logged), np.zeros_like(logged), logged], axis=1)
 
 
 def _noise(samples: Array, unheld: bool, least: float) -> AutoregressiveNoise:

@@ -60,7 +60,7 @@ def _answers(task: Task, campaign: Campaign, row: dict[str, Any], out: Path) -> 
 
 def _facts(campaign: Campaign) -> dict[str, Any]:
     session = campaign.session
-    logged = min(session.path(entry).stat().st_mtime for entry in session.entries)
+    logged = min(path.stat().st_mtime for entry in session.entries for path in session.paths(entry))
     return {
         "name": session.name,
         "robot": campaign.parameters.name,

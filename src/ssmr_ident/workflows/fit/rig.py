@@ -18,6 +18,7 @@ from ssmr_ident.identify.rigs.inverse_dynamics import fit_drive
 from ssmr_ident.physics.rig import RIG_KEYS, rig_from_parameters
 from ssmr_ident.report.figures_fit import NamedBackbone
 from ssmr_ident.workflows.fit.result import SessionFit
+from ssmr_ident.workflows.fit.rig_base import base_driven
 from ssmr_ident.workflows.fit.rig_decays import free_decay, modes_after_a_hit
 
 ONE_MODE_LEAVES = 50.0
@@ -37,12 +38,13 @@ def fit_rig_session(campaign: Campaign, chosen: tuple[Measurement, ...], coulomb
     fixed = {key: float(parameters[key].value) for key in keys if parameters[key].fixed}
     lines: dict[str, tuple[str, ...]] = {}
     results: dict[str, dict[str, Any]] = {}
-    findings: list[str] = []
+    findings = list(campaign.found)
     backbones: list[NamedBackbone] = []
     observations: list[Observation] = []
-    forced = [m for m in chosen if m.experiment.driven]
+    based = [m for m in chosen if m.experiment.on_a_base]
+    forced = [m for m in chosen if m.experiment.driven and m not in based]
     free = [m for m in chosen if m.experiment.free]
-    others = [m for m in chosen if m not in forced and m not in free]
+    others = [m for m in chosen if m not in (*forced, *free, *based)]
     lines |= {m.name: (f"{m.entry.experiment}: not fitted on a rig",) for m in others}
     if forced:
         drive = rig.stiffness == 0.0 and keys[2] in fixed
@@ -50,6 +52,8 @@ def fit_rig_session(campaign: Campaign, chosen: tuple[Measurement, ...], coulomb
         observations += _forced_result(forced, fit, keys, fixed, lines, results, findings)
         if not drive:
             findings += modes_after_a_hit(forced, lines, results)
+    if based:
+        observations.append(base_driven(based, rig, keys, fixed, lines, results, findings))
     for measurement in free:
         observations.append(free_decay(measurement, keys, fixed, lines, results, findings, backbones))
     if not observations:

@@ -24,9 +24,9 @@ TODO = "TODO"
 AXES = ("ax", "ay", "az")
 RATES = {"wx": "roll", "wy": "pitch", "wz": "yaw"}
 FORCES = ("force", "torque")
-MOTIONS = ("position", "velocity", "acceleration", "angle", "angular_rate", "position_reference", "acceleration_2")
+ALL_MOTIONS = ("position", "velocity", "acceleration", "angle", "angular_rate", "position_reference", "acceleration_2")
 SYMBOLS = {"f": "force", "x": "position", "v": "velocity", "a": "acceleration"}
-SCALES = ("force", "torque", *MOTIONS, *AXES, *RATES)
+SCALES = ("force", "torque", *ALL_MOTIONS, *AXES, *RATES)
 
 DIES_AWAY = 0.5
 """Share of a record that holds 90 % of its energy: below, it has fallen to less than a tenth of its start. For an
@@ -77,7 +77,7 @@ class LogGuess:
 
 
 @dataclass
-class _Entry:
+class Entry:
     """Filled key by key."""
 
     fields: dict[str, Any] = field(default_factory=dict)
@@ -101,10 +101,7 @@ def guess_log(name: str, recording: Recording, sample: int | None = None) -> Log
         Its number, for a file that holds several.
     """
     hints = hints_of(Path(name).stem)
-    entry = _Entry()
-    entry.say("file", name)
-    if sample is not None:
-        entry.say("sample", sample, "the file holds several recordings")
+    entry = begun(name, sample)
     named = _quantities(recording, entry)
     rotary = bool({"torque", "angle"} & set(named)) and not {"force", "position"} & set(named)
     if {"v_left", "v_right"} & set(recording.names):
@@ -113,27 +110,61 @@ def guess_log(name: str, recording: Recording, sample: int | None = None) -> Log
         kind, what = "robot", _on_robot(recording, named, hints, entry)
     elif set(FORCES) & set(named) and _by_machine(recording, named, hints):
         kind, what = "machine", _on_machine(recording, named, hints, entry)
-    elif set(FORCES) & set(named) and set(MOTIONS) & set(named):
+    elif set(FORCES) & set(named) and set(ALL_MOTIONS) & set(named):
         kind, what = "rig", "measured force and motion"
         entry.fields["experiment"] = FORCED.name
-    elif set(MOTIONS) & set(named):
-        kind, what = "rig", _free_rig(recording, named, entry)
+    elif set(ALL_MOTIONS) & set(named):
+        kind, what = "rig", free_rig(recording, named, entry)
     elif set(FORCES) & set(named):
         kind, what = "machine", _on_machine(recording, named, hints, entry)
     else:
         kind, what = "other", "no force and no motion that is known by name or unit"
-    _labels(hints, entry)
+    add_labels(hints, entry)
+    return LogGuess(name, kind, entry.fields, entry.reasons, f"{held_by(recording)}; {what}", recording, rotary)
+
+
+def begun(name: str, sample: int | None) -> Entry:
+    """An entry with its file."""
+    entry = Entry()
+    entry.say("file", name)
+    if sample is not None:
+        entry.say("sample", sample, "the file holds several recordings")
+    return entry
+
+
+def held_by(recording: Recording) -> str:
+    """Channels, rate and length of a log, in a line."""
     rate = f"{recording.sample_rate:.6g} Hz, " if len(recording.time) > 1 else ""
     channels = ", ".join(f"{c.label or c.name} [{c.unit or '?'}]" for c in recording.channels)
-    seen = f"{channels}; {rate}{len(recording.time)} samples; {what}"
-    return LogGuess(name, kind, entry.fields, entry.reasons, seen, recording, rotary)
+    return f"{channels}; {rate}{len(recording.time)} samples"
 
 
-def _quantities(recording: Recording, entry: _Entry) -> dict[str, np.ndarray]:
+@dataclass(frozen=True)
+class Quantities:
+    """What columns stand for.
+
+    Parameters
+    ----------
+    named : dict of quantity to (n,) float
+    mapping : dict of quantity to header
+        Where the header does not say it; ``TODO`` where several columns could be.
+    reason : str
+        For the mapping.
+    alike : dict of quantity to tuple of str
+        Headers of one unit that could each be it.
+    """
+
+    named: Mapping[str, np.ndarray]
+    mapping: Mapping[str, str]
+    reason: str
+    alike: Mapping[str, tuple[str, ...]]
+
+
+def quantities_of(recording: Recording) -> Quantities:
     """Samples by quantity; a header that names none is taken by its unit where only one column has it."""
-    entry.fields["experiment"] = TODO  # its place in the entry, before channels
     named = {c.name: c.samples for c in recording.channels if c.name in SCALES}
     mapping: dict[str, str] = {}
+    several: dict[str, tuple[str, ...]] = {}
     reason = "by their units?"
     strangers = [c for c in recording.channels if c.name not in QUANTITIES]
     for channel in strangers:
@@ -145,20 +176,27 @@ def _quantities(recording: Recording, entry: _Entry) -> dict[str, np.ndarray]:
         mapping[quantity] = TODO if len(alike) > 1 else header
         named[quantity] = channel.samples
         if len(alike) > 1:
+            several[quantity] = tuple(alike)
             reason = f"which of {', '.join(alike)} is the {quantity}?"
         elif channel.unit == "":
             reason = (
                 f"by their letters? the file has no units: SI is taken, others are said by units: {{{header}: lbf}}"
             )
-    if mapping:
-        entry.say("channels", mapping, reason)
-    return named
+    return Quantities(named, mapping, reason, several)
 
 
-def _on_robot(recording: Recording, named: Mapping[str, np.ndarray], hints: NameHints, entry: _Entry) -> str:
-    energy = {name: _course(named[name], recording) for name in AXES if name in named}
+def _quantities(recording: Recording, entry: Entry) -> Mapping[str, np.ndarray]:
+    found = quantities_of(recording)
+    entry.fields["experiment"] = TODO  # its place in the entry, before channels
+    if found.mapping:
+        entry.say("channels", dict(found.mapping), found.reason)
+    return found.named
+
+
+def _on_robot(recording: Recording, named: Mapping[str, np.ndarray], hints: NameHints, entry: Entry) -> str:
+    energy = {name: course_of(named[name], recording) for name in AXES if name in named}
     total = np.sum(list(energy.values()), axis=0)
-    share = _energy_share(total)
+    share = energy_share(total)
     text = f"90 % of the motion within {100 * share:.0f} % of the record"
     if share < DIES_AWAY:
         entry.fields["experiment"] = FREE_RESPONSE.name
@@ -184,7 +222,7 @@ def _motion(
     recording: Recording, named: Mapping[str, np.ndarray], energy: Mapping[str, np.ndarray], hints: NameHints
 ) -> tuple[str, str]:
     """Motion of a free response and the reason. A roll and a yaw both show in ay."""
-    rates = {name: float(np.sum(_course(named[name], recording))) for name in RATES if name in named}
+    rates = {name: float(np.sum(course_of(named[name], recording))) for name in RATES if name in named}
     sizes = {name: float(np.sum(course)) for name, course in energy.items()}
     largest = max(rates or sizes, key=lambda name: (rates or sizes)[name])
     if hints.motion:
@@ -199,8 +237,8 @@ def _motion(
     return TODO, f"{choice}? largest in {largest}"
 
 
-def _on_machine(recording: Recording, named: Mapping[str, np.ndarray], hints: NameHints, entry: _Entry) -> str:
-    speed = _head_speed(recording, named)
+def _on_machine(recording: Recording, named: Mapping[str, np.ndarray], hints: NameHints, entry: Entry) -> str:
+    speed = head_speed(recording, named)
     force = np.asarray(named["force" if "force" in named else "torque"], float)
     high = int(np.nanargmax(np.abs(force)))
     rises = high > 0.97 * len(force)
@@ -217,7 +255,7 @@ def _on_machine(recording: Recording, named: Mapping[str, np.ndarray], hints: Na
     if speed is not None:
         entry.say("speed_mm_s", float(f"{1e3 * abs(speed):.3g}"), "slope of the position")
     elif "position" in named:
-        speed = _moving_speed(np.asarray(named["position"], float), recording.time)
+        speed = moving_speed(np.asarray(named["position"], float), recording.time)
         entry.say("speed_mm_s", float(f"{1e3 * speed:.3g}"), "while the head moves, for it did not run evenly")
     else:
         entry.say("speed_mm_s", TODO, "speed of the head: the log has no position")
@@ -236,9 +274,9 @@ def _on_machine(recording: Recording, named: Mapping[str, np.ndarray], hints: Na
     return f"a head moves{moves}, {np.nanmax(np.abs(force)):.4g} N at most"
 
 
-def _free_rig(recording: Recording, named: Mapping[str, np.ndarray], entry: _Entry) -> str:
-    name = next(name for name in MOTIONS if name in named)
-    share = _energy_share(_course(named[name], recording))
+def free_rig(recording: Recording, named: Mapping[str, np.ndarray], entry: Entry) -> str:
+    name = next(name for name in ALL_MOTIONS if name in named)
+    share = energy_share(course_of(named[name], recording))
     text = f"90 % of the motion in {name} within {100 * share:.0f} % of the record"
     if share < DIES_AWAY:
         entry.fields["experiment"] = FREE_RESPONSE.name
@@ -247,14 +285,14 @@ def _free_rig(recording: Recording, named: Mapping[str, np.ndarray], entry: _Ent
     return f"{text}: it goes on"
 
 
-def _labels(hints: NameHints, entry: _Entry) -> None:
+def add_labels(hints: NameHints, entry: Entry) -> None:
     for key in ("floor", "frame", "trial", "role"):
         value = getattr(hints, key)
         if value is not None:
             entry.say(key, value, "from the name")
 
 
-def _course(samples: np.ndarray, recording: Recording) -> np.ndarray:
+def course_of(samples: np.ndarray, recording: Recording) -> np.ndarray:
     """Squared motion below 50 Hz about the level of the record's end."""
     samples = np.nan_to_num(np.asarray(samples, float), nan=float(np.nanmedian(samples)))
     if recording.sample_rate > 250.0 and len(samples) > 200:
@@ -263,7 +301,7 @@ def _course(samples: np.ndarray, recording: Recording) -> np.ndarray:
     return result
 
 
-def _energy_share(energy: np.ndarray) -> float:
+def energy_share(energy: np.ndarray) -> float:
     """Shortest share of a record that holds nine tenths of its energy."""
     total = np.concatenate([[0.0], np.cumsum(energy)])
     if total[-1] <= 0:
@@ -278,24 +316,27 @@ def _by_machine(recording: Recording, named: Mapping[str, np.ndarray], hints: Na
 
     A rig that is shaken comes back to where it was.
     """
-    if "position" not in named or set(MOTIONS) & set(named) - {"position"}:
+    if "position" not in named or set(ALL_MOTIONS) & set(named) - {"position"}:
         return False
-    position = np.asarray(named["position"], float)
+    return goes_one_way(named["position"]) or (hints.experiment is not None and hints.experiment.on_a_testing_machine)
+
+
+def goes_one_way(position: np.ndarray) -> bool:
+    """Whether a position goes from one end of its travel to the other, as a machine's head does."""
+    position = np.asarray(position, float)
     piece = max(1, len(position) // 20)
     way = abs(float(np.nanmedian(position[-piece:]) - np.nanmedian(position[:piece])))
-    return way > ONE_WAY * float(np.nanmax(position) - np.nanmin(position)) or (
-        hints.experiment is not None and hints.experiment.on_a_testing_machine
-    )
+    return way > ONE_WAY * float(np.nanmax(position) - np.nanmin(position))
 
 
-def _moving_speed(position: np.ndarray, time: np.ndarray) -> float:
+def moving_speed(position: np.ndarray, time: np.ndarray) -> float:
     """Median speed [m/s] over those fortieths of a record in which a head moves (a fifth of the fastest, or more)."""
     at = np.linspace(0, len(time) - 1, 41).round().astype(int)
     speeds = np.abs(np.diff(position[at]) / np.diff(time[at]))
     return float(np.median(speeds[speeds > 0.2 * np.max(speeds)])) if np.nanmax(speeds) > 0 else 0.0
 
 
-def _head_speed(recording: Recording, named: Mapping[str, np.ndarray]) -> float | None:
+def head_speed(recording: Recording, named: Mapping[str, np.ndarray]) -> float | None:
     """Speed [m/s] of a position that runs straight, None for any other motion."""
     if "position" not in named:
         return None

@@ -34,6 +34,40 @@ class NameHints:
     yaw_rate_deg_s: float | None = None
     wheels: bool = False
     spinning: bool = False
+    head_mm_s: float | None = None
+    amplitude: str | None = None
+
+
+_NUMBER = r"(?:^|[^0-9a-z.])v?(\d+(?:[.,p]\d+)?)[-_ ]?"
+_HEAD = re.compile(_NUMBER + r"(mm|cm|um)[-_ ]?(?:p|per)?[-_ ]?/?[-_ ]?(s|sec|min)(?![a-z])")
+_AMPLITUDE = re.compile(_NUMBER + r"(mm|cm|deg|grad|rad|g|n|kn)(?![a-z0-9])")
+_MM = {"mm": 1.0, "cm": 10.0, "um": 1e-3}
+
+
+def head_speed_in(stem: str) -> float | None:
+    """Speed of a machine's head [mm/s] by a number with its unit in a name.
+
+    >>> [head_speed_in(name) for name in ("pull_0.5mms", "drag-30mm_min-2", "v2 20mm-s", "20ms")]
+    [0.5, 0.5, 20.0, None]
+    """
+    found = _HEAD.search(stem.lower())
+    if found is None:
+        return None
+    return _plain(found[1]) * _MM[found[2]] / (60.0 if found[3] == "min" else 1.0)
+
+
+def amplitude_in(stem: str) -> str | None:
+    """A number with a unit of length, angle, force or acceleration in a name, as it stands there.
+
+    >>> amplitude_in("pluck-5mm-2"), amplitude_in("swing_40deg"), amplitude_in("pull_5mms")
+    ('5 mm', '40 deg', None)
+    """
+    found = _AMPLITUDE.search(stem.lower())
+    return None if found is None else f"{_plain(found[1]):g} {found[2]}"
+
+
+def _plain(number: str) -> float:
+    return float(number.replace(",", ".").replace("p", "."))
 
 
 def hints_of(stem: str) -> NameHints:
@@ -68,6 +102,8 @@ def hints_of(stem: str) -> NameHints:
         yaw_rate_deg_s=float(rate[1]) if rate else None,
         wheels=any(word in ("wheel", "wheels") for word in words),
         spinning="spinning" in words,
+        head_mm_s=head_speed_in(stem),
+        amplitude=amplitude_in(stem),
     )
 
 
