@@ -32,7 +32,7 @@ def board() -> Scoreboard:
     told: list[str] = []
     begin = time.perf_counter()
     result = thesis_scoreboard(told.append)
-    assert time.perf_counter() - begin < 60.0
+    assert time.perf_counter() - begin < 120.0  # swivels under two laws
     assert told
     return result
 
