@@ -36,7 +36,7 @@ def recordings_of(source: Source, reader: str, table: Table, options: ReadOption
     groups = clocked(source, columns, options, table)
     made = [_on_rows(source, group, table, options) for group in groups]
     longest = max(made, key=lambda m: len(m[0].time))[0]
-    channels = iter(channels_of(source, [c for _, members, _ in made for c in members], table, _seen(longest)))
+    channels = iter(channels_of(source, [c for _, members, _ in made for c in members], table, _seen(source, longest)))
     by_group = [(axis, rows, [next(channels) for c in members if _has_numbers(c)]) for axis, members, rows in made]
     by_group = [group for group in by_group if group[2]]
     if len(by_group) > 1:
@@ -54,7 +54,7 @@ def _has_numbers(column: Column) -> bool:
     return bool(np.isfinite(column.values).any())
 
 
-def _seen(axis: time_axis.TimeAxis) -> str:
+def _seen(source: Source, axis: time_axis.TimeAxis) -> str:
     """What is understood of a log whose units are asked for."""
     count = len(axis.time)
     if count < 2:
@@ -62,7 +62,8 @@ def _seen(axis: time_axis.TimeAxis) -> str:
     parts = f", {len(axis.restarts) + 1} parts" if axis.restarts else ""
     end = axis.restarts[0] if axis.restarts else count
     rate = (end - 1) / float(axis.time[end - 1] - axis.time[0]) if end > 1 else 0.0
-    notes = "; ".join(note.text.split(";")[0] for note in axis.notes[:2])
+    doubts = [note for note in source.notes if note.level == "warning"] + axis.notes
+    notes = "; ".join(note.text.split(";")[0] for note in doubts[:2])
     return f"{count} rows{parts} at {rate:.6g} Hz{'; ' + notes if notes else ''}"
 
 

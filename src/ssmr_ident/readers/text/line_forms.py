@@ -22,12 +22,16 @@ _BETWEEN = re.compile(r"[\s,;|]*")
 
 def plain_rows(source: Source, text: Text) -> Text:
     """The text with every line as a row of cells, and a header where the lines themselves say the names."""
-    lines = text.data.split(b"\n", _LOOK)[:_LOOK]
-    sample = [text.decode(line) for line in lines if line.strip()]
+    sample = _sample(text)
     if _share(sample, _stamped) >= _MOST:
         text = _without_arrows(source, text, sample)
-        sample = [text.decode(line) for line in text.data.split(b"\n", _LOOK)[:_LOOK] if line.strip()]
+        sample = _sample(text)
     return _without_names(source, text, sample)
+
+
+def _sample(text: Text) -> list[str]:
+    """The first filled lines; of the first bytes only, for a split copies all that is behind them."""
+    return [text.decode(line) for line in text.data[: 400 * _LOOK].split(b"\n")[:_LOOK] if line.strip()]
 
 
 def _share(sample: list[str], has: object) -> float:
