@@ -77,7 +77,9 @@ class Source:
 
     def error(self, problem: str, mend: str = "", place: str = "") -> InputError:
         """An error at a place in this file."""
-        return InputError(f"{self.name}:{place}" if place else self.name, problem, mend)
+        # what a library says of damage, or a name in the file, may hold line ends; an error is one line
+        where, problem, mend = (" ".join(text.split()) for text in (place, problem, mend))
+        return InputError(f"{self.name}:{where}" if where else self.name, problem, mend)
 
     def warn(self, text: str, where: str = "") -> None:
         self.notes.append(Note("warning", text, where))
