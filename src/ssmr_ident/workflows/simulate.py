@@ -150,6 +150,8 @@ def _write(output: Path, recording: Recording, parameters: ParameterSet) -> None
 
 def _run(parameters: ParameterSet, request: Request) -> Recording:
     experiment, conditions = request.experiment, request.conditions
+    if experiment.on_a_base:
+        raise InputError("--experiment", f"{experiment.name} has no simulation of its own", "Drive the mass: forced")
     if experiment.driven:
         return _forced(parameters, request)
     robot, effects = robot_from_parameters(parameters), effect_values(parameters)
