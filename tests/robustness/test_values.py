@@ -250,3 +250,11 @@ def test_schemas_and_readers_agree(name: str) -> None:
                 assert judge.is_valid(changed) == (not message), (way, value, message)
                 tried += 1
     assert tried > 500
+
+
+@pytest.mark.parametrize("value", ["1e308", "-1e150"])
+def test_a_sample_that_no_sensor_gives(tmp_path: Path, value: str) -> None:
+    (tmp_path / "log.csv").write_text(LOG.replace("\n0.1,", f"\n0.1,{value},0\n#").replace("#", "0.10005,"))
+    done = CliRunner().invoke(cli.app, ["inspect", str(tmp_path / "log.csv")])
+    told = " ".join(str(done.exception).split()) + done.output
+    assert f"F is {float(value):g} N at 0.1 s, beyond anything that is measured" in told

@@ -18,6 +18,7 @@ from ssmr_ident.readers.json import reader as json
 from ssmr_ident.readers.lvm import reader as lvm
 from ssmr_ident.readers.mat import reader as mat
 from ssmr_ident.readers.options import ReadOptions
+from ssmr_ident.readers.reach import refuse_out_of_reach
 from ssmr_ident.readers.ros import reader as ros
 from ssmr_ident.readers.source import Source, open_source
 from ssmr_ident.readers.tdms import reader as tdms
@@ -94,6 +95,7 @@ def read(path: str | Path, options: ReadOptions = ReadOptions()) -> tuple[Record
     """
     source = open_source(path)
     recordings = tuple(_read_source(source, options))
+    refuse_out_of_reach(source, recordings)
     if options.sample is not None:
         if options.sample > len(recordings):
             raise source.error(
