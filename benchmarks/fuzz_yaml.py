@@ -181,9 +181,18 @@ def judged(path: Path) -> str:
     return "read"
 
 
+class _Late(BaseException):
+    """The processor time of one input is over."""
+
+
+def _late(number: int, frame: Any) -> None:
+    raise _Late
+
+
 def _child(line: Connection, folder: Path) -> None:
-    """Read what comes down the line; memory beyond the limit ends in MemoryError, time beyond it in the parent."""
+    """Read what comes down the line; what passes a limit of memory or of processor time is told of."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGPROF, _late)
     read_parameters(bundled_robots()[0])
     for name, text in seeds():  # the catalogue is loaded before anything is measured
         (folder / name).write_text(text, encoding="utf-8")
@@ -196,13 +205,15 @@ def _child(line: Connection, folder: Path) -> None:
         path = folder / name
         path.write_bytes(raw)
         begun = time.process_time()
+        signal.setitimer(signal.ITIMER_PROF, SECONDS * max(1.0, len(raw) / 1e6))
         try:
             outcome = judged(path)
         except MemoryError:
             outcome = "too large"
-        spent = time.process_time() - begun
-        allowed = SECONDS * max(1.0, len(raw) / 1e6)
-        line.send((outcome if spent <= allowed else f"slow: {spent:.1f} s of processor", spent))
+        except _Late:
+            outcome = f"slow: {raw[:2000]!r}"
+        signal.setitimer(signal.ITIMER_PROF, 0.0)
+        line.send((outcome, time.process_time() - begun))
 
 
 class Reader:
@@ -225,14 +236,14 @@ class Reader:
         """Outcome and processor time of one input."""
         self.line.send((name, raw))
         try:
-            if self.line.poll(30 * SECONDS):  # of the clock, on a machine that has others to serve
+            if self.line.poll(300 * SECONDS):  # of the clock, on a machine that has others to serve
                 return self.line.recv()  # type: ignore[no-any-return]
             told = "hung"
         except EOFError:
             told = "died"
         self.end()
         self._begin()
-        return told, 30 * SECONDS
+        return told, 300 * SECONDS
 
     def end(self) -> None:
         self.process.kill()

@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -258,3 +259,15 @@ def test_a_sample_that_no_sensor_gives(tmp_path: Path, value: str) -> None:
     done = CliRunner().invoke(cli.app, ["inspect", str(tmp_path / "log.csv")])
     told = " ".join(str(done.exception).split()) + done.output
     assert f"F is {float(value):g} N at 0.1 s, beyond anything that is measured" in told
+
+
+@pytest.mark.parametrize("values", [lambda i: 5.0, lambda i: 1e-200 * (i % 3)])
+def test_a_channel_that_does_not_change(tmp_path: Path, values: Callable[[int], float]) -> None:
+    folder = _folder(tmp_path)
+    rows = "".join(f"{i / 1000},{(i % 7) - 3.0},{values(i)}\n" for i in range(300))
+    (folder / "log.csv").write_text("time [s],F [N],a [m/s^2]\n" + rows)
+    for verb in ("fit", "compare"):
+        done = CliRunner().invoke(cli.app, [verb, str(folder)])
+        assert isinstance(done.exception, InputError), done.exception
+        told = f"{folder / 'log.csv'}: acceleration does not change from beginning to end. Look whether the sensor"
+        assert str(done.exception).startswith(told)

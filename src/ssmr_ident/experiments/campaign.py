@@ -6,6 +6,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import numpy as np
+
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.core.recording import Recording
@@ -19,6 +21,9 @@ from ssmr_ident.physics.robot import accelerometer_from_parameters
 from ssmr_ident.physics.sensor import Accelerometer
 from ssmr_ident.readers import ReadOptions, read_one
 from ssmr_ident.session import Entry, Reading, Session, read_parameters, read_session
+
+LEAST = 1e-100
+"""SI: a channel that moves by less is taken for one that does not move."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,11 +121,24 @@ def _measure(session: Session, entry: Entry, accelerometer: Accelerometer) -> Me
                 f"{entry.experiment} needs {' or '.join(group)}; found {', '.join(recording.names) or 'nothing'}",
                 f"Map the header in session.yaml: channels: {{{group[0]}: HEADER}}",
             )
+    answers = [name for name in EXPERIMENTS[entry.experiment].channels[-1] if name in recording]
+    if not any(_changes(recording[name]) for name in answers):
+        raise InputError(
+            str(session.path(entry)),
+            f"{' and '.join(answers)} {'does' if len(answers) == 1 else 'do'} not change from beginning to end",
+            "Look whether the sensor was connected, or map another column by channels:",
+        )
     wheels = None
     if entry.wheel_log:
         wheels = read_one(session.folder / entry.wheel_log, ReadOptions())
     clocks = tuple(note.text for note in recording.notes if entry.files and "its clock reads" in note.text)
     return Measurement(entry, recording, wheels, found=clocks)
+
+
+def _changes(samples: np.ndarray) -> bool:
+    """Whether a channel holds anything; (n,) float. Below the least that is asked for its squares are nothing."""
+    seen = samples[np.isfinite(samples)]
+    return len(seen) > 1 and float(np.ptp(seen)) > LEAST
 
 
 def on_its_clock(recording: Recording, experiment: Experiment) -> Recording:
