@@ -124,7 +124,7 @@ def _measure(session: Session, entry: Entry, accelerometer: Accelerometer) -> Me
     answers = [name for name in EXPERIMENTS[entry.experiment].channels[-1] if name in recording]
     if not any(_changes(recording[name]) for name in answers):
         raise InputError(
-            str(session.path(entry)),
+            str(session.folder / entry.file),
             f"{' and '.join(answers)} {'does' if len(answers) == 1 else 'do'} not change from beginning to end",
             "Look whether the sensor was connected, or map another column by channels:",
         )
