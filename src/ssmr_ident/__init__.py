@@ -30,7 +30,6 @@ _DOOR = {
     "fit_session": ("workflows.fit.run", "fit_session"),
     "compare_session": ("workflows.compare", "compare_session"),
     "diagnose_session": ("workflows.diagnose", "diagnose_session"),
-    "run_batch": ("workflows.batch", "run_batch"),
     "read_results": ("workflows.batch", "read_results"),
     "plot": ("workflows.plot", "plot"),
 }

@@ -15,6 +15,7 @@ from ssmr_ident.diagnose.turning.ensemble import settled
 from ssmr_ident.diagnose.turning.likelihood import Score
 from ssmr_ident.diagnose.turning.search import SPREAD_FACTOR, Explained, explained
 from ssmr_ident.diagnose.turning.spectra import look
+from ssmr_ident.experiments import EXPERIMENTS
 from ssmr_ident.session import read_parameters
 
 TRUE = {"height_m": 2.5e-4, "length_m": 0.015}
@@ -24,7 +25,8 @@ def _target(bench: Bench, anchor_values: dict) -> Condition:
     rates = np.atleast_2d([-1.5, 1.5])
     white = np.random.default_rng(0).standard_normal((4000, 3))
     blank = look(white, 500.0)
-    one = Condition("target", "swivel", ("a",), (blank,), blank, ("ax", "ay", "az"), np.full(3, 1e-8), np.zeros(3),
+    turning = EXPERIMENTS["swivel"]
+    one = Condition("target", turning, ("a",), (blank,), blank, ("ax", "ay", "az"), np.full(3, 1e-8), np.zeros(3),
                     rates, 1.0, 1.0, 6.0, 0.6, None, 1.0, 0.0)  # fmt: skip
     run = bench.run(one, anchor_values, {"ground_roughness": TRUE}, (77,))
     assert run is not None

@@ -47,10 +47,10 @@ def _replace(path: Path, old: str, new: str) -> None:
         (None, ("simulate", "p3at-extended", "-e", "swivel", "-o", "r.mat"), "r.mat"),
         (None, ("demo", "--data", "here", "-o", "out"), "here"),
         (("session.yaml", "motion: roll", "motoin: roll"), ("compare", "."), "Did you mean 'motion'"),
-        (("session.yaml", "robot: p3at-extended\n", ""), ("compare", "."), "robot: missing"),
+        (("session.yaml", "robot: p3at-extended\n", ""), ("compare", "."), "robot: is missing"),
         (("session.yaml", "file: log.csv", "file: other.csv"), ("compare", "."), "other.csv"),
         (("log.csv", "[m/s^2],ay [m/s^2]", "[lbf],ay [lbf]"), ("compare", "."), "log.csv"),
-        (("log.csv", "0.004,0.0,", "0.004,zero,"), ("inspect", "log.csv"), "log.csv"),
+        (("log.csv", "time [s]", "time [lbf]"), ("inspect", "log.csv"), "log.csv"),
     ],
 )
 def test_one_clear_line_and_status_2(folder: Path, change: tuple | None, call: tuple, told: str) -> None:

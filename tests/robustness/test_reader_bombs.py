@@ -38,10 +38,10 @@ def repack(path: Path, part: str, change) -> Path:
 
 
 def refused(path: Path, words: str, seconds: float = 2.0) -> None:
-    begin = time.perf_counter()
+    begin = time.process_time()
     with pytest.raises(InputError, match=words):
         read(path)
-    assert time.perf_counter() - begin < seconds
+    assert time.process_time() - begin < seconds
 
 
 SHEET = "xl/worksheets/sheet1.xml"
@@ -97,9 +97,9 @@ def test_one_stray_cell_at_the_end_of_the_sheet(workbook: Path, cell: bytes, lon
     (clean,) = read(workbook)
     padding = b" " * (LONG if long else 0)
     row = b'<row r="1048576">' + cell + b"</row>" + padding + b"</sheetData>"
-    begin = time.perf_counter()
+    begin = time.process_time()
     (recording,) = read(repack(workbook, SHEET, lambda data: data.replace(b"</sheetData>", row)))
-    assert time.perf_counter() - begin < 2.0
+    assert time.process_time() - begin < 2.0
     assert any("row(s) from 1048576 on stand alone" in note.text for note in recording.warnings)
     for name in clean.names:
         np.testing.assert_array_equal(recording[name], clean[name])

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from ssmr_ident.core.errors import InputError
+from ssmr_ident.core.shown import Shown
 
 Way = tuple[str | int, ...]
 
@@ -16,7 +17,7 @@ _LONGEST = 60
 
 
 @dataclass(frozen=True)
-class Place:
+class Place(Shown):
     """A key of a file, or an option; prints as ``session.yaml:7: recordings[0].speed_mm_s``.
 
     Parameters

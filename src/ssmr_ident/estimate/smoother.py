@@ -39,7 +39,7 @@ def smoothed(piece: Piece, frequency: float, size: float) -> Array:
     block = np.zeros((6, 6))
     block[:3, :3], block[:3, 3:], block[3:, 3:] = -a, np.diag([0.0, 0.0, 2.0 * alpha * spread**2]), a.T
     e = expm(block * step)
-    transition = e[3:, 3:].T
+    transition = np.ascontiguousarray(e[3:, 3:].T)
     noise = transition @ e[:3, 3:]
     y = piece.y.copy()
     if piece.based:

@@ -40,7 +40,7 @@ def to_quantities(recording: Recording, entry: Entry, accelerometer: Acceleromet
         if expected and channel.unit == "" and channel.name in entry.channels:
             channel = replace(channel, unit=expected)
             notes.append(Note("warning", f"{channel.label}: no unit in the file, taken as {expected}"))
-        elif expected and channel.unit != expected and channel.name in entry.channels:
+        elif expected and channel.unit not in (expected, "", "V" if channel.name not in entry.channels else expected):
             raise InputError(
                 f"{recording.provenance.file}: {channel.label or channel.name}",
                 f"has unit {channel.unit!r}, but {channel.name} is in {expected}",

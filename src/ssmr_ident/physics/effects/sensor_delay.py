@@ -9,12 +9,16 @@ import numpy as np
 from ssmr_ident.core.parameter import Parameter
 from ssmr_ident.physics.effect import Effect, Site
 
-DRIVES = ("force", "torque", "base_acceleration")
+LATE = (
+    *("ax", "ay", "az", "wx", "wy", "wz", "acceleration", "acceleration_2"),
+    *("velocity", "position", "angle", "angular_rate"),
+)
+"""What sensors of the motion give."""
 
 
 def change(time: np.ndarray, channels: Mapping[str, np.ndarray], delay_s: float) -> dict[str, np.ndarray]:
-    """Every channel but what drives, ``delay_s`` later; channels : (n,) float, straight lines between samples."""
-    late = {name: np.interp(time - delay_s, time, s) for name, s in channels.items() if name not in DRIVES}
+    """Every sensor of the motion ``delay_s`` later; channels : (n,) float, straight lines between samples."""
+    late = {name: np.interp(time - delay_s, time, s) for name, s in channels.items() if name in LATE}
     return {**channels, **late}
 
 

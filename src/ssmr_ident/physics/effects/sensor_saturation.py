@@ -22,9 +22,19 @@ RANGES = {
 """Channels by the range that they have."""
 
 
-def change(time: np.ndarray, channels: Mapping[str, np.ndarray], **ranges: float) -> dict[str, np.ndarray]:
+def change(
+    time: np.ndarray,
+    channels: Mapping[str, np.ndarray],
+    range_m_s2: float,
+    range_N: float,
+    range_m: float,
+    range_m_s: float,
+    range_rad: float,
+    range_rad_s: float,
+) -> dict[str, np.ndarray]:
     """Clip each channel at the range of its quantity; channels : (n,) float [SI]."""
-    limits = {name: limit for key, limit in ranges.items() for name in RANGES[key]}
+    ranges = (range_m_s2, range_N, range_m, range_m_s, range_rad, range_rad_s)
+    limits = {name: limit for names, limit in zip(RANGES.values(), ranges, strict=True) for name in names}
     return {name: np.clip(s, -limits[name], limits[name]) if name in limits else s for name, s in channels.items()}
 
 
