@@ -65,6 +65,7 @@ def test_inspect(log: str) -> None:
     check("inspect", answer_of("inspect", str(RAW / log)))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("logs", [["free_response/roll-1.xlsx"], ["swivel-frame/concrete.yaml"]])
 def test_spectrum(logs: list[str], tmp_path: Path) -> None:
     answer = answer_of("spectrum", *(str(RAW / log) for log in logs), "-o", str(tmp_path), "--no-figures")

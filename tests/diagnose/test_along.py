@@ -81,6 +81,7 @@ def test_a_law_is_begun_near_what_is_hidden(effect: str, true: dict, tolerance: 
     assert np.log(first.parts).sum() < np.log(fit.parts).sum() - 3.0
 
 
+@pytest.mark.slow
 def test_each_formula_is_begun_once_and_what_is_no_law_is_left_to_others() -> None:
     fit = fitted(prepared(campaign({"free_play": {"gap_m": 6e-4, "rounding": 0.1}}, SHAKEN, seed=6)))
     groups = scan(fit, candidates(fit, "sdof"))

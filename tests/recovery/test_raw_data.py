@@ -94,6 +94,7 @@ def test_truth_is_what_a_lab_could_have_believed(raw: Path, session: str) -> Non
             assert distance <= 1.5 * estimate.std * (1 + 1e-9), key
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("folder", ["free_response", "pulls", "swivel-frame", "swivel-platform"])
 def test_every_log_is_listed_and_reads_without_a_warning(raw: Path, folder: str) -> None:
     campaign = load(raw / folder)

@@ -36,6 +36,7 @@ def _replace(path: Path, old: str, new: str) -> None:
     path.write_text(text.replace(old, new))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("change", "call", "told"),
     [
@@ -85,6 +86,7 @@ def test_help_starts_fast_and_lists_every_verb(tmp_path: Path) -> None:
         assert verb in done.stdout
 
 
+@pytest.mark.slow
 def test_a_simulated_log_reads_back_like_a_real_one(tmp_path: Path) -> None:
     made = _ident(
         "simulate", "p3at-extended", "-e", "free_response", "--duration-s", "1", "-o", "roll.lvm", cwd=tmp_path

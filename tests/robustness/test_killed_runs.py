@@ -82,6 +82,7 @@ def test_an_old_file_stays_until_the_new_one_is_whole(tmp_path: Path) -> None:
         assert text in ("a" * 3_000_000, "b" * 3_000_000)
 
 
+@pytest.mark.slow
 def test_a_run_writes_where_it_was_told_and_nowhere_else(root: Path, tmp_path: Path) -> None:
     """From an empty folder, with HOME elsewhere: only what -o names appears."""
     home, here = tmp_path / "home", tmp_path / "here"

@@ -65,6 +65,7 @@ def test_every_verb_has_examples_that_parse(verb: str) -> None:
     assert all(word in shown for word in shlex.split(examples[0]))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("call", "told"),
     [

@@ -54,6 +54,7 @@ def test_a_loop_that_hears_nothing_ends_all_the_same(tmp_path: Path, how: signal
     assert not state.exists() or state.read_text().rpartition(")")[2].split()[0] in "ZX"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM])
 def test_a_run_stopped_at_its_beginning_or_its_work_says_so(tmp_path: Path, how: signal.Signals) -> None:
     for wait in (0.3, 1.5, 4.0):
@@ -114,6 +115,7 @@ def test_a_terminal_that_knows_ascii_alone() -> None:
     assert "…" in done.stdout or "\\u2026" in done.stdout
 
 
+@pytest.mark.slow
 def test_no_home_and_no_cache(tmp_path: Path) -> None:
     kept = {key: value for key, value in os.environ.items() if key not in ("MPLCONFIGDIR", "XDG_CACHE_HOME")}
     (tmp_path / "nowhere").write_text("")
@@ -149,6 +151,7 @@ def test_a_compiled_loop_that_cannot_be_kept_runs(tmp_path: Path) -> None:
     assert (done.returncode, done.stderr) == (0, "")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["two\nlines.csv", "ünï — °.csv", "-rf.csv", "a'b\"c <b>.csv", "‮gpj.csv"])
 def test_odd_names(tmp_path: Path, name: str) -> None:
     (tmp_path / name).write_text(LOG)
@@ -157,6 +160,7 @@ def test_odd_names(tmp_path: Path, name: str) -> None:
     assert "csv" in done.stdout
 
 
+@pytest.mark.slow
 def test_a_name_that_is_no_text(tmp_path: Path) -> None:
     folder = os.fsencode(tmp_path)
     with open(folder + b"/\xff\xfe.csv", "wb") as stream:  # noqa: PTH123

@@ -221,6 +221,7 @@ def _refused(read: Any, content: Any) -> str:
     return ""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", MADE)
 def test_schemas_and_readers_agree(name: str) -> None:
     """Every awkward value at every place of a full file, and a key nobody knows in every mapping."""

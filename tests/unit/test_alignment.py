@@ -9,6 +9,8 @@ from made_clocks import Event, event
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.signals.alignment import Clocked, align
 
+pytestmark = pytest.mark.slow
+
 SLOW, FAST = 50.0, 200.0
 
 

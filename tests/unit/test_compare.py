@@ -89,6 +89,7 @@ def test_plots_and_table_are_written_where_asked(rig_session: Path, tmp_path: Pa
         assert f"{hashlib.sha256((rig_session / file).read_bytes()).hexdigest()}  {file}" in page
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("file", ["roll-2.xlsx", "pitch-3.xlsx", "yaw-1.xlsx"])
 def test_a_decay_is_explained_by_its_own_parameters_whatever_its_start(root: Path, file: str) -> None:
     """With the generator's parameters the main channel is left with noise, with others it is not."""

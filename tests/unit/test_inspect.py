@@ -108,6 +108,7 @@ def test_folder(tmp_path: Path) -> None:
     assert "folder without logs" in str(error)
 
 
+@pytest.mark.slow
 def test_one_bad_log_does_not_hide_the_others(tmp_path: Path) -> None:
     for name in ("a.csv", "c.csv"):
         (tmp_path / name).write_text("no numbers here\n")

@@ -29,6 +29,7 @@ def test_recordings_simulations_and_effects(root: Path) -> None:
     assert len(ssmr_ident.plot(ssmr_ident.CATALOGUE["sensor_bandwidth"]).axes) >= 2
 
 
+@pytest.mark.slow
 def test_fits_spectra_and_comparisons(root: Path) -> None:
     session = root / "data" / "raw" / "pulls" / "carpet.yaml"
     comparison = ssmr_ident.compare_session(session)
