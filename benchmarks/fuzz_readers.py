@@ -187,7 +187,9 @@ def mutated_inside(data: bytes, rng: np.random.Generator) -> bytes:
     return buffer.getvalue()
 
 
-def run(count: int, seed: int, folders: list[Path], *, progress: bool = False) -> tuple[Counter, list[str]]:
+def run(
+    count: int, seed: int, folders: list[Path], *, progress: bool = False, without: tuple[str, ...] = ()
+) -> tuple[Counter, list[str]]:
     """Read ``count`` mutated logs.
 
     Returns
@@ -197,7 +199,7 @@ def run(count: int, seed: int, folders: list[Path], *, progress: bool = False) -
     failures : list of str
     """
     rng = np.random.default_rng(seed)
-    logs = seeds(folders)
+    logs = [log for log in seeds(folders) if not log[0].endswith(without)]
     outcomes: Counter = Counter()
     failures: list[str] = []
     slowest = 0.0
