@@ -187,9 +187,7 @@ def mutated_inside(data: bytes, rng: np.random.Generator) -> bytes:
     return buffer.getvalue()
 
 
-def run(
-    count: int, seed: int, folders: list[Path], *, progress: bool = False, without: tuple[str, ...] = ()
-) -> tuple[Counter, list[str]]:
+def run(count: int, seed: int, folders: list[Path], *, progress: bool = False) -> tuple[Counter, list[str]]:
     """Read ``count`` mutated logs.
 
     Returns
@@ -199,7 +197,7 @@ def run(
     failures : list of str
     """
     rng = np.random.default_rng(seed)
-    logs = [log for log in seeds(folders) if not log[0].endswith(without)]
+    logs = seeds(folders)
     outcomes: Counter = Counter()
     failures: list[str] = []
     slowest = 0.0

@@ -13,6 +13,9 @@ import pytest
 
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.readers import ReadOptions, read, read_one
+from ssmr_ident.readers.door import reader_for
+from ssmr_ident.readers.mat import reader as mat
+from ssmr_ident.readers.source import open_source
 
 RNG = np.random.default_rng(11)
 RATE = 250.0
@@ -109,7 +112,7 @@ def test_mat_bomb(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     element = (15).to_bytes(4, "little") + len(packed).to_bytes(4, "little") + packed
     (tmp_path / "a.mat").write_bytes(head + element)
     with pytest.raises(InputError, match="unpacks to more than"):
-        read(tmp_path / "a.mat")
+        mat.read(open_source(tmp_path / "a.mat"), ReadOptions())
 
 
 @pytest.mark.parametrize("kind", ["parquet", "feather"])
@@ -271,8 +274,9 @@ def test_a_missing_library_is_named(
 ) -> None:
     monkeypatch.setitem(sys.modules, module, None)
     (tmp_path / "log").write_bytes(data)
+    source = open_source(tmp_path / "log")
     with pytest.raises(InputError, match=words):
-        read(tmp_path / "log")
+        reader_for(source, ReadOptions()).read(source, ReadOptions())
 
 
 def test_a_lab_brings_a_reader(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

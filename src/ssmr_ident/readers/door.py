@@ -11,6 +11,7 @@ from typing import Protocol
 from ssmr_ident.core.errors import InputError, did_you_mean
 from ssmr_ident.core.recording import Recording
 from ssmr_ident.readers.admet import mtwdata
+from ssmr_ident.readers.apart import KINDS, read_apart
 from ssmr_ident.readers.archive import reader as archive
 from ssmr_ident.readers.frames import reader as frames
 from ssmr_ident.readers.hdf5 import reader as hdf5
@@ -106,7 +107,10 @@ def read(path: str | Path, options: ReadOptions = ReadOptions()) -> tuple[Record
 
 
 def _read_source(source: Source, options: ReadOptions) -> list[Recording]:
-    return list(_reader_for(source, options).read(source, options))
+    reader = reader_for(source, options)
+    if source.kind in KINDS:
+        return read_apart(source, options)
+    return list(reader.read(source, options))
 
 
 def read_one(path: str | Path, options: ReadOptions = ReadOptions()) -> Recording:  # noqa: B008 - frozen
@@ -132,7 +136,14 @@ def read_one(path: str | Path, options: ReadOptions = ReadOptions()) -> Recordin
     return recordings[0]
 
 
-def _reader_for(source: Source, options: ReadOptions) -> Reader:
+def reader_for(source: Source, options: ReadOptions) -> Reader:
+    """The reader that takes a file.
+
+    Raises
+    ------
+    InputError
+        None does, or not the one that ``options`` names.
+    """
     known = formats()
     taken = next((reader for reader in known if reader.recognises(source)), None)
     names = sorted({name for reader in known for name in reader.NAMES})

@@ -160,7 +160,7 @@ def _owners(columns: list[Column], clocks: list[Clock]) -> dict[int, Clock] | No
 def _holds(stamps: np.ndarray) -> bool:
     """True for a clock that stands still in a fifth of the rows while others go on."""
     finite = stamps[np.isfinite(stamps)]
-    return len(finite) < 0.8 * len(stamps) or bool(np.mean(np.diff(finite) == 0) > 0.2)
+    return len(finite) < 0.8 * len(stamps) or int(np.sum(np.diff(finite) == 0)) > 0.2 * (len(finite) - 1)
 
 
 def _paired(clock: Clock, columns: list[Column]) -> bool:

@@ -166,7 +166,7 @@ def in_two_columns(columns: list[Column], table: Table) -> list[Column]:
             stamp = Column(label, "s", together, quantity="time", number=seconds.number)
             made = [stamp if c is seconds else c for c in made if c is not below]
     dates = [c for c in made if c.clock and _is_date(c)]
-    clocks = [c for c in made if c.clock and not _is_date(c) and np.nanmax(c.values) <= DAY + 1]
+    clocks = [c for c in made if c.clock and not _is_date(c) and _within_a_day(c)]
     if dates and clocks and not dates[0].given:
         day, clock = dates[0], clocks[0]
         stamp = Column(f"{day.label} {clock.label}", None, day.values + clock.values, True, "time", number=clock.number)
@@ -183,6 +183,11 @@ def _with_unit(column: Column) -> tuple[str, ...]:
 def _is_date(column: Column) -> bool:
     finite = column.values[np.isfinite(column.values)]
     return len(finite) > 0 and bool((finite % DAY == 0).all()) and float(finite.max()) > DAY
+
+
+def _within_a_day(column: Column) -> bool:
+    finite = column.values[np.isfinite(column.values)]
+    return len(finite) > 0 and float(finite.max()) <= DAY + 1
 
 
 def _whole(values: np.ndarray) -> bool:
