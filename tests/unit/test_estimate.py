@@ -9,13 +9,16 @@ import numpy as np
 import pytest
 from scipy.special import ellipj
 
-from ssmr_ident.estimate import fit as fits
-from ssmr_ident.estimate.fit import Problem, Start, polish, regressed, shot
+from ssmr_ident.estimate.exact import polish
 from ssmr_ident.estimate.generic import static
 from ssmr_ident.estimate.node import Coordinate, Member, Node
 from ssmr_ident.estimate.pieces import Piece, stretches
+from ssmr_ident.estimate.regression import regressed
 from ssmr_ident.estimate.shoot_kernel import eliminate
+from ssmr_ident.estimate.shooting import shot
+from ssmr_ident.estimate.simulated import Compiled, simulate
 from ssmr_ident.estimate.smoother import smoothed
+from ssmr_ident.estimate.values import Problem, Start
 from ssmr_ident.physics.rig import Rig
 from ssmr_ident.signals.noise import AutoregressiveNoise
 from ssmr_ident.simulate.rig import simulate_rig
@@ -69,7 +72,7 @@ def driven(k3: float, noise: float, seed: int = 3, seconds: float = 8.0, rate: f
 
 
 def compiled(p: Problem, node: Node, point: np.ndarray):
-    return fits._Compiled.of(p, node, point, p.pieces)
+    return Compiled.of(p, node, point, p.pieces)
 
 
 @pytest.mark.parametrize(
@@ -85,7 +88,7 @@ def test_kernel_is_the_simulator_and_its_slopes_are_differences(member, agree: f
     start = np.zeros((1, node.states))
     start[0, :2] = p.size, -p.speed
     borders = np.array([0, len(own.y)])
-    found = fits.simulate(compiled(p, node, point), 0, start, borders, 0.0)
+    found = simulate(compiled(p, node, point), 0, start, borders, 0.0)
     values = node.values(point)
     effects = {node.members[0].id: dict(zip([c.name for c in node.members[0].coordinates], values[3:], strict=True))}
     rig = Rig(values[0], values[1], values[2])
@@ -94,7 +97,7 @@ def test_kernel_is_the_simulator_and_its_slopes_are_differences(member, agree: f
     for k in range(len(point)):
         moved = point.copy()
         moved[k] += 1e-5
-        other = fits.simulate(compiled(p, node, moved), 0, start, borders, 0.0)
+        other = simulate(compiled(p, node, moved), 0, start, borders, 0.0)
         differences = (other.y - found.y)[:, 0] / 1e-5
         slopes = found.dy[:, 0, node.states + k]
         assert np.abs(differences - slopes).max() < 3e-3 * np.abs(differences).max()

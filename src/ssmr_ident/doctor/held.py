@@ -7,9 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from ssmr_ident.estimate.fit import Fit, Problem, Start, polish, starts_of
+from ssmr_ident.estimate.exact import polish
 from ssmr_ident.estimate.pieces import Piece
+from ssmr_ident.estimate.regression import starts_of
 from ssmr_ident.estimate.smoother import smoothed
+from ssmr_ident.estimate.values import Fit, Problem, Start
 
 STRETCHES, EVERY_THIRD = 6, 3
 """A lone recording is cut into as many; every third is kept back."""

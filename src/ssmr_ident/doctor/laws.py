@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ssmr_ident.estimate.along_kernel import force_along
-from ssmr_ident.estimate.fit import Fit, Problem, Start
 from ssmr_ident.estimate.generic import MEMORY, STATIC
 from ssmr_ident.estimate.node import Coordinate, Member, Node
+from ssmr_ident.estimate.values import Fit, Problem, Start
 from ssmr_ident.physics.effects import CATALOGUE
 from ssmr_ident.physics.effects.unlisted import TERMS
 from ssmr_ident.physics.slots import effect_vector

@@ -20,9 +20,9 @@ from ssmr_ident.doctor.decide import MISSING, NOTHING, UNDETERMINED, Decision
 from ssmr_ident.doctor.held import held_fit
 from ssmr_ident.doctor.search import Search
 from ssmr_ident.doctor.table import Row
-from ssmr_ident.estimate.fit import Fit, Problem
 from ssmr_ident.estimate.node import Member, effects_of
 from ssmr_ident.estimate.problem import natural_hz
+from ssmr_ident.estimate.values import Fit, Problem
 from ssmr_ident.experiments.campaign import Campaign
 from ssmr_ident.physics.effects import CATALOGUE
 from ssmr_ident.signals.metrics import LOW_PASS_HZ

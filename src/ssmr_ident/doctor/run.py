@@ -18,8 +18,8 @@ from ssmr_ident.doctor.held import held_fit, interleaved
 from ssmr_ident.doctor.result import Examined, answer, errors, predictions
 from ssmr_ident.doctor.search import searched
 from ssmr_ident.doctor.table import Row
-from ssmr_ident.estimate.fit import Problem
 from ssmr_ident.estimate.problem import problem_of
+from ssmr_ident.estimate.values import Problem
 from ssmr_ident.experiments import EXPERIMENTS
 from ssmr_ident.experiments.campaign import Campaign, Measurement
 

@@ -12,10 +12,14 @@ import numpy as np
 from ssmr_ident.doctor.laws import Proposal, proposals
 from ssmr_ident.doctor.rules import SECOND, UNIT
 from ssmr_ident.doctor.table import Row, row_of
-from ssmr_ident.estimate.fit import Fit, Problem, Start, motion, polish, regressed, shot, with_noises
+from ssmr_ident.estimate.exact import polish
 from ssmr_ident.estimate.generic import branch, by_recording, changing, clip, delay, lag, memory, rider, static
+from ssmr_ident.estimate.motion import motion
 from ssmr_ident.estimate.node import Member, Node
+from ssmr_ident.estimate.regression import regressed
+from ssmr_ident.estimate.shooting import shot
 from ssmr_ident.estimate.smoother import smoothed
+from ssmr_ident.estimate.values import Fit, Problem, Start, with_noises
 from ssmr_ident.physics.effects import CATALOGUE
 from ssmr_ident.signals.noise import AutoregressiveNoise, fit_noise, third_difference_std
 

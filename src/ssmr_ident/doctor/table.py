@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ssmr_ident.estimate.fit import Fit, Problem
+from ssmr_ident.estimate.values import Fit, Problem
 
 
 @dataclass(frozen=True, eq=False)

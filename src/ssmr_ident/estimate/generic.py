@@ -8,9 +8,9 @@ import numpy as np
 from scipy.interpolate import BSpline
 from scipy.linalg import eigh
 
-from ssmr_ident.estimate.fit import Problem
 from ssmr_ident.estimate.motion_kernel import BY_INERTIA, BY_POSITION, BY_VELOCITY
 from ssmr_ident.estimate.node import BRANCH, LAG, RIDER, Coordinate, Member, Tables
+from ssmr_ident.estimate.values import Problem
 
 Array = np.ndarray
 

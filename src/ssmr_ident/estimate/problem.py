@@ -8,9 +8,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from ssmr_ident.core.parameter import ParameterSet
-from ssmr_ident.estimate.fit import Problem
 from ssmr_ident.estimate.node import Coordinate
 from ssmr_ident.estimate.pieces import BASE, FORCES, ORDER, Piece, channels_of, pieces_of
+from ssmr_ident.estimate.values import Problem
 from ssmr_ident.experiments.campaign import Measurement
 from ssmr_ident.physics.rig import RIG_KEYS
 from ssmr_ident.signals.grid import even_samples

@@ -1,0 +1,153 @@
+"""Levenberg-Marquardt on the exact simulation, nuisances eliminated piece by piece."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.signal import lfilter
+
+from ssmr_ident.estimate.node import Node
+from ssmr_ident.estimate.regression import starts_of
+from ssmr_ident.estimate.scales import bounded, nuisance_scales, priors
+from ssmr_ident.estimate.simulated import Compiled, simulate
+from ssmr_ident.estimate.values import Fit, Problem, Start, Stop
+
+Array = np.ndarray
+
+
+def _whitened(problem: Problem, index: int, columns: Array) -> Array:
+    """(n, c, …) through each channel's whitening filter, in its standard deviation; uncounted samples are nought."""
+    piece = problem.pieces[index]
+    out = np.where(piece.counts.reshape(*piece.counts.shape, *[1] * (columns.ndim - 2)), columns, 0.0)
+    for c, noise in enumerate(problem.noises[index]):
+        own = out[:, c] if noise.order == 0 else lfilter(noise.filter, [1.0], out[:, c], axis=0)
+        out[:, c] = own / noise.std
+    return out
+
+
+def _exact(problem: Problem, node: Node, point: Array, nuisances: Sequence[Array]):
+    """Normal equations by exact simulation: chi2, residuals, and per piece (J, r) over (nuisance, coordinates)."""
+    model = Compiled.of(problem, node, point, problem.pieces)
+    n = node.states
+    chi2, residuals, parts = 0.0, [], []
+    for index, (piece, nuisance) in enumerate(zip(problem.pieces, nuisances, strict=True)):
+        start = nuisance[None, :n].copy()
+        zero = float(nuisance[n]) if piece.driven else 0.0
+        s = simulate(model, index, start, np.array([0, len(piece.y)]), zero)
+        c = piece.y.shape[1]
+        gain = 1.0 + nuisance[n + 1] if piece.driven else 1.0
+        rest = gain * s.y + nuisance[-c:] - piece.y
+        if not np.isfinite(rest).all():
+            return math.inf, [], []
+        states = start.shape[1]
+        flat = np.zeros((*piece.y.shape, len(nuisance) + len(point)))
+        flat[..., :n] = gain * s.dy[..., :n]
+        if piece.driven:
+            flat[..., n] = gain * s.dy[..., -1]
+            flat[..., n + 1] = s.y
+        for k in range(c):
+            flat[:, k, len(nuisance) - c + k] = 1.0
+        flat[..., len(nuisance) :] = gain * s.dy[..., states:-1]
+        white = _whitened(problem, index, np.concatenate([flat, rest[..., None]], axis=2)).reshape(
+            -1, flat.shape[2] + 1
+        )
+        chi2 += float(white[:, -1] @ white[:, -1])
+        residuals.append(rest)
+        normal = white.T @ white
+        parts.append((normal[:-1, :-1], normal[:-1, -1], len(nuisance)))
+    return chi2, residuals, parts
+
+
+def polish(problem: Problem, node: Node, start: Start, steps: int = 30, freeze: Sequence[int] = ()) -> Fit:
+    """Levenberg-Marquardt on the exact simulation, nuisances eliminated piece by piece."""
+    point = bounded(node, start.point)
+    nuisances = list(start.nuisances if start.nuisances is not None else starts_of(problem, node, start))
+    mean, precision = priors(node)
+    scales = [nuisance_scales(problem, node, piece) for piece in problem.pieces]
+    held = np.zeros(len(point), dtype=bool)
+    held[list(freeze)] = True
+
+    def total(chi2: float, at: Array, local: Sequence[Array]) -> float:
+        own = sum(float(np.sum((v / s) ** 2)) for v, s in zip(local, scales, strict=True))
+        return chi2 + float(np.sum(precision * (at - mean) ** 2)) + own
+
+    chi2, residuals, parts = _exact(problem, node, point, nuisances)
+    cost = total(chi2, point, nuisances)
+    if not math.isfinite(cost):
+        return _failed(problem, node, point, nuisances)
+    damping, stop = 1e-3, Stop.STEPS
+    for _ in range(steps):
+        lower_any = False
+        for _ in range(6):
+            solved = _step(parts, point, nuisances, mean, precision, scales, damping, held)
+            new_point = bounded(node, point + solved[0])
+            new = [v + d for v, d in zip(nuisances, solved[1], strict=True)]
+            with np.errstate(over="ignore", invalid="ignore"):
+                trial = _exact(problem, node, new_point, new)
+            lower = total(trial[0], new_point, new)
+            if lower < cost:
+                lower_any = True
+                break
+            damping = max(damping * 8.0, 1e-4)
+        if not lower_any:
+            stop = Stop.CONVERGED
+            break
+        gain, cost = cost - lower, lower
+        point, nuisances, (chi2, residuals, parts) = new_point, new, trial
+        damping = damping / 5.0 if damping > 1e-9 else 0.0
+        if gain < 1e-3 + 1e-7 * cost:
+            stop = Stop.CONVERGED
+            break
+    return _finished(node, point, nuisances, mean, precision, scales, chi2, residuals, parts, stop, held)
+
+
+def _step(parts, point, nuisances, mean, precision, scales, damping, held):
+    p = len(point)
+    left = np.diag(precision + 1e-12)
+    right = -precision * (point - mean)
+    eliminated = []
+    for (h, g, k), nuisance, scale in zip(parts, nuisances, scales, strict=True):
+        own = h[:k, :k] + np.diag(1.0 / scale**2)
+        own = own + damping * np.diag(np.diag(own))
+        cross, line = h[:k, k:], g[:k] + nuisance / scale**2
+        solved = np.linalg.solve(own, np.column_stack([cross, line]))
+        left = left + h[k:, k:] - cross.T @ solved[:, :-1]
+        right = right - g[k:] + cross.T @ solved[:, -1]
+        eliminated.append(solved)
+    left = left + damping * np.diag(np.maximum(np.diag(left), 1e-12))
+    free = ~held
+    step = np.zeros(p)
+    step[free] = solved_evenly(left[np.ix_(free, free)], right[free])
+    return step, [-(solved[:, :-1] @ step) - solved[:, -1] for solved in eliminated]
+
+
+def solved_evenly(left: Array, right: Array) -> Array:
+    """Symmetric equations, rows and columns first brought to one size."""
+    size = np.sqrt(np.maximum(np.diag(left), 1e-300))
+    return np.linalg.lstsq(left / np.outer(size, size), right / size, rcond=1e-13)[0] / size
+
+
+def _finished(node, point, nuisances, mean, precision, scales, chi2, residuals, parts, stop, held) -> Fit:
+    information = np.zeros((len(point), len(point)))
+    for (h, _, k), scale in zip(parts, scales, strict=True):
+        own = h[:k, :k] + np.diag(1.0 / scale**2)
+        information += h[k:, k:] - h[:k, k:].T @ np.linalg.solve(own, h[:k, k:])
+    free = ~held
+    covariance = np.zeros_like(information)
+    covariance[np.ix_(free, free)] = np.linalg.pinv(
+        (information + np.diag(precision + 1e-12))[np.ix_(free, free)], rcond=1e-14, hermitian=True
+    )
+    # shapes of a generic member count as far as the data decide them, laws with every parameter that moves
+    shapes = {id(c) for m in node.members if m.tables for c in m.coordinates}
+    decided = np.where(free, np.diag(covariance @ information), 0.0)
+    moving = [float(f and c.std > 1e-6) for c, f in zip(node.coordinates, free, strict=True)]
+    dof = sum(float(d) if id(c) in shapes else m for c, d, m in zip(node.coordinates, decided, moving, strict=True))
+    prior = float(np.sum(precision * (point - mean) ** 2))
+    return Fit(node, point, tuple(nuisances), covariance, tuple(residuals), chi2, prior, dof, stop)
+
+
+def _failed(problem: Problem, node: Node, point: Array, nuisances: Sequence[Array]) -> Fit:
+    rest = tuple(np.full(p.y.shape, math.nan) for p in problem.pieces)
+    return Fit(node, point, tuple(nuisances), np.zeros((len(point),) * 2), rest, math.inf, 0.0, 0.0, Stop.LOST)

@@ -1,0 +1,54 @@
+"""How large states, nuisances and coordinates are: their priors."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ssmr_ident.estimate.node import Node
+from ssmr_ident.estimate.pieces import Piece
+from ssmr_ident.estimate.values import Problem
+
+Array = np.ndarray
+
+GAIN = 0.02
+"""Standard deviation of what a force cell's or a sensor's gain changes by from one recording to the next."""
+
+ZERO_SHARE = 0.3
+"""Standard deviation of a drive's zero, in the drive's own."""
+
+
+def nuisance_scales(problem: Problem, node: Node, piece: Piece) -> Array:
+    """Prior standard deviations of a piece's nuisances."""
+    sizes = 10.0 * state_sizes(problem, node)
+    # what holds a mass aside has loaded its friction; a driven one begins at rest
+    sizes[node.linear_states :] *= 1e-6 if piece.driven else 0.1
+    zero, offsets = zero_scales(piece)
+    return np.concatenate([sizes, zero, np.full(len(zero), GAIN), offsets])
+
+
+def zero_scales(piece: Piece) -> list[Array]:
+    spread = np.std(piece.drive) if piece.driven else 0.0
+    zero = np.array([max(ZERO_SHARE * spread, 1e-12)]) if piece.driven else np.zeros(0)
+    return [zero, 3.0 * piece.y.std(axis=0) + np.abs(piece.y.mean(axis=0))]
+
+
+def state_sizes(problem: Problem, node: Node) -> Array:
+    """Sizes of linear and hidden states in SI."""
+    x, turning = problem.size, 2.0 * math.pi * problem.frequency
+    sizes = [x, x * turning]
+    for member in (m for m in node.members if m.linear):
+        sizes += {"lag": [x * turning**2, x * turning**3], "branch": [x], "rider": [x, x * turning]}[member.linear]
+    return np.array(sizes + [x] * node.hidden_states)
+
+
+def priors(node: Node) -> tuple[Array, Array]:
+    """Means and precisions of the coordinates."""
+    coordinates = node.coordinates
+    mean = np.array([c.mean for c in coordinates])
+    return mean, np.array([1.0 / c.std**2 if math.isfinite(c.std) else 0.0 for c in coordinates])
+
+
+def bounded(node: Node, point: Array) -> Array:
+    return np.array([c.at(c.value(float(p))) for c, p in zip(node.coordinates, point, strict=True)])

@@ -1,0 +1,111 @@
+"""A rig's recordings as an inverse problem, where a fit begins, and what it comes to."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from enum import Enum
+
+import numpy as np
+
+from ssmr_ident.estimate.node import Coordinate, Node
+from ssmr_ident.estimate.pieces import Piece
+from ssmr_ident.signals.noise import AutoregressiveNoise
+
+Array = np.ndarray
+
+
+class Stop(Enum):
+    CONVERGED = "no step lowers the cost by a thousandth of a unit"
+    STEPS = "more steps would lower the cost further: begin nearer, or allow more"
+    LOST = "the simulation left the finite numbers"
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """Recordings as one inverse problem.
+
+    Parameters
+    ----------
+    pieces : tuple of Piece
+    baseline : tuple of Coordinate
+        Mass, damping, stiffness.
+    noises : tuple of tuple of AutoregressiveNoise
+        Per piece and channel.
+    frequency : float [Hz]
+        Of the motion.
+    size : float [m]
+        RMS deflection.
+    """
+
+    pieces: tuple[Piece, ...]
+    baseline: tuple[Coordinate, ...]
+    noises: tuple[tuple[AutoregressiveNoise, ...], ...]
+    frequency: float
+    size: float
+
+    @property
+    def speed(self) -> float:
+        return 2.0 * math.pi * self.frequency * self.size
+
+    @property
+    def samples(self) -> int:
+        return sum(int(p.counts.sum()) for p in self.pieces)
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """A node at its best.
+
+    Parameters
+    ----------
+    node : Node
+    point : (p,) float
+        Coordinates.
+    nuisances : tuple of (k,) float
+        Per piece: states at its begin (linear, hidden), where it is driven the drive's
+        zero and what the gain is off by, zeros of the channels.
+    covariance : (p, p) float
+        Of the coordinates.
+    residuals : tuple of (n, c) float
+        Model less measured, SI.
+    chi2 : float
+        Of the whitened residuals.
+    prior : float
+        What the priors of the physics add to it.
+    dof : float
+        Parameters that the data decide, of those with a prior in part.
+    stop : Stop
+    """
+
+    node: Node
+    point: Array
+    nuisances: tuple[Array, ...]
+    covariance: Array
+    residuals: tuple[Array, ...]
+    chi2: float
+    prior: float
+    dof: float
+    stop: Stop = Stop.CONVERGED
+
+    @property
+    def cost(self) -> float:
+        return self.chi2 + self.prior
+
+    def value(self, name: str) -> float:
+        names = [c.name for c in self.node.coordinates]
+        return float(self.node.values(self.point)[names.index(name)])
+
+
+@dataclass(frozen=True, eq=False)
+class Start:
+    """Where a fit begins: a point, and nuisances or a path per piece."""
+
+    point: Array
+    nuisances: tuple[Array, ...] | None = None
+    paths: tuple[Array, ...] | None = None
+
+
+def with_noises(problem: Problem, noises: Sequence[tuple[AutoregressiveNoise, ...]]) -> Problem:
+    return replace(problem, noises=tuple(noises))
