@@ -1,12 +1,13 @@
 """How engines of the doctor fare on a frozen set of sessions: one table per engine, and two engines side by side.
 
-    make bench-doctor                                       # the small form: N=10
+    make bench-doctor                                       # the small form: N=4
     make bench-doctor N=100 FAMILIES=rigs,rig-nulls         # more of some families
     make bench-doctor START=1000 N=100                      # sessions that are not in the frozen set
     make bench-doctor ENGINE=module:function                # another engine than `ident diagnose`
     python benchmarks/bench_doctor.py --between fc9efe7-diagnose 1a2b3c4-second
 
-Every session runs in a process of its own and is given up after ``--limit`` seconds of processor. Its row goes at once
+Every session runs in a process of its own on one core, as many side by side as there are cores, and is given up after
+``--limit`` seconds of processor. Its row goes at once
 to ``benchmarks/results/doctor/COMMIT-ENGINE.jsonl``, so that a run goes on where it was stopped; sessions that lie
 beside the checkout and are absent are passed over with a word. Tables count the sessions that were asked for, or with
 ``--between`` those that both files have.
@@ -15,10 +16,15 @@ beside the checkout and are absent are passed over with a word. Tables count the
 from __future__ import annotations
 
 import argparse
+import os
 import signal
 import sys
 import time
+from concurrent.futures import ThreadPoolExecutor
+from multiprocessing import active_children
 from pathlib import Path
+from queue import SimpleQueue
+from threading import Event
 
 from doctor.engines import ENGINES
 from doctor.frozen import FAMILIES, Case
@@ -34,7 +40,7 @@ RESULTS = Path(__file__).parent / "results" / "doctor"
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("-n", "--count", type=int, default=10, help="N: sessions of a stream of share 1")
+    parser.add_argument("-n", "--count", type=int, default=4, help="N: sessions of a stream of share 1")
     parser.add_argument("--start", type=int, default=0, help="sessions of every stream that are passed over")
     parser.add_argument("--families", default=",".join(FAMILIES), help=f"of {', '.join(FAMILIES)}")
     parser.add_argument("--engine", default="diagnose", help=f"{', '.join(ENGINES)}, or module:function")
@@ -76,15 +82,34 @@ def main() -> None:
 
 
 def run(wanted: list[Case], engine_name: str, file: Path, limit: float, seconds: float) -> None:
-    """What has no row yet, one session after the other."""
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # so that the session's own process ends as well
+    """What has no row yet, one session on every core."""
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # so that the sessions' own processes end as well
     done = {row["key"] for row in read(file)}
     end = time.monotonic() + seconds
-    for case in wanted:
-        if case.key not in done and time.monotonic() < end:
-            row = answered(case, engine_name, limit)
+    cores = sorted(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else [None]
+    free: SimpleQueue[int | None] = SimpleQueue()
+    for core in cores:
+        free.put(core)
+    stopped = Event()
+
+    def one(case: Case) -> None:
+        if stopped.is_set() or time.monotonic() > end:
+            return
+        core = free.get()
+        row = answered(case, engine_name, limit, core)
+        free.put(core)
+        if not stopped.is_set():
             append(file, row)
             print(line_of(row), flush=True)
+
+    with ThreadPoolExecutor(len(cores)) as side_by_side:
+        try:
+            for _ in side_by_side.map(one, [case for case in wanted if case.key not in done]):
+                pass
+        finally:  # also where this process is told to stop
+            stopped.set()
+            for session in active_children():
+                session.kill()
 
 
 def line_of(row: Row) -> str:

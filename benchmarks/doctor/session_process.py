@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import multiprocessing
+import os
 import resource
 import time
 import traceback
@@ -28,7 +29,7 @@ MAKING = 600.0
 """Seconds on the clock for drawing or reading a session."""
 
 
-def answered(case: Case, engine: str, limit: float) -> Row:
+def answered(case: Case, engine: str, limit: float, core: int | None = None) -> Row:
     """The row of one session.
 
     Parameters
@@ -38,9 +39,11 @@ def answered(case: Case, engine: str, limit: float) -> Row:
         See ``engine_named``.
     limit : float
         Processor seconds that the engine may take; more is a failure.
+    core : int, optional
+        The one that it runs on, where the system can say so.
     """
     receiver, sender = PROCESSES.Pipe(duplex=False)
-    process = PROCESSES.Process(target=_answer, args=(sender, case, engine, limit), daemon=True)
+    process = PROCESSES.Process(target=_answer, args=(sender, case, engine, limit, core), daemon=True)
     process.start()
     sender.close()
     row: Row = {"key": case.key, "family": case.family, "outcome": "failed", "seconds": limit}
@@ -61,8 +64,10 @@ def answered(case: Case, engine: str, limit: float) -> Row:
     return row
 
 
-def _answer(sender: Connection, case: Case, engine: str, limit: float) -> None:
+def _answer(sender: Connection, case: Case, engine: str, limit: float, core: int | None) -> None:
     begun = time.process_time()
+    if core is not None and hasattr(os, "sched_setaffinity"):
+        os.sched_setaffinity(0, {core})
     try:
         session, diagnose = opened(case), engine_named(engine)
         sender.send({"right": [list(names) for names in session.right]})

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import zlib
 from collections.abc import Iterator
 
 import numpy as np
@@ -71,11 +72,13 @@ def cases(families: tuple[str, ...], count: int, start: int = 0) -> Iterator[Cas
     families : tuple of str
         Of ``FAMILIES``.
     count : int
-        N: drawn sessions of a stream of share 1. What lies in folders is always asked, but not with a ``start``.
+        N: drawn sessions of a stream of share 1, and tenths of what lies in folders, all of it from ten on. With a
+        ``start`` nothing of folders is asked.
     start : int
         Sessions of each stream that are passed over: others than the frozen ones, for a look with fresh eyes.
     """
-    beside = [] if start else [*practice_cases(), *stranger_cases(), *recording_cases()]
+    folders = [] if start else [*practice_cases(), *stranger_cases(), *recording_cases()]
+    beside = [case for case in folders if zlib.crc32(case.key.encode()) % 10 < count]
     for family in families:
         for stream in STREAMS:
             if stream.family == family:
