@@ -1,36 +1,58 @@
-"""Compiled loops go on from one process to the next only as long as no source has changed."""
+"""Compiled loops go on from one process to the next only as long as nothing that they were made of has changed."""
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 
-from ssmr_ident.core.kernel import forget_other_sources
+import pytest
+
+from ssmr_ident.core.kernel_sources import forget_other_sources
+
+LOOP = "from pkg.physics import law\n\n@kernel\ndef run(): return law.FORCE\n"
 
 
-def test_what_another_file_was_compiled_into_is_forgotten_when_that_file_changes(tmp_path: Path) -> None:
-    law, index = tmp_path / "physics" / "law.py", tmp_path / "simulate" / "__pycache__" / "loop.nbi"
-    for file in (law, index):
+@pytest.fixture
+def package(tmp_path: Path) -> Path:
+    for name, text in {
+        "physics/law.py": "FORCE = 1\n",
+        "simulate/loop.py": LOOP,
+        "cli/screen.py": "WIDTH = 80\n",
+    }.items():
+        file = tmp_path / "pkg" / name
         file.parent.mkdir(parents=True)
-        file.write_text("x = 1\n")
-    (tmp_path / "__pycache__").mkdir()
-    assert forget_other_sources(tmp_path)
-    assert not index.exists()  # nobody knows what it was made of
+        file.write_text(text)
+    return tmp_path / "pkg"
+
+
+def compiled(package: Path) -> Path:
+    index = package / "simulate" / "__pycache__" / "loop.run-3.py311.nbi"
+    index.parent.mkdir(exist_ok=True)
     index.write_text("compiled")
-    assert not forget_other_sources(tmp_path)
-    assert index.exists()
-    os.utime(law, ns=(1, 1))
-    assert forget_other_sources(tmp_path)
+    return index
+
+
+def test_nobody_knows_what_was_compiled_before_anything_was_written_down(package: Path) -> None:
+    index = compiled(package)
+    assert forget_other_sources(package)
     assert not index.exists()
 
 
-def test_an_interpreter_that_keeps_no_bytecode_forgets_as_well(tmp_path: Path) -> None:
-    """numba makes folders where it keeps loops; of the package's own only an interpreter does."""
-    law, index = tmp_path / "law.py", tmp_path / "simulate" / "__pycache__" / "loop.nbi"
-    index.parent.mkdir(parents=True)
-    law.write_text("x = 1\n")
-    assert forget_other_sources(tmp_path)
-    index.write_text("compiled")
-    os.utime(law, ns=(1, 1))
-    assert forget_other_sources(tmp_path)
+def test_a_loop_is_forgotten_when_a_file_changes_that_it_takes_numbers_from(package: Path) -> None:
+    forget_other_sources(package)
+    index = compiled(package)
+    assert not forget_other_sources(package)
+    assert index.exists()
+    (package / "physics" / "law.py").write_text("FORCE = 2.5\n")
+    assert forget_other_sources(package)
+    assert not index.exists()
+
+
+def test_a_loop_stays_where_only_files_change_that_it_is_not_made_of(package: Path) -> None:
+    forget_other_sources(package)
+    index = compiled(package)
+    (package / "cli" / "screen.py").write_text("WIDTH = 120\n")
+    assert forget_other_sources(package)
+    assert index.exists()
+    (package / "simulate" / "loop.py").unlink()
+    forget_other_sources(package)
     assert not index.exists()

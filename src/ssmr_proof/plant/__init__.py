@@ -2,6 +2,6 @@
 
 from pathlib import Path
 
-from ssmr_ident.core.kernel import forget_other_sources
+from ssmr_ident.core.kernel_sources import forget_other_sources
 
 forget_other_sources(Path(__file__).parent)
