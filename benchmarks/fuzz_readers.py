@@ -4,13 +4,16 @@ Seeds are the files of the folders given, or small logs of every format that thi
 flipped, cut, doubled, swapped and replaced by what trips parsers; the parts of a workbook are mutated inside the
 zip as well, with the checksums made right again, or nothing would ever get behind the door.
 
-Run: python benchmarks/fuzz_readers.py [--count 20000] [--seed 0] [FOLDER...]
+Time is the processor's, here and in the process that compiled libraries read in; memory is the larger of the two.
+
+Run: python benchmarks/fuzz_readers.py [--count 20000] [--minutes 20] [--seed 0] [--keep FOLDER] [FOLDER...]
 """
 
 from __future__ import annotations
 
 import argparse
 import io
+import math
 import resource
 import sys
 import tempfile
@@ -19,6 +22,7 @@ import traceback
 import warnings
 import zipfile
 from collections import Counter
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -26,6 +30,7 @@ import numpy as np
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.recording import Channel, Provenance, Recording
 from ssmr_ident.readers import read
+from ssmr_ident.readers.apart import APART
 from ssmr_ident.readers.writers import write_csv, write_labview_xlsx, write_lvm, write_mtestquattro
 
 SECONDS = 2.0
@@ -187,8 +192,16 @@ def mutated_inside(data: bytes, rng: np.random.Generator) -> bytes:
     return buffer.getvalue()
 
 
-def run(count: int, seed: int, folders: list[Path], *, progress: bool = False) -> tuple[Counter, list[str]]:
-    """Read ``count`` mutated logs.
+def run(
+    count: int,
+    seed: int,
+    folders: list[Path],
+    *,
+    minutes: float = math.inf,
+    keep: Path | None = None,
+    progress: bool = False,
+) -> tuple[Counter, list[str]]:
+    """Read ``count`` mutated logs, or as many as ``minutes`` allow; those that fail are kept in ``keep``.
 
     Returns
     -------
@@ -200,15 +213,21 @@ def run(count: int, seed: int, folders: list[Path], *, progress: bool = False) -
     logs = seeds(folders)
     outcomes: Counter = Counter()
     failures: list[str] = []
-    slowest = 0.0
+    slowest, end = 0.0, time.monotonic() + 60 * minutes
     with tempfile.TemporaryDirectory() as folder:
+        for name, data in logs:  # what is compiled or imported first is no matter of a mutation
+            Path(folder, name).write_bytes(data)
+            with suppress(InputError):  # the folders given may hold malformed samples
+                read(Path(folder, name))
         for number in range(count):
+            if time.monotonic() > end:
+                break
             name, data = logs[int(rng.integers(len(logs)))]
             inside = data[:2] == b"PK" and rng.random() < 0.7
             raw = (mutated_inside if inside else mutated)(data, rng)
             path = Path(folder, name)
             path.write_bytes(raw)
-            begin = time.perf_counter()
+            begin, known = processor_seconds(), len(failures)
             try:
                 with warnings.catch_warnings():
                     warnings.simplefilter("error")
@@ -222,7 +241,7 @@ def run(count: int, seed: int, folders: list[Path], *, progress: bool = False) -
                     raise
                 outcome = "traceback"
                 failures.append(f"#{number} {name}: " + traceback.format_exc(limit=-4))
-            spent = time.perf_counter() - begin
+            spent = processor_seconds() - begin
             slowest = max(slowest, spent)
             outcomes[outcome] += 1
             if spent > SECONDS:
@@ -230,6 +249,9 @@ def run(count: int, seed: int, folders: list[Path], *, progress: bool = False) -
                 failures.append(f"#{number} {name}: {spent:.1f} s")
             if outcome in ("bad recording", "many lines"):
                 failures.append(f"#{number} {name}: {outcome}")
+            if keep is not None and len(failures) > known:
+                keep.mkdir(parents=True, exist_ok=True)
+                (keep / f"{seed}-{number}-{name}").write_bytes(raw)
             path.unlink()
             if progress and number % 1000 == 999:
                 print(
@@ -239,18 +261,35 @@ def run(count: int, seed: int, folders: list[Path], *, progress: bool = False) -
     return outcomes, failures
 
 
+def processor_seconds() -> float:
+    """Of this process, of the children that have ended, and (Linux) of the one that still reads for it."""
+    ended = resource.getrusage(resource.RUSAGE_CHILDREN)
+    spent = time.process_time() + ended.ru_utime + ended.ru_stime
+    child = APART.running
+    if child is not None and sys.platform == "linux":
+        with suppress(OSError):  # it has just ended, and is among the children from the next time on
+            spent += time.clock_gettime(~child << 3 | 2)  # another process' clock, as clock_getcpuclockid makes it
+    return spent
+
+
 def peak_megabytes() -> float:
-    """Largest memory of this process so far."""
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / (2**20 if sys.platform == "darwin" else 2**10)
+    """Largest memory of this process so far, or of a child that has ended."""
+    peaks = (resource.getrusage(who).ru_maxrss for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+    return max(peaks) / (2**20 if sys.platform == "darwin" else 2**10)
 
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--count", type=int, default=20_000)
+    parser.add_argument("--minutes", type=float, default=math.inf)
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--keep", type=Path, help="folder for the files that fail")
     parser.add_argument("folders", nargs="*", type=Path)
     choices = parser.parse_args()
-    outcomes, failures = run(choices.count, choices.seed, choices.folders, progress=True)
+    outcomes, failures = run(
+        choices.count, choices.seed, choices.folders, minutes=choices.minutes, keep=choices.keep, progress=True
+    )
+    APART.close()  # what has ended tells how much memory it took
     for failure in failures[:20]:
         print(failure[-400:])
     print(f"{dict(outcomes)}; peak {peak_megabytes():.0f} MB; {len(failures)} failures")

@@ -65,6 +65,20 @@ def test_hdf5_groups_are_recordings(tmp_path: Path) -> None:
     assert second.provenance.part == "trial1"
 
 
+def test_hdf5_records_and_seconds_since_a_date(tmp_path: Path) -> None:
+    h5py = pytest.importorskip("h5py")
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file["log"] = np.rec.fromarrays([TIME, FORCE], names="time_s,force_N")
+    with h5py.File(tmp_path / "b.h5", "w") as file:
+        file["time"], file["force"] = TIME, FORCE / 1e3
+        file["time"].attrs["units"] = "seconds since 2024-03-01 00:00:00"
+        file["force"].attrs["units"] = "kN"
+    for name in ("a.h5", "b.h5"):
+        recording = read_one(tmp_path / name)
+        same(recording["force"], FORCE)
+        same(recording.time, TIME)
+
+
 def test_hdf5_arrays_with_rates_of_their_own(tmp_path: Path) -> None:
     h5py = pytest.importorskip("h5py")
     with h5py.File(tmp_path / "a.h5", "w") as file:
@@ -212,6 +226,26 @@ def test_zip_of_a_phone_and_npz(tmp_path: Path) -> None:
     np.savez(tmp_path / "c.npz", time=TIME, force_N=np.array([{}] * 500, dtype=object))
     with pytest.raises(InputError, match="cannot be read"):
         read(tmp_path / "c.npz")
+
+
+def test_npy_has_no_names(tmp_path: Path) -> None:
+    np.save(tmp_path / "a.npy", np.column_stack([TIME, FORCE, ACCEL[:, 0]]))
+    told = ReadOptions(columns={"time": 0, "force": 1}, units={"force": "kN", "time": "s"})
+    recording = read_one(tmp_path / "a.npy", told)
+    same(recording["force"], FORCE, 1e3)
+    same(recording.time, TIME)
+    np.save(tmp_path / "b.npy", np.rec.fromarrays([TIME, FORCE], names="time_s,force_N"))
+    same(read_one(tmp_path / "b.npy")["force"], FORCE)
+
+
+def test_tdms_rate_and_unit_among_the_properties(tmp_path: Path) -> None:
+    nptdms = pytest.importorskip("nptdms")
+    with nptdms.TdmsWriter(tmp_path / "a.tdms") as file:
+        group = nptdms.GroupObject("Log", {"SamplingRate": RATE})
+        file.write_segment([group, nptdms.ChannelObject("Log", "Force", FORCE, {"Unit": "kN"})])
+    recording = read_one(tmp_path / "a.tdms")
+    assert recording.sample_rate == pytest.approx(RATE)
+    same(recording["force"], FORCE, 1e3)
 
 
 def test_zip_bomb_of_logs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -39,7 +39,7 @@ INCH = 0.0254  # m, exact (1959)
 _TABLE: dict[str, tuple[str, float]] = {
     # force
     "N": ("N", 1.0), "kN": ("N", 1e3), "mN": ("N", 1e-3), "MN": ("N", 1e6), "uN": ("N", 1e-6), "daN": ("N", 10.0),
-    "Newton": ("N", 1.0), "Newtons": ("N", 1.0), "kips": ("N", 1e3 * POUND_FORCE),
+    "kips": ("N", 1e3 * POUND_FORCE),
     "ton-force": ("N", 1e3 * STANDARD_GRAVITY),
     "tf": ("N", 1e3 * STANDARD_GRAVITY), "dyn": ("N", 1e-5),
     "lb": ("N", POUND_FORCE), "lbf": ("N", POUND_FORCE), "lbs": ("N", POUND_FORCE),
@@ -51,7 +51,7 @@ _TABLE: dict[str, tuple[str, float]] = {
     "in": ("m", INCH), "inch": ("m", INCH), "inches": ("m", INCH), "ft": ("m", 12 * INCH),
     "mil": ("m", INCH / 1e3),
     # time
-    "s": ("s", 1.0), "sec": ("s", 1.0), "secs": ("s", 1.0), "second": ("s", 1.0), "seconds": ("s", 1.0),
+    "s": ("s", 1.0), "sec": ("s", 1.0), "secs": ("s", 1.0),
     "ms": ("s", 1e-3), "msec": ("s", 1e-3), "us": ("s", 1e-6), "usec": ("s", 1e-6), "ns": ("s", 1e-9),
     "nsec": ("s", 1e-9), "sek": ("s", 1.0),
     "min": ("s", 60.0), "minutes": ("s", 60.0), "h": ("s", 3600.0), "hour": ("s", 3600.0), "hours": ("s", 3600.0),
@@ -83,8 +83,8 @@ _TABLE: dict[str, tuple[str, float]] = {
     "lbf in": ("N m", INCH * POUND_FORCE), "ft-lb": ("N m", 12 * INCH * POUND_FORCE),
     "ft lbf": ("N m", 12 * INCH * POUND_FORCE), "lbf ft": ("N m", 12 * INCH * POUND_FORCE),
     # electrical and others that pass through
-    "V": ("V", 1.0), "Volt": ("V", 1.0), "Volts": ("V", 1.0), "mV": ("V", 1e-3), "uV": ("V", 1e-6),
-    "A": ("A", 1.0), "Amps": ("A", 1.0), "mA": ("A", 1e-3), "Hz": ("Hz", 1.0), "kHz": ("Hz", 1e3),
+    "V": ("V", 1.0), "mV": ("V", 1e-3), "uV": ("V", 1e-6),
+    "A": ("A", 1.0), "mA": ("A", 1e-3), "Hz": ("Hz", 1.0), "kHz": ("Hz", 1e3),
     "kg": ("kg", 1.0),
     "K": ("K", 1.0), "W": ("W", 1.0),
 }  # fmt: skip
@@ -104,13 +104,26 @@ QUANTITY_OF_UNIT = {
 }  # fmt: skip
 
 
-LONGEST = 24  # characters; no unit is longer, and nothing longer is looked at
+LONGEST = 28  # characters; no unit is longer, and nothing longer is looked at
 
 _SIGNS = str.maketrans({"µ": "u", "μ": "u", "·": "*", "⋅": "*", "×": "*", "−": "-", "–": "-", "⁻": "-", "¹": "1",
                         "²": "2", "³": "3", "⁴": "4", "º": "°", "″": '"', "\u00a0": " ", "\u202f": " "})  # fmt: skip
 _POWER = re.compile(r"(?P<name>[A-Za-z%][A-Za-z0%]*)\^?(?P<power>[+-]?[1-4])?\Z", re.ASCII)
-_WORDS = {"degrees": "deg", "degree": "deg", "Grad": "deg", "grad": "deg", "radians": "rad", "sec": "s", "sek": "s",
-          "Sek": "s", "Sec": "s", "meter": "m", "metre": "m", "meters": "m", "metres": "m"}  # fmt: skip
+_NAMES = {"meter": "m", "metre": "m", "mètre": "m", "metro": "m", "second": "s", "sec": "s", "sek": "s", "sekunde": "s",
+          "sekunden": "s", "seconde": "s", "segundo": "s", "newton": "N", "volt": "V", "ampere": "A", "amp": "A",
+          "hertz": "Hz", "pascal": "Pa", "radian": "rad"}  # fmt: skip
+_PREFIXES = {"": "", "kilo": "k", "centi": "c", "milli": "m", "mili": "m", "micro": "u", "mikro": "u", "nano": "n",
+             "mega": "M", "giga": "G"}  # fmt: skip
+_WORDS = {"degrees": "deg", "degree": "deg", "grad": "deg", "millis": "ms", "micros": "us", "nanos": "ns",
+          "micron": "um", "microns": "um", "feet": "ft", "pound": "lbf", "pounds": "lbf", "pounds-force": "lbf",
+          "g's": "g", "gees": "g", "percent": "%"}  # fmt: skip
+_WORDS |= {
+    prefix + name + plural: sign + symbol
+    for prefix, sign in _PREFIXES.items()
+    for name, symbol in _NAMES.items()
+    for plural in ("", "s")
+    if sign + symbol in _TABLE
+}
 
 # What composed units are made of: exponents of (kg, m, s, rad, V, A, K) and the factor to them
 _DIMENSIONS: dict[str, tuple[tuple[int, ...], float]] = {
@@ -131,6 +144,7 @@ def _plain(text: str) -> str:
     while text[:1] == "(" and text[-1:] == ")":
         text = text[1:-1].strip()
     text = re.sub(r"° ?([CF])\b", r"deg\1", text).replace("°", "deg")
+    text = text.replace(" per ", "/").replace(" squared", "^2")
     return " ".join(text.split())
 
 
@@ -145,7 +159,7 @@ def _composed(text: str) -> Conversion | None:
             sign = -1  # what stands behind a slash is below it: m/s/s, N/mm^2
             continue
         match = _POWER.match(part)
-        known = _EXACT.get(_WORDS.get(match["name"], match["name"])) if match else None
+        known = _EXACT.get(_WORDS.get(match["name"].lower(), match["name"])) if match else None
         if match is None or known is None or known.offset or known.unit not in _DIMENSIONS:
             return None
         power = sign * int(match["power"] or 1)
@@ -166,7 +180,7 @@ def find_unit(unit: str) -> Conversion | None:
     if len(unit) > LONGEST + 4:
         return None
     plain = _plain(unit)
-    for name in (plain, _WORDS.get(plain, plain), plain.replace("*", " ")):
+    for name in (plain, _WORDS.get(plain.lower(), plain), plain.replace("*", " ")):
         if name in _EXACT:
             return _EXACT[name]
     return _composed(plain) or _FOLDED.get(plain.lower())

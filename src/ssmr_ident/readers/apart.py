@@ -81,6 +81,11 @@ class Apart:
             )  # fmt: skip
         return self._child
 
+    @property
+    def running(self) -> int | None:
+        """Number of the process, where there is one."""
+        return None if self._child is None or self._child.poll() is not None else self._child.pid
+
     def close(self) -> None:
         """End the process."""
         child, self._child = self._child, None
@@ -90,10 +95,10 @@ class Apart:
                 pass
 
 
-_APART = Apart()
-atexit.register(_APART.close)
+APART = Apart()
+atexit.register(APART.close)
 
 
 def read_apart(source: Source, options: ReadOptions) -> list[Recording]:
     """The recordings in a file of one of ``KINDS``; see ``Apart.read``."""
-    return _APART.read(source, options)
+    return APART.read(source, options)

@@ -47,7 +47,7 @@ class Reader(Protocol):
 
 
 class _Archive:
-    """Zips with logs in them, as phone apps export, and NumPy's archives of arrays."""
+    """Zips with logs in them, as phone apps export, and NumPy's arrays, alone or in archives."""
 
     NAMES = archive.NAMES
 

@@ -19,7 +19,7 @@ _BESIDE = 2**20  # bytes from which on a thread pays
 _OLE2 = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"
 _LFS = b"version https://git-lfs"
 _MARKS = {b"PAR1": "parquet", b"ARROW1": "feather", b"FEA1": "feather", b"#ROSBAG V2.0": "rosbag1",
-          b"\x89MCAP0\r\n": "mcap", b"SQLite format 3": "db3"}  # fmt: skip
+          b"\x89MCAP0\r\n": "mcap", b"SQLite format 3": "db3", b"\x93NUMPY": "npy"}  # fmt: skip
 
 
 class Digest:

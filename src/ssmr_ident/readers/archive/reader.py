@@ -13,17 +13,17 @@ import numpy as np
 
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.recording import Recording
-from ssmr_ident.readers.arrays.named import MOST_BYTES, NamedArray, name_parts, recordings_of_arrays
+from ssmr_ident.readers.arrays.named import MOST_BYTES, NamedArray, fields_of, name_parts, recordings_of_arrays
 from ssmr_ident.readers.options import ReadOptions
 from ssmr_ident.readers.source import Source, source_of
 
-NAMES = ("zip", "npz")
+NAMES = ("zip", "npz", "npy")
 _MOST_MEMBERS = 200
 _TABLES = (".csv", ".txt", ".tsv", ".dat", ".json", ".jsonl", ".lvm")
 
 
 def recognises(source: Source) -> bool:
-    return source.kind in ("zip", "npz")
+    return source.kind in ("zip", "npz", "npy")
 
 
 def read_with(
@@ -41,6 +41,8 @@ def read_with(
     InputError
         Damaged, unpacks to too much, or no member is a log.
     """
+    if source.kind == "npy":
+        return _arrays(source, [(".npy", source.data)], options)
     members = _members(source)
     if source.kind == "npz":
         return _arrays(source, members, options)
@@ -96,7 +98,7 @@ def _members(source: Source) -> list[tuple[str, bytes]]:
 
 def _arrays(source: Source, members: list[tuple[str, bytes]], options: ReadOptions) -> list[Recording]:
     """NumPy's archive of arrays; objects in it are refused, for they could be anything."""
-    arrays = []
+    arrays: list[NamedArray] = []
     for name, data in members:
         if not name.endswith(".npy"):
             continue
@@ -104,5 +106,5 @@ def _arrays(source: Source, members: list[tuple[str, bytes]], options: ReadOptio
             value = np.load(io.BytesIO(data), allow_pickle=False)
         except Exception as error:  # numpy reports damage by whatever its parsing stumbles over
             raise source.error(f"array {name} cannot be read ({str(error)[:80]})", "Save plain numbers.") from error
-        arrays.append(NamedArray(name_parts(name[:-4]), value))
-    return recordings_of_arrays(source, "npz", arrays, options)
+        arrays += fields_of(name_parts(name[:-4]), value, {})
+    return recordings_of_arrays(source, source.kind, arrays, options)

@@ -51,6 +51,13 @@ class NamedArray:
         return self.path[:-1]
 
 
+def fields_of(path: tuple[str, ...], values: np.ndarray, attributes: Mapping[str, Any]) -> list[NamedArray]:
+    """The fields of a record array, or the array itself."""
+    if values.dtype.names is None:
+        return [NamedArray(path, values, attributes)]
+    return [NamedArray((*path, name), np.ascontiguousarray(values[name]), attributes) for name in values.dtype.names]
+
+
 def recordings_of_arrays(
     source: Source, reader: str, arrays: list[NamedArray], options: ReadOptions, sign: str = "."
 ) -> list[Recording]:
@@ -109,7 +116,7 @@ def _columns(source: Source, array: NamedArray, arrays: list[NamedArray], sign: 
     count = values.shape[1]
     names = _texts(array.attributes, _NAME_KEYS) or _sibling_names(array, arrays, count)
     if len(names) != count:
-        names = [f"{label} {k + 1}" for k in range(count)]
+        names = [f"{label} {k + 1}" if label else "" for k in range(count)]
     each = units if len(units) == count else units[:1] * count if units else [""] * count
     return [
         Column(name, unit or None, np.ascontiguousarray(values[:, k], dtype=float))

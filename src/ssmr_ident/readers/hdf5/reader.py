@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ssmr_ident.core.recording import Recording
-from ssmr_ident.readers.arrays.named import MOST_BYTES, NamedArray, recordings_of_arrays
+from ssmr_ident.readers.arrays.named import MOST_BYTES, NamedArray, fields_of, recordings_of_arrays
 from ssmr_ident.readers.options import ReadOptions
 from ssmr_ident.readers.source import Source, missing_library
 
@@ -72,7 +72,7 @@ def _walk(
         elif isinstance(item, h5py.Dataset) and item.shape is not None:
             value = _values(source, item, budget, h5py)
             if value is not None:
-                arrays.append(NamedArray((*path, name), value, dict(item.attrs)))
+                arrays += fields_of((*path, name), np.asarray(value), dict(item.attrs))
 
 
 def _values(source: Source, item: Any, budget: list[int], h5py: Any) -> Any:
@@ -80,7 +80,7 @@ def _values(source: Source, item: Any, budget: list[int], h5py: Any) -> Any:
         source.inform(f"{item.name} lies in another file; not followed")
         return None
     kind = item.dtype.kind
-    if kind not in "fiub" and h5py.check_string_dtype(item.dtype) is None:
+    if kind not in "fiub" and h5py.check_string_dtype(item.dtype) is None and item.dtype.names is None:
         return None
     budget[0] -= item.size * max(item.dtype.itemsize, 8)
     if budget[0] < 0:

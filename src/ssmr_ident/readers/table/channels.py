@@ -74,7 +74,7 @@ def channels_of(source: Source, data: list[Column], table: Table, seen: str) -> 
             if conversion.changes:
                 values = values * conversion.factor + conversion.offset
                 shift = f" + {conversion.offset:g}" if conversion.offset else ""
-                level = "warning" if column.unit in ("lb", "lbs", "in", "kgf", "psi", "ksi") else "info"
+                level = "warning" if column.unit in ("lb", "lbs", "pounds", "in", "kgf", "psi", "ksi") else "info"
                 text = f"{column.shown}: {column.unit} × {conversion.factor:.8g}{shift} = {unit}"
                 table.notes.append(Note(level, text))
         channels.append(Channel(quantity or column.shown, values, unit, column.label or column.shown))
@@ -105,15 +105,16 @@ def _name_by_unit(source: Source, data: list[Column]) -> None:
     for column in data:
         conversion = source.vocabulary.unit(column.unit) if column.unit and column.quantity is None else None
         letter = {"m/s^2": "a", "rad/s": "w"}.get(conversion.unit) if conversion else None
-        if letter and _is_axis(column, source.vocabulary):
-            column.quantity = letter + words_of(column.label)[-1]
+        axis = _axis(column, source.vocabulary)
+        if letter and axis:
+            column.quantity = letter + axis
 
 
 def _vector(data: list[Column], known: Vocabulary) -> list[Column]:
     """Three columns without a unit that may be the axes of one sensor: named x, y, z, or without names at all."""
     bare = [c for c in data if c.unit is None]
     axes = [c for c in bare if c.quantity in ("ax", "ay", "az")]
-    letters = [c for c in bare if c.quantity is None and _is_axis(c, known)]
+    letters = [c for c in bare if c.quantity is None and _axis(c, known)]
     for found in (axes, letters):
         if len(found) == 3:
             return found
@@ -121,11 +122,10 @@ def _vector(data: list[Column], known: Vocabulary) -> list[Column]:
     return unnamed if len(unnamed) == 3 and len(data) == 3 and unnamed == [c for c in bare if not c.given] else []
 
 
-def _is_axis(column: Column, known: Vocabulary) -> bool:
-    """A header of an axis' letter and words that say nothing."""
-    words = words_of(column.label)
-    beside = (w for w in words[:-1] if not w.isdigit() and not known.has("modifiers", (w,)))
-    return words[-1:] in (("x",), ("y",), ("z",)) and next(beside, None) is None
+def _axis(column: Column, known: Vocabulary) -> str:
+    """The letter of a header that holds one and else words that say nothing, such as ``x-axis``; empty for others."""
+    words = [w for w in words_of(column.label) if not w.isdigit() and not known.has("modifiers", (w,))]
+    return words[0] if len(words) == 1 and words[0] in ("x", "y", "z") else ""
 
 
 def _gravity(source: Source, data: list[Column]) -> tuple[list[Column], Guess | None]:
@@ -165,13 +165,15 @@ def _ask_for_units(
 ) -> None:
     """Stop where a quantity is known and its unit is not, with the best guess and what else was understood."""
     vector, why = guess
+    # no word in the file says what is in it, and nothing looks like something
+    nameless = not any(c.label or c.unit or c.given for c in data) and not daq and not _look_like_volts(data)
     asked = []
     for column in data:
         conversion = source.vocabulary.unit(column.unit) if column.unit else None
         expected = SI_UNIT.get(column.quantity or "")
         if column.unit is None:
             volts = daq and column.quantity in (None, "ax", "ay", "az")
-            if not volts and (expected or (any(column is c for c in vector) and (column.label or why))):
+            if nameless or (not volts and (expected or (any(column is c for c in vector) and (column.label or why)))):
                 asked.append(column)
         elif conversion is None and column.quantity is not None:
             raise source.error(
@@ -198,16 +200,26 @@ def _ask_for_units(
     unit = (why.unit if why else "") or "…"
     examples = sorted({_EXAMPLES.get(SI_UNIT.get(c.quantity or "", ""), "N, mm, V or g") for c in asked})
     such = "" if unit != "…" else f"such as {'; '.join(examples)}"
-    raise source.error(f"unit of {shown} unknown{reason} ({seen})", _mend(asked, such, unit), table.part)
+    clock = next((c.number for c in table.columns if not any(c is one for one in data)), None)
+    raise source.error(f"unit of {shown} unknown{reason} ({seen})", _mend(asked, such, unit, clock), table.part)
 
 
-def _mend(columns: list[Column], such_as: str, unit: str = "…") -> str:
-    """How a unit is told: on the command line, or where a session lists the recording."""
+def _mend(columns: list[Column], such_as: str, unit: str = "…", clock: int | None = None) -> str:
+    """How a unit is told: on the command line, or where a session lists the recording.
+
+    Parameters
+    ----------
+    clock : int or None
+        Number of a time column without a name.
+    """
     such = f", {such_as}" if such_as else ""
     if not any(c.label for c in columns):
-        axes = dict(zip(("ax", "ay", "az"), columns, strict=False))
-        pairs = ",".join(f"{a}={c.number}" for a, c in axes.items())
-        return f"Give --columns {pairs} --units {','.join(f'{a}={unit}' for a in axes)}{such}."
+        names = ("ax", "ay", "az") if len(columns) == 3 else ("force", "acceleration", "position")
+        named = dict(zip(names, columns, strict=False))
+        numbers = {**({} if clock is None else {"time": clock}), **{name: c.number for name, c in named.items()}}
+        pairs = ",".join(f"{name}={number}" for name, number in numbers.items())
+        said = "" if len(columns) == 3 else f" What they are only you know: {' and '.join(named)} are examples."
+        return f"Give --columns {pairs} --units {','.join(f'{a}={unit}' for a in named)}{such}.{said}"
     pairs = ",".join(f"{c.shown}={unit}" for c in columns)
     keys = ", ".join(f"{c.shown}: {unit}" for c in columns)
     return f"Give --units {pairs}{such}; in session.yaml, units: {{{keys}}} beside the file."

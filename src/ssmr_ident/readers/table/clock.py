@@ -6,11 +6,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ssmr_ident.core.errors import InputError
 from ssmr_ident.readers.options import ReadOptions
 from ssmr_ident.readers.source import Source
 from ssmr_ident.readers.table.columns import Column, Table
-from ssmr_ident.readers.table.stamp_units import Clock, clock_of, in_two_columns
+from ssmr_ident.readers.table.stamp_units import Clock, ask_for_whole_numbers, clock_of, in_two_columns
 from ssmr_ident.readers.table.vocabulary import words_of
+
+_FALLS = 0.1
+"""Choice: share of a column's steps that go back from which on it is no clock, whatever it is called."""
 
 
 @dataclass
@@ -46,7 +50,7 @@ def clocked(source: Source, columns: list[Column], options: ReadOptions, table: 
         No time and no rate, or stamps that nobody can read.
     """
     columns = in_two_columns(columns, table)
-    times = [c for c in columns if c.quantity in ("time", "date")]
+    times = _ticking([c for c in columns if c.quantity in ("time", "date")])
     data = [c for c in columns if c.quantity not in ("time", "date")]
     if not times and options.fs is None and not any(c.step for c in columns):
         times = [c for c in columns if not c.given and c.unit and _is_time_unit(source, c.unit)][:1]
@@ -70,7 +74,7 @@ def clocked(source: Source, columns: list[Column], options: ReadOptions, table: 
         if not data:
             return _own(own)
         columns = [c for c in columns if not c.step]
-    clocks = [clock_of(source, c, options, table) for c in _distinct(times, table)]
+    clocks = _clocks(source, _distinct(times, table), columns, options, table)
     if len(clocks) > 1:
         owners = _owners(columns, clocks)
         if owners is not None:
@@ -81,6 +85,36 @@ def clocked(source: Source, columns: list[Column], options: ReadOptions, table: 
     for column in own:
         column.start -= best.begin
     return [Clocked(best.seconds, data, label=best.label), *(_own(own) if own else [])]
+
+
+def _ticking(times: list[Column]) -> list[Column]:
+    """Columns that are called a time; of several, what falls as it rises is none: an X_Value beside Y_Value."""
+    steps = [np.diff(c.values[np.isfinite(c.values)]) for c in times]
+    falls = [c for c, step in zip(times, steps, strict=True) if not c.given and (step < 0).sum() > _FALLS * len(step)]
+    if len(falls) == len(times):
+        return times
+    for column in falls:
+        column.quantity = None
+    return [c for c in times if not any(c is one for one in falls)]
+
+
+def _clocks(
+    source: Source, times: list[Column], columns: list[Column], options: ReadOptions, table: Table
+) -> list[Clock]:
+    """The clocks of a table; one whose unit nobody knows is left out where others stand beside it, before all data."""
+    clocks: list[Clock] = []
+    unclear: list[tuple[Column, InputError]] = []
+    for column in times:
+        try:
+            clocks.append(clock_of(source, column, options, table))
+        except InputError as error:
+            unclear.append((column, error))
+    together = [c.quantity in ("time", "date") for c in columns]
+    if unclear and (not clocks or together != sorted(together, reverse=True)):
+        raise unclear[0][1]
+    for column, why in unclear:
+        table.inform(f"clock {column.shown} left out: {why.problem}")
+    return clocks
 
 
 def _is_time_unit(source: Source, unit: str) -> bool:
@@ -105,7 +139,8 @@ def _without_time(source: Source, data: list[Column], options: ReadOptions, tabl
         return Clocked(np.arange(len(data[0].values)) / table.rate, data, exact=True)
     first = data[0].values
     if len(data) > 1 and data[0].quantity is None and not data[0].label and len(first) > 2 and _rises_evenly(first):
-        table.warn("no header: the first column rises evenly and was taken as time in s")
+        ask_for_whole_numbers(source, data[0], first, table)
+        source.warn("no header: the first column rises evenly and was taken as time in s")
         return Clocked(first, data[1:])
     labels = ", ".join(f"{c.number}={c.label or 'no header'}" for c in data)
     raise source.error(

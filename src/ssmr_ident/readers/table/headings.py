@@ -15,7 +15,9 @@ SI_UNIT = {quantity: unit for unit, quantity in QUANTITY_OF_UNIT.items()}
 SI_UNIT |= {"ax": "m/s^2", "ay": "m/s^2", "az": "m/s^2", "wx": "rad/s", "wy": "rad/s", "wz": "rad/s"}
 SI_UNIT |= {"acceleration_2": "m/s^2", "position_reference": "m", "base_acceleration": "m/s^2"}
 _CLOSING = {")": "(", "]": "[", "}": "{", ">": "<"}
+_WITHIN = re.compile(r"([^()\[\]]+)[(\[]([^()\[\]]+)[)\]][\s_:-]+([^()\[\]]+)\Z")
 _MOST_TOKENS = 3  # of a unit behind an underscore: m_s_2
+_SPELT = re.compile(r"(?:[mu]s|[mun]?secs?|\w{3,}s)\Z", re.IGNORECASE)  # ms, Seconds, millis; not second or min
 
 
 @dataclass(frozen=True)
@@ -60,6 +62,8 @@ def heading_of(header: str, unit: str | None = None, vocabulary: Vocabulary | No
     unit = unit if unit is not None else written
     if unit is None:
         unit = unit_in_name(label, known)
+    if unit is None and _SPELT.match(label) and known.unit(label) is not None:
+        unit = label  # the unit stands for the name
     source = ""
     if unit is None:
         for convention in known.conventions:
@@ -99,6 +103,9 @@ def split_header(header: str, vocabulary: Vocabulary | None = None) -> tuple[str
         if label.endswith("/"):  # Acc/(m/s^2)
             label = label[:-1].rstrip()
         return label, inside
+    within = _WITHIN.match(header)
+    if within and known.unit(within[2]) is not None:  # Force (N) Run #1
+        return f"{within[1].strip()} {within[3]}", within[2].strip()
     for sign in (" - ", ", ", " in "):  # Time - sec; Force, kN; Kraft in kN
         left, found, right = header.rpartition(sign)
         if found and left.strip() and known.unit(right) is not None:
@@ -151,7 +158,7 @@ def unit_in_name(label: str, vocabulary: Vocabulary | None = None) -> str | None
     """
     known = vocabulary or shipped()
     label = label.strip()[:LONGEST]
-    parts = re.split(r"[_ ]", label)
+    parts = re.split(r"[_ .]", label)
     if len(parts) == 1:
         hump = re.match(r"(.*[a-zà-ÿ0-9])([A-Z]{1,2}[a-z]{0,2})\Z", label)
         return hump[2] if hump and _agrees(hump[1], hump[2], known) else None
@@ -215,8 +222,9 @@ def _named(label: str, conversion: Conversion | None, known: Vocabulary) -> str 
         return None
     if words[-1] in _AXIS_NAMES:  # imu.ax, data/wz
         return words[-1]
-    if words[0] in _AXIS_NAMES and conversion is not None and SI_UNIT[words[0]] == conversion.unit:  # ax_m_s2
-        return words[0]
+    for word in words:
+        if word in _AXIS_NAMES and conversion is not None and SI_UNIT[word] == conversion.unit:  # ax_m_s2, imu1_ax_g
+            return word
     quantity, rest = _phrase(words, conversion, known)
     if quantity is None or quantity in known.optional:
         return None
@@ -245,6 +253,10 @@ def _phrase(
             if conversion is not None and SI_UNIT.get(symbol) == conversion.unit:
                 return symbol, words[len(bare) :]
         return ("time", ()) if named == ("time",) and conversion is None and bare == words else (None, words)
+    if len(words[0]) == 2 and words[0][1] in "xyz" and conversion is not None:  # Fx (N), gy_dps
+        for symbol in known.symbols.get(words[0][0], ()):
+            if SI_UNIT.get(symbol) == conversion.unit:
+                return symbol, (words[0][1],)
     for length in range(min(3, len(words)), 0, -1):
         for begin in range(len(words) - length, -1, -1):
             quantity = known.phrases.get(words[begin : begin + length])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from ssmr_ident.core.errors import did_you_mean
 from ssmr_ident.readers.options import ReadOptions
 from ssmr_ident.readers.source import Source
@@ -20,6 +22,10 @@ def named_columns(source: Source, table: Table, options: ReadOptions) -> list[Co
     for number, column in enumerate(table.columns):
         column.number = number if column.number < 0 else column.number
         _settle(source, column)
+    if any(column.label for column in table.columns):
+        for column in table.columns:
+            if not column.label and column.quantity is None and _counts(column.values):
+                column.role = "counter"  # the index that pandas and R write without a name
     columns = _chosen(source, table, options)
     for quantity, header in options.channels.items():
         for column in columns:
@@ -41,6 +47,11 @@ def named_columns(source: Source, table: Table, options: ReadOptions) -> list[Co
     for unit, labels in units.items():
         table.inform(f"{', '.join(labels)}: in {unit}; --units changes that")
     return columns
+
+
+def _counts(values: np.ndarray) -> bool:
+    """True for 0, 1, 2… and for 1, 2, 3…"""
+    return len(values) > 0 and values[0] in (0.0, 1.0) and np.array_equal(values, values[0] + np.arange(len(values)))
 
 
 def _settle(source: Source, column: Column) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from datetime import UTC, datetime
 
@@ -67,11 +68,11 @@ def clock_of(source: Source, column: Column, options: ReadOptions, table: Table)
     notes: list[str] = []
     if column.clock and options.time_unit is None:
         return _time_of_day(column, values, notes)
-    unit = options.time_unit or column.unit
+    unit = options.time_unit or (column.unit and re.split(r"\ssince\s", column.unit)[0])  # CF: seconds since 2024-03-01
     if unit is None:
         unit = _told_by_size(finite, notes, column.shown)
         if unit is None:
-            _ask_for_whole_numbers(source, column, finite, table)
+            ask_for_whole_numbers(source, column, finite, table)
             notes.append(f"time column {column.shown} states no unit; taken as s")
             unit = "s"
     conversion = source.vocabulary.unit(unit)
@@ -132,7 +133,14 @@ def _told_by_size(finite: np.ndarray, notes: list[str], shown: str) -> str | Non
     return "s" if SECONDS_1904 < float(finite[0]) < 2.2 * SECONDS_1904 and 0 <= step < LONGEST_STEP else None
 
 
-def _ask_for_whole_numbers(source: Source, column: Column, finite: np.ndarray, table: Table) -> None:
+def ask_for_whole_numbers(source: Source, column: Column, finite: np.ndarray, table: Table) -> None:
+    """Stop where the stamps are whole numbers, of which nothing says what they count.
+
+    Raises
+    ------
+    InputError
+        With the rates that seconds, milli-, micro- and nanoseconds would give.
+    """
     whole = len(finite) > 2 and bool((finite == np.round(finite)).all())
     step = float(np.median(np.diff(finite))) if len(finite) > 1 else 0.0
     if not whole or step < 1:

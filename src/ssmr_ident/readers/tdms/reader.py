@@ -15,8 +15,10 @@ from ssmr_ident.readers.source import Source, missing_library
 from ssmr_ident.readers.table.assemble import recordings_of
 from ssmr_ident.readers.table.columns import Column, Table, facts
 from ssmr_ident.readers.table.headings import quantity_of, split_header
+from ssmr_ident.readers.text.header_rows import rate_from
 
 NAMES = ("tdms",)
+_UNIT_KEYS = ("unit_string", "Unit", "unit", "Units", "units", "NI_UnitDescription")
 
 
 def recognises(source: Source) -> bool:
@@ -100,13 +102,13 @@ def _group(source: Source, group: Any, incomplete: bool, properties: Any, option
     for number, channel in enumerate(channels):
         values = np.asarray(channel[:])
         label, unit = split_header(channel.name, source.vocabulary)
-        stated = str(channel.properties.get("unit_string") or "").strip() or unit
+        stated = next((str(channel.properties[k]).strip() for k in _UNIT_KEYS if channel.properties.get(k)), "") or unit
         if np.issubdtype(values.dtype, np.datetime64):
             seconds = (values - values[0]) / np.timedelta64(1, "us") * 1e-6
             columns.append(Column(label, "s", seconds.astype(float), quantity="time", number=number))
         elif np.issubdtype(values.dtype, np.number) and not np.issubdtype(values.dtype, np.complexfloating):
             column = Column(label, stated, values.astype(float), number=number)
-            starts.append(_own_clock(source, group, channel, column))
+            starts.append(_own_clock(source, group, channel, column, properties))
             columns.append(column)
         else:
             notes.append(Note("info", f"channel {channel.name} holds {values.dtype}, no numbers; left out"))
@@ -136,11 +138,20 @@ def _group(source: Source, group: Any, incomplete: bool, properties: Any, option
     return recordings_of(source, "tdms", table, options)
 
 
-def _own_clock(source: Source, group: Any, channel: Any, column: Column) -> float:
-    """Step and start of a channel's waveform; the moment of its start in seconds since 1970, 0 where none stands."""
+def _own_clock(source: Source, group: Any, channel: Any, column: Column, of_file: Any) -> float:
+    """Step and start of a channel's waveform; the moment of its start in seconds since 1970, 0 where none stands.
+
+    Without a waveform a sampling rate among the properties of channel, group or file says the step.
+    """
     properties = channel.properties
     step = properties.get("wf_increment")
-    if step is not None:
+    if step is None:
+        for facts_of in (properties, group.properties, of_file):
+            told = rate_from({str(k): str(v) for k, v in facts_of.items()}, source.vocabulary)
+            if told is not None:
+                column.step = 1.0 / told[0]
+                break
+    else:
         column.step = float(step)
         if not (0 < column.step < float("inf")):
             raise source.error(f"wf_increment is {column.step:g} s", "Give --fs.", f"group {group.name}")

@@ -16,11 +16,12 @@ from ssmr_ident.readers.options import ReadOptions
 from ssmr_ident.readers.source import Source
 from ssmr_ident.readers.table.assemble import recordings_of
 from ssmr_ident.readers.table.columns import Column, Table, facts
+from ssmr_ident.readers.table.headings import heading_of
 from ssmr_ident.readers.table.vocabulary import words_of
 from ssmr_ident.readers.text.blocks import Block, blocks_of, refuse_many_broken
 from ssmr_ident.readers.text.dialect import Layout, sniff
 from ssmr_ident.readers.text.encoding import Text, text_of
-from ssmr_ident.readers.text.header_rows import rate_from
+from ssmr_ident.readers.text.header_rows import rate_from, units_from
 from ssmr_ident.readers.text.last_line import without_cut_line
 from ssmr_ident.readers.text.line_forms import plain_rows
 from ssmr_ident.readers.text.numeric_run import NumberRun, TextRow, walk
@@ -148,6 +149,7 @@ def _recordings_of_block(
     if graph:
         for column in columns[::2]:
             column.quantity = "time"  # its label may be edited or in any language
+    _units_said(source, columns, block.facts)
     rate, told = rate_from(block.facts, source.vocabulary) or (0.0, "")
     table = Table(
         columns,
@@ -166,6 +168,19 @@ def _recordings_of_block(
     if reader == "csv" and _is_testing_machine(columns):
         return [_by_machine(recording) for recording in recordings]
     return recordings
+
+
+def _units_said(source: Source, columns: list[Column], facts: dict[str, str]) -> None:
+    """Units that stand among the facts above the table, for columns whose headers write none."""
+    times = [c for c in columns if heading_of(c.label, c.unit, source.vocabulary).quantity in ("time", "date")]
+    clocks = [c for c in times if c.unit or c.clock] or times  # beside Time(s), an X_Value is no clock
+    bare = [c for c in columns if not any(c is clock for clock in clocks)]
+    said = units_from(facts, len(bare), source.vocabulary)
+    if said is None or any(c.unit for c in bare):
+        return
+    for column, unit in zip(bare, said[0], strict=True):
+        column.unit = unit
+    source.inform(f"units from {said[1]!r}")
 
 
 def _by_machine(recording: Recording) -> Recording:

@@ -5,14 +5,15 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, field
 
-from ssmr_ident.readers.table.headings import Heading, bare_unit, heading_of
+from ssmr_ident.readers.table.headings import Heading, bare_unit, heading_of, is_units_row
 from ssmr_ident.readers.table.vocabulary import Vocabulary, words_of
 from ssmr_ident.readers.text.numbers import Dialect
 from ssmr_ident.readers.text.numeric_run import TextRow
 
 _RULE = re.compile(r"[-=_+|*#~:. \t]{3,}\Z")
 _MARKS = "#%!;*/"
-_KEY = re.compile(r"([^=:]{1,60})[=:](?!\d\d)(.+)\Z", re.DOTALL)
+_KEY = re.compile(r"([^=:]{1,60})(?:=|:(?!\d\d)|(?<=[^\d\s]):)(.+)\Z", re.DOTALL)  # 12:00 is no key with a value
+_LISTS = re.compile(r"(?:columns?|channels?|fields|header|names|variables|spalten|kanäle)\s?[:=]\s?", re.IGNORECASE)
 _NO_UNITS = {"ts", "rn", "none", "n/a", "-", "index"}
 _PROCESSES = {"smp", "avg", "max", "min", "std", "tot", "med", "sample", "average"}
 _UNITED = re.compile(r"[^()\[\]]{1,80}[(\[][^()\[\]]{1,20}[)\]]")
@@ -46,11 +47,17 @@ def header_of(rows: list[TextRow], width: int, dialect: Dialect, vocabulary: Voc
     rows = [row for row in rows if row.raw.strip()]
     left = list(rows)
     units: list[str] | None = None
+    paired: dict[str, str] = {}
     while left:
         last = left[-1]
         cells = _fitting(last.raw, width, dialect)
         words = [c.strip().lower() for c in last.cells if c.strip()]
         if _RULE.match(last.raw[:_LONGEST]) or (words and set(words) <= _PROCESSES):
+            left.pop()
+            continue
+        pairs = [_KEY.match(cell) for cell in last.cells if cell.strip()]
+        if len(pairs) > 1 and len(last.cells) <= width and all(p and _is_number(p[2].strip()) for p in pairs):
+            paired |= {match[1].strip(): match[2].strip() for match in pairs if match}  # SR=250 Hz in every column
             left.pop()
             continue
         above = _fitting(left[-2].raw, width, dialect) if len(left) > 1 else None
@@ -59,13 +66,17 @@ def header_of(rows: list[TextRow], width: int, dialect: Dialect, vocabulary: Voc
             units = few
             left.pop()
             continue
-        if cells is not None and not any(_is_number(cell) for cell in cells):
+        numbers = [_is_number(cell) for cell in cells or ()]
+        if cells is not None and not (all(numbers) if units else any(numbers)):  # above units, 1 and 2 are names
+            if units is None and above and is_units_row(above, vocabulary) and not any(map(_is_number, above)):
+                units = above
+                left.pop(-2)
             headings = [
                 heading_of(name, unit or None, vocabulary)
                 for name, unit in zip(cells, _bare(units, width, vocabulary), strict=True)
             ]
             left.pop()
-            return Header(headings, len(rows) - len(left), facts_of(left, dialect))
+            return Header(headings, len(rows) - len(left), facts_of(left, dialect) | paired)
         if _marked(last.raw) and units is None and len(rows) - len(left) < 8 and len(left) > 1:
             left = _without_last_remark(left, width, dialect)
             if left:
@@ -99,7 +110,7 @@ def _fitting(raw: str, width: int, dialect: Dialect) -> list[str] | None:
     """Cells of a row of names over ``width`` columns: separated as the table is, or otherwise."""
     if len(raw) > _LONGEST:
         return None
-    text = _unmarked(raw)
+    text = _LISTS.sub("", _unmarked(raw), count=1) if _marked(raw) else raw
     if width == 1 and len(_names(raw, dialect)) > 1:
         return None  # several names over one number
     ways = [dialect.cells(text)]
@@ -139,7 +150,7 @@ def _is_units(cells: list[str], above: list[str], vocabulary: Vocabulary) -> boo
     """True for a row of units below names; one unit that is not known does not make it names."""
     filled = [cell for cell in cells if cell.strip() and cell.strip().lower() not in _NO_UNITS]
     known = [cell for cell in filled if bare_unit(cell, vocabulary) is not None]
-    if not filled or any(_is_number(cell) for cell in above if cell):
+    if not filled or all(_is_number(cell) for cell in above if cell):
         return False
     named = sum(bare_unit(cell, vocabulary) is None for cell in above if cell.strip())
     return len(known) == len(filled) or (2 * len(known) > len(filled) and named == sum(bool(c.strip()) for c in above))
@@ -181,6 +192,22 @@ def facts_of(rows: list[TextRow], dialect: Dialect) -> dict[str, str]:
         elif len(cells) >= 2:
             found[cells[0].rstrip(":")[:80]] = " ".join(cells[1:])[:400]
     return found
+
+
+def units_from(facts: dict[str, str], count: int, vocabulary: Vocabulary) -> tuple[list[str], str] | None:
+    """Units of ``count`` columns that the facts state, and the fact as written; None when none does.
+
+    >>> from ssmr_ident.readers.table.vocabulary import shipped
+    >>> units_from({"Vertical Units": "V mV"}, 2, shipped()), units_from({"unit": "m/s^2"}, 2, shipped())
+    ((['V', 'mV'], 'Vertical Units: V mV'), (['m/s^2', 'm/s^2'], 'unit: m/s^2'))
+    """
+    for key, value in facts.items():
+        if not vocabulary.has("units_said", words_of(key)):
+            continue
+        each = [value] * count if vocabulary.unit(value) else value.split()
+        if count and len(each) == count and all(vocabulary.unit(unit) for unit in each):
+            return each, f"{key}: {value}"
+    return None
 
 
 def rate_from(facts: dict[str, str], vocabulary: Vocabulary) -> tuple[float, str] | None:

@@ -1,7 +1,7 @@
 """Lines that are a table in another form: a stamp and an arrow before each, or a name before every number.
 
-Serial monitors put ``12:31:05.124 -> `` before what a microcontroller prints, and sketches print ``ax:1.52`` for a
-plotter. Both become plain rows here, line by line, so that line numbers stay those of the file.
+Serial monitors put ``12:31:05.124 -> `` or ``[12:31:05.124] `` before what a microcontroller prints, and sketches print
+``ax:1.52`` for a plotter. Both become plain rows here, line by line, so that line numbers stay those of the file.
 """
 
 from __future__ import annotations
@@ -15,7 +15,8 @@ from ssmr_ident.readers.text.stamps import is_stamp
 
 _LOOK = 200  # lines that say which form a log has
 _MOST = 0.6  # share of them that must have it
-_ARROW = re.compile(r"\[?([^\[\]>]{5,40}?)\]?[ \t]{0,3}(?:->|=>|→)[ \t]{0,3}")
+_ARROW = re.compile(r"\[?([^\[\]>]{5,40}?)\]?[ \t]{0,3}(?:->|=>|→)[ \t]{0,3}|[\[(]([^\[\]()]{5,40})[\])][ \t:]{1,3}")
+_UPTIME = re.compile(r"\d{1,10}\.\d{2,9}\Z", re.ASCII)  # seconds since the start, as kernels print them
 _NAMED = re.compile(r"([^\W\d]\w{0,30})[ \t]?[:=][ \t]?([-+]?[\d.][\w.+-]{0,30})")
 _BETWEEN = re.compile(r"[\s,;|]*")
 
@@ -40,7 +41,11 @@ def _share(sample: list[str], has: object) -> float:
 
 def _stamped(line: str) -> re.Match[str] | None:
     match = _ARROW.match(line)
-    return match if match and is_stamp(match[1].strip()) else None
+    return match if match and (is_stamp(_stamp(match)) or _UPTIME.match(_stamp(match))) else None
+
+
+def _stamp(match: re.Match[str]) -> str:
+    return (match[1] or match[2]).strip()
 
 
 def _without_arrows(source: Source, text: Text, sample: list[str]) -> Text:
@@ -57,9 +62,9 @@ def _without_arrows(source: Source, text: Text, sample: list[str]) -> Text:
             continue
         behind = line[match.end() :]
         numbers = sum(c.isdigit() for c in behind) > sum(c.isalpha() for c in behind) or _NAMED.match(behind)
-        made.append(f"{match[1].strip() if numbers else 'time'}{sign}{behind}")
+        made.append(f"{_stamp(match) if numbers else 'time'}{sign}{behind}")
     source.inform(
-        "every line has a stamp and an arrow before it, as a serial monitor writes them: the stamp is the time"
+        "every line has a stamp with an arrow or in brackets before it, as serial monitors write: it is the time"
     )
     return Text("\n".join(made).encode(), "utf-8")
 

@@ -22,14 +22,20 @@ _MINUTES = r"(?P<minute>\d{1,3}):(?P<second>\d{2})[.,](?P<fraction>\d{1,9})"
 _NUMBERS = r"(?P<one>\d{1,4})(?P<mark>[-/.])(?P<two>\d{1,2})(?P=mark)(?P<three>\d{1,4})\.?"
 _NAMED = r"(?P<day>\d{1,2})[-\s./]?(?P<month>[A-Za-zäéû]{3,9})\.?[-\s./,]?(?P<year>\d{4}|\d{2})"
 _AMERICAN = r"(?P<month>[A-Za-z]{3,9})\.? (?P<day>\d{1,2}), ?(?P<year>\d{4})"
+_COMPACT = (
+    r"(?P<one>\d{4})(?P<two>\d{2})(?P<three>\d{2})[T_ -](?P<hour>\d{2}):?(?P<minute>\d{2}):?(?P<second>\d{2})"
+    r"(?:[.,](?P<fraction>\d{1,9}))?"
+)
 _ZONE = r"\s?(?:Z|(?:UTC|GMT)?[+-]\d{2}:?\d{2}|UTC|GMT)?"
 _FORMS = tuple(
     re.compile(form + r"\Z", re.ASCII if "ä" not in form else 0)
     for form in (
-        _CLOCK, _MINUTES, _NUMBERS, *(f"{date}(?:T|,?\\s){_CLOCK}{_ZONE}" for date in (_NUMBERS, _NAMED, _AMERICAN)),
-        rf"{_CLOCK}[\s,]{_NUMBERS}", _NAMED,
+        _CLOCK, _MINUTES, _NUMBERS,
+        *(f"{date}(?:[T_-]|,?\\s){_CLOCK}{_ZONE}" for date in (_NUMBERS, _NAMED, _AMERICAN)),
+        rf"{_CLOCK}[\s,]{_NUMBERS}", _NAMED, f"{_COMPACT}{_ZONE}",
     )
 )  # fmt: skip
+_BETWEEN = ("T", "_", "-", " ")  # a date of eight digits and its time
 _MONTHS = {
     name: number
     for number, names in enumerate(
@@ -61,10 +67,10 @@ class Stamps:
 def is_stamp(cell: str) -> bool:
     """True for a time of day, with a date or without.
 
-    >>> is_stamp("2:03:11 PM"), is_stamp("2024-03-01 12:00:00.005"), is_stamp("12.5")
-    (True, True, False)
+    >>> is_stamp("2:03:11 PM"), is_stamp("2024-03-01 12:00:00.005"), is_stamp("20240301T120000.005Z"), is_stamp("12.5")
+    (True, True, True, False)
     """
-    return ":" in cell and len(cell) <= LONGEST and _parts(cell) is not None
+    return (":" in cell or cell[8:9] in _BETWEEN) and len(cell) <= LONGEST and _parts(cell) is not None
 
 
 def is_date(cell: str) -> bool:

@@ -1,0 +1,147 @@
+"""One experiment as many loggers write it: analysers, oscilloscopes, class-room sensors, boards, phones, presses."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ssmr_ident.core.errors import InputError
+from ssmr_ident.readers import read, read_one
+
+COUNT, RATE = 80, 250.0
+G, POUND, INCH = 9.80665, 4.4482216152605, 0.0254
+RNG = np.random.default_rng(7)
+TIME = np.arange(COUNT) / RATE
+ACCELERATION = 2 * np.cos(9 * TIME) + 0.01 * RNG.standard_normal(COUNT)
+FORCE = 30 * np.sin(7 * TIME) + 0.05 * RNG.standard_normal(COUNT)
+POSITION = 4e-3 * np.sin(7 * TIME)
+
+Row = Callable[[int, float, float, float, float], str]
+
+
+def comma(value: float, digits: int = 6) -> str:
+    return f"{value:.{digits}f}".replace(".", ",")
+
+
+def stamp(k: int) -> str:
+    return f"12:00:{k / RATE:06.3f}"
+
+
+# name: lines above, a row of (k, t, a, f, x), quantities that it holds, encoding
+FORMS: dict[str, tuple[list[str], Row, str, str]] = {
+    "dewesoft": (
+        ["Data info", "Sample rate:\t250", "", "Time (s)\tAccX (m/s2)\tForce (N)", ""],
+        lambda k, t, a, f, x: f"{t:.4f}\t{a:.6f}\t{f:.5f}", "ax force", "utf-8"),
+    "catman": (
+        ["MGCplus", "Zeit  1 - Standardmessrate [s]\tKraft [kN]\tWeg [mm]", ""],
+        lambda k, t, a, f, x: f"{comma(t)}\t{comma(f / 1e3, 8)}\t{comma(1e3 * x)}", "force position", "cp1252"),
+    "rates below the units": (
+        ["Time  1 - default sample rate\tForce\tDisplacement", "s\tN\tmm", "SR=250 Hz\tSR=250 Hz\tSR=250 Hz"],
+        lambda k, t, a, f, x: f"{t:.4f}\t{f:.5f}\t{1e3 * x:.6f}", "force position", "utf-8"),
+    "oscilloscope with numbered channels": (
+        ["x-axis,1,2", "second,Volt,Volt"],
+        lambda k, t, a, f, x: f"{t:+.9E},{a:+.6E},{f:+.6E}", "1:V:a 2:V:f", "utf-8"),
+    "oscilloscope with units above": (
+        ["Model,MDO", "Horizontal Units,S,", "Vertical Units,mV,V", "", "TIME,CH1,CH2"],
+        lambda k, t, a, f, x: f"{t:.6f},{1e3 * a:.3f},{f:.5f}", "CH1:V:a CH2:V:f", "utf-8"),
+    "one unit for all": (
+        ["Sensor name:,Accelerometer", "Units:,m/s^2", "", "Time(s),X_value,Y_value"],
+        lambda k, t, a, f, x: f"{t:.4f},{a:.6f},{f:.6f}", "ax ay:m/s^2:f", "utf-8"),
+    "vernier": (
+        ["Latest: Time (s),Latest: Force (N),Latest: Position (m)"],
+        lambda k, t, a, f, x: f"{t:.4f},{f:.5f},{x:.8f}", "force position", "utf-8"),
+    "pasco": (
+        ["Time (s) Run #1,Force (N) Run #1,Acceleration (m/s²) Run #1"],
+        lambda k, t, a, f, x: f"{t:.4f},{f:.5f},{a:.5f}", "force acceleration", "utf-8"),
+    "microseconds of a board": (
+        ["micros,accX_ms2,fx_N"],
+        lambda k, t, a, f, x: f"{10**6 + 4000 * k},{a:.5f},{f:.5f}", "ax force", "utf-8"),
+    "names behind a word": (
+        ["# boot", "# columns: t_us fx_N"], lambda k, t, a, f, x: f"{4000 * k} {f:.5f}", "force", "utf-8"),
+    "stamps in brackets": (
+        ["[11:59:59.990] ax_g,ay_g"],
+        lambda k, t, a, f, x: f"[{stamp(k)}] {a / G:.7f},{f / G:.7f}", "ax ay:m/s^2:f", "utf-8"),
+    "seconds since the start in brackets": (
+        ["[0.000100] force_N,acc_g"],
+        lambda k, t, a, f, x: f"[{7 + t:.6f}] {f:.5f},{a / G:.7f}", "force acceleration", "utf-8"),
+    "compact ISO 8601": (
+        ["time,force_N"],
+        lambda k, t, a, f, x: f"20240301T1200{k / RATE:06.3f}Z,{f:.5f}", "force", "utf-8"),
+    "date and time joined by an underscore": (
+        ["stamp;force_N"], lambda k, t, a, f, x: f"2024-03-01_{stamp(k)};{f:.5f}", "force", "utf-8"),
+    "rate among remarks": (
+        ["# sampling_rate_hz=250", "# sensor=ADXL355", "ax_mps2,ay_mps2"],
+        lambda k, t, a, f, x: f"{a:.6f},{f:.6f}", "ax ay:m/s^2:f", "utf-8"),
+    "units spelt out": (
+        ["Time (seconds),Force (Newtons),Displacement (millimeters),Acceleration (meters per second squared)"],
+        lambda k, t, a, f, x: f"{t:.4f},{f:.5f},{1e3 * x:.6f},{a:.5f}", "force position acceleration", "utf-8"),
+    "the unit as a name": (
+        ["Seconds,Accel (g's),Force (pounds)"],
+        lambda k, t, a, f, x: f"{t:.4f},{a / G:.7f},{f / POUND:.7f}", "acceleration force", "utf-8"),
+    "units behind dots": (
+        ["time.s,force.N,acc.m_s2"], lambda k, t, a, f, x: f"{t:.4f},{f:.5f},{a:.5f}", "force acceleration", "utf-8"),
+    "units above the names": (
+        ["s,N,m/s^2", "Time,Force,Acceleration"],
+        lambda k, t, a, f, x: f"{t:.4f},{f:.5f},{a:.5f}", "force acceleration", "utf-8"),
+    "an index without a name": (
+        [",time_s,force_N"], lambda k, t, a, f, x: f"{k},{t:.4f},{f:.5f}", "force", "utf-8"),
+    "gravities of a phone": (
+        ["time;gFx;TgF"],
+        lambda k, t, a, f, x: f"{comma(t)};{comma(a / G, 8)};{comma(1.0 + a)}", "gFx:m/s^2:a", "utf-8"),
+    "a gyroscope by letters": (
+        ["t_ms,gx (deg/s),gy (deg/s)"],
+        lambda k, t, a, f, x: f"{4 * k},{np.degrees(a):.5f},{np.degrees(f):.4f}", "wx:rad/s:a wy:rad/s:f", "utf-8"),
+    "a press in the Imperial way": (
+        ["Results Table 1", "Specimen,Max Load", "1,30", "", "Raw Data", "Time (sec),Extension (in),Load (lbf)"],
+        lambda k, t, a, f, x: f"{t:.4f},{x / INCH:.9f},{f / POUND:.7f}", "force position", "utf-8"),
+    "a press in French": (
+        ["Temps [s];Effort [daN];Déplacement [mm]"],
+        lambda k, t, a, f, x: f"{comma(t)};{comma(f / 10)};{comma(1e3 * x)}", "force position", "cp1252"),
+    "a table of bars": (
+        ["| t [s] | F [N] | a [m/s²] |", "|-------|-------|----------|"],
+        lambda k, t, a, f, x: f"| {t:.4f} | {f:.5f} | {a:.5f} |", "force acceleration", "utf-8"),
+    "data logger with processes": (
+        ['"TOA5","rig","CR6"', '"TIMESTAMP","RECORD","Accel_X","Load"', '"TS","RN","m/s^2","N"', '"","","Smp","Smp"'],
+        lambda k, t, a, f, x: f'"2024-03-01 {stamp(k)}",{k},{a:.6f},{f:.5f}', "ax force", "utf-8"),
+    "words among numbers": (
+        ["time_s,state,raw,force_N,valid"],
+        lambda k, t, a, f, x: f"{t:.4f},{'RUN' if k > 5 else 'INIT'},0x{k:04X},{f:.5f},true", "force", "utf-8"),
+    "a clock with colons throughout": (
+        ["Time\tForce (N)"], lambda k, t, a, f, x: f"12:00:00:{4 * k:03d}\t{f:.5f}", "force", "utf-8"),
+}  # fmt: skip
+TRUTH = {"ax": ("m/s^2", ACCELERATION), "acceleration": ("m/s^2", ACCELERATION), "force": ("N", FORCE),
+         "position": ("m", POSITION)}  # fmt: skip
+LETTERS = {"a": ACCELERATION, "f": FORCE}
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_a_logger_s_form(tmp_path: Path, form: str) -> None:
+    above, row, quantities, encoding = FORMS[form]
+    rows = [row(k, *values) for k, values in enumerate(zip(TIME, ACCELERATION, FORCE, POSITION, strict=True))]
+    path = tmp_path / "log.txt"
+    path.write_bytes("\n".join([*above, *rows, ""]).encode(encoding))
+    recording = read_one(path)
+    assert len(recording.time) == COUNT
+    assert recording.sample_rate == pytest.approx(RATE, rel=1e-4)
+    for wanted in quantities.split():
+        name, _, rest = wanted.partition(":")
+        unit, samples = (rest[:-2], LETTERS[rest[-1]]) if rest else TRUTH[name]
+        assert recording.channel(name).unit == unit
+        np.testing.assert_allclose(recording[name], samples, atol=2e-5 * np.ptp(samples) + 2e-5)
+
+
+def test_headerless_counts_are_asked_for(tmp_path: Path) -> None:
+    (tmp_path / "log.txt").write_text("".join(f"{4000 * k} {f:.5f}\n" for k, f in enumerate(FORCE)))
+    with pytest.raises(InputError, match="250 Hz in us"):
+        read(tmp_path / "log.txt")
+
+
+def test_a_clock_in_no_known_unit_is_left_out_beside_another(tmp_path: Path) -> None:
+    rows = "".join(f"{4 * k},{t:.4f},{f:.5f}\n" for k, (t, f) in enumerate(zip(TIME, FORCE, strict=True)))
+    (tmp_path / "log.csv").write_text("uptime,time_s,force_N\n" + rows)
+    recording = read_one(tmp_path / "log.csv")
+    assert recording.sample_rate == pytest.approx(RATE)
+    assert any("uptime left out" in note.text for note in recording.notes)
