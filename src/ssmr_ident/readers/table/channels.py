@@ -124,8 +124,9 @@ def _vector(data: list[Column], known: Vocabulary) -> list[Column]:
 
 def _axis(column: Column, known: Vocabulary) -> str:
     """The letter of a header that holds one and else words that say nothing, such as ``x-axis``; empty for others."""
-    words = [w for w in words_of(column.label) if not w.isdigit() and not known.has("modifiers", (w,))]
-    return words[0] if len(words) == 1 and words[0] in ("x", "y", "z") else ""
+    words = [w for w in words_of(column.label) if not known.has("modifiers", (w,))]
+    numbers = all(word.isdigit() for word in words[:-1])  # before it: y 3 is the third column of y
+    return words[-1] if numbers and words[-1:] in (["x"], ["y"], ["z"]) else ""
 
 
 def _gravity(source: Source, data: list[Column]) -> tuple[list[Column], Guess | None]:
