@@ -6,7 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated
 
-from ssmr_ident.core.domain import Choice, Number, declared
+from ssmr_ident.core.domain import Choice, Number
+from ssmr_ident.core.nested_domain import declared
 from ssmr_ident.session.entry import Entry
 
 _ENTRY = declared(Entry)

@@ -6,20 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
 from typing import Annotated, Any
 
-from ssmr_ident.core.domain import (
-    Choice,
-    Either,
-    FileName,
-    Keyed,
-    Listed,
-    Mapped,
-    Number,
-    Pointer,
-    Text,
-    Whole,
-    YesNo,
-    declared,
-)
+from ssmr_ident.core.domain import Choice, FileName, Number, Pointer, Text, Whole, YesNo
+from ssmr_ident.core.nested_domain import Either, Keyed, Listed, Mapped, declared
 
 BASELINES = ("rigid6", "decoupled", "sdof", "drag")
 EXPERIMENTS = (

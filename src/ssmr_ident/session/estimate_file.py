@@ -9,7 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from ssmr_ident.core.domain import Domain, Keyed, Number, Schema, Text, YesNo, optional
+from ssmr_ident.core.domain import Domain, Number, Schema, Text, YesNo
+from ssmr_ident.core.nested_domain import Keyed, optional
 from ssmr_ident.core.parameter import Estimate
 from ssmr_ident.core.place import Place, shown
 from ssmr_ident.session.schema import canonical_unit

@@ -10,7 +10,8 @@ from importlib import resources
 from pathlib import Path
 
 from ssmr_ident.core.atomic import write_text
-from ssmr_ident.core.domain import Schema, optional
+from ssmr_ident.core.domain import Schema
+from ssmr_ident.core.nested_domain import optional
 from ssmr_ident.session.effects_block import effect_keys, rotary
 from ssmr_ident.session.estimate_file import Quantity, definitions
 from ssmr_ident.session.parameters_file import HEAD

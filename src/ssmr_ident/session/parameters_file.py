@@ -9,8 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from ssmr_ident.core.domain import Choice, Keyed, Text
+from ssmr_ident.core.domain import Choice, Text
 from ssmr_ident.core.errors import did_you_mean
+from ssmr_ident.core.nested_domain import Keyed
 from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.core.place import Place, shown
 from ssmr_ident.session.effects_block import effect_keys, rotary

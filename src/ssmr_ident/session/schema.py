@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from ssmr_ident.core.domain import Choice, Domain, Listed, Number
+from ssmr_ident.core.domain import Choice, Domain, Number
+from ssmr_ident.core.nested_domain import Listed
 
 
 @dataclass(frozen=True)

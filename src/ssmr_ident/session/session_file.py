@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from ssmr_ident.core.domain import Choice, Domain, FileName, Keyed, Listed, Text, declared
+from ssmr_ident.core.domain import Choice, Domain, FileName, Text
 from ssmr_ident.core.errors import InputError
+from ssmr_ident.core.nested_domain import Keyed, Listed, declared
 from ssmr_ident.core.place import Place, short
 from ssmr_ident.core.shown import Shown
 from ssmr_ident.session.entry import BASELINES, Entry, entry_of

@@ -9,8 +9,9 @@ from typing import Annotated
 
 import numpy as np
 
-from ssmr_ident.core.domain import Number, declared
+from ssmr_ident.core.domain import Number
 from ssmr_ident.core.errors import InputError, did_you_mean
+from ssmr_ident.core.nested_domain import declared
 from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.core.place import Place, shown
 from ssmr_ident.core.recording import Channel, Provenance, Recording
