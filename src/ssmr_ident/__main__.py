@@ -1,11 +1,11 @@
 """``ident``, also as ``python -m ssmr_ident``: nothing is imported before the run can be stopped."""
 
-from ssmr_ident.core.stopping import STOPPED, asked, stoppable
+from ssmr_ident.core.stopping import asked, end_now, stoppable
 
 
 def main() -> None:
     """Run ``ident``; see ``ssmr_ident.cli.main``."""
-    import sys
+    import signal
 
     try:
         with stoppable():
@@ -13,8 +13,8 @@ def main() -> None:
 
             run()
     except KeyboardInterrupt:
-        print(STOPPED, file=sys.stderr)
-        sys.exit(128 + asked())
+        # not by sys.exit: an interrupt on its way through an exec(), as of a dataclass, makes Python end by SIGINT
+        end_now(asked() or signal.SIGINT)
 
 
 if __name__ == "__main__":

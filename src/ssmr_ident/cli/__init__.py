@@ -82,9 +82,8 @@ def main() -> None:
         _complain(str(error))
     except SimulationError as error:
         _complain(f"simulation failed: {error}", status=1)
-    except (typer.Abort, KeyboardInterrupt):
-        print(STOPPED, file=sys.stderr)
-        sys.exit(128 + (asked() or signal.SIGINT))
+    except typer.Abort:
+        raise KeyboardInterrupt from None
     except BrokenPipeError:  # who read has read enough
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         sys.exit(1)

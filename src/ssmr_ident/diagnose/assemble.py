@@ -216,7 +216,8 @@ def _named(outcome: Outcome, fitted: Mapping[str, Mapping[str, Estimate]]) -> tu
             continue
         confidence = sum(s for name, s in share.items() if effect_id in name.split("+"))
         others = tuple(dict.fromkeys(o for r in outcome.rivals for o in r.fit.model.ids if o not in best.fit.model.ids))
-        values = fitted[effect_id]
+        # a range or stiffness without limit is one that does not act
+        values = {name: estimate for name, estimate in fitted[effect_id].items() if np.all(np.isfinite(estimate.value))}
         if effect_id == "unlisted":
             values = {name: estimate for name, estimate in values.items() if not estimate.fixed}
         found.append(
