@@ -6,19 +6,26 @@ BIN := $(VENV)/bin
 # small matrices: threads of the linear algebra only get into each other's way
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: demo test test-all check docs bench bench-doctor data clean
+.PHONY: demo test static compiled test-all check docs bench bench-doctor data clean
 
 demo: $(VENV)/.runtime
 	$(BIN)/ident demo -o out
 
+# types on one processor while the other compiles what the tests need; then the tests, on both
 test: $(VENV)/.test
+	$(MAKE) --no-print-directory -j2 static compiled
+	$(BIN)/pytest -n 3 --dist worksteal -m "not slow and not compiles"
+
+static: $(VENV)/.test
 	$(BIN)/ruff check . && $(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
-	$(BIN)/pytest -n 2 --dist worksteal -m "not slow"
+
+compiled: $(VENV)/.test
+	$(BIN)/pytest -m "compiles and not slow" tests
 
 test-all: test
-	$(BIN)/pytest -n 2 --dist worksteal -m slow
+	$(BIN)/pytest -n 3 --dist worksteal -m slow
 
 check: $(VENV)/.test
 	$(BIN)/ruff check --fix . && $(BIN)/ruff format . && $(BIN)/mypy && $(BIN)/lint-imports

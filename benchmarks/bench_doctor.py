@@ -1,6 +1,6 @@
 """How engines of the doctor fare on a frozen set of sessions: one table per engine, and two engines side by side.
 
-    make bench-doctor                                       # the small form: N=4
+    make bench-doctor                                       # the small form: N=3
     make bench-doctor N=100 FAMILIES=rigs,rig-nulls         # more of some families
     make bench-doctor START=1000 N=100                      # sessions that are not in the frozen set
     make bench-doctor ENGINE=module:function                # another engine than `ident diagnose`
@@ -40,7 +40,7 @@ RESULTS = Path(__file__).parent / "results" / "doctor"
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("-n", "--count", type=int, default=4, help="N: sessions of a stream of share 1")
+    parser.add_argument("-n", "--count", type=int, default=3, help="N: sessions of a stream of share 1")
     parser.add_argument("--start", type=int, default=0, help="sessions of every stream that are passed over")
     parser.add_argument("--families", default=",".join(FAMILIES), help=f"of {', '.join(FAMILIES)}")
     parser.add_argument("--engine", default="diagnose", help=f"{', '.join(ENGINES)}, or module:function")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 from scipy.integrate import solve_ivp
 
@@ -205,6 +207,7 @@ def _tried(best: str, evidence: float, metric: float, baseline: float, *tied: st
     return (*tried, Tried("baseline", baseline, 0.0))
 
 
+@cache
 def _motion(cubic: float, release: float, seconds: float = 2.5) -> tuple[np.ndarray, np.ndarray]:
     """Displacement and velocity of a mass on a spring, let go at ``release`` [m]."""
     time = np.arange(0, seconds, 1 / RATE)
@@ -212,7 +215,7 @@ def _motion(cubic: float, release: float, seconds: float = 2.5) -> tuple[np.ndar
     def change(_: float, x: np.ndarray) -> list[float]:
         return [x[1], -(K * x[0] + cubic * x[0] ** 3 + DAMPING * x[1]) / MASS]
 
-    motion = solve_ivp(change, (0, seconds), [release, 0.0], t_eval=time, rtol=1e-8, atol=1e-10).y
+    motion = solve_ivp(change, (0, seconds), [release, 0.0], t_eval=time, method="DOP853", rtol=1e-8, atol=1e-10).y
     return time, motion
 
 

@@ -95,6 +95,7 @@ def test_the_declaration_is_complete(effect: Effect) -> None:
     assert effect.is_off({**nominal, **{p.name: p.off for p in effect.amplitudes}})
 
 
+@pytest.mark.compiles
 @EACH
 def test_every_parameter_reaches_the_code(effect: Effect) -> None:
     names = [parameter.name for parameter in effect.parameters]
@@ -163,6 +164,7 @@ def _rig_motion(effects: dict[str, dict[str, float]]) -> np.ndarray:
     return simulate_rig(RIG, force, 1000.0, position=2e-3, effects=effects)
 
 
+@pytest.mark.compiles
 @EACH
 def test_off_changes_nothing_to_the_last_bit(effect: Effect, robot: Robot) -> None:
     """In every experiment, its own or not, and with its other parameters anywhere."""
@@ -178,6 +180,7 @@ def test_off_changes_nothing_to_the_last_bit(effect: Effect, robot: Robot) -> No
         assert np.array_equal(_rig_motion({effect.id: off}), _rig_motion({}))
 
 
+@pytest.mark.compiles
 @EACH
 def test_nominal_leaves_a_trace_that_an_instrument_shows(effect: Effect, robot: Robot) -> None:
     """In at least one of its experiments, by more than the converter's step, or by 0.1 N in a pull."""

@@ -73,6 +73,7 @@ def test_spectrum(logs: list[str], tmp_path: Path) -> None:
     assert answer["files"]
 
 
+@pytest.mark.slow
 def test_sweep(tmp_path: Path) -> None:
     over = ("--over", "lambda_max=0.5,1", "-e", "swivel", "--duration-s", "0.3", "--workers", "1", "-o", str(tmp_path))
     answer = answer_of("sweep", "p3at-extended", *over)
@@ -80,6 +81,7 @@ def test_sweep(tmp_path: Path) -> None:
     assert [run["lambda_max"] for run in answer["runs"]] == [0.5, 1.0]
 
 
+@pytest.mark.slow
 def test_geometry() -> None:
     check("geometry", answer_of("geometry", str(SCHEMAS.parent / "howto" / "measurements.yaml")))
 
@@ -134,6 +136,7 @@ def test_demo() -> None:
     check("demo", board.as_dict())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("make", EVERY, ids=lambda make: make.__name__)
 def test_diagnosis(make: Callable[[], Diagnosis]) -> None:
     """Every kind of verdict, as it is written to diagnosis.yaml and read back."""

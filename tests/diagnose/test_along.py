@@ -16,6 +16,7 @@ from ssmr_ident.identify.fitting.joint import JointFit
 SHAKEN = [Run(force=30.0), Run(force=12.0), Run(force=60.0)]
 
 
+@pytest.mark.slow
 def test_the_force_along_a_path_is_that_of_the_laws_formula() -> None:
     time = np.arange(4000) * 1e-3
     x, v = 1e-3 * np.sin(20.0 * time), 2e-2 * np.cos(20.0 * time)

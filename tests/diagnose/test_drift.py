@@ -43,6 +43,7 @@ def test_dry_friction_drifts_by_the_size_that_harmonic_balance_gives() -> None:
     assert np.all(np.abs(drift.value - expected)[middle] < 0.15)
 
 
+@pytest.mark.slow
 def test_nothing_is_read_where_nothing_drifts() -> None:
     read: list[Drift] = []
     for seed in range(8):

@@ -70,6 +70,7 @@ def test_the_unexplained_force_is_the_law_less_what_the_baseline_took_over() -> 
     assert np.corrcoef(surface.displacement**3, surface.before)[0, 1] > 0.5  # as far as no spring took it over
 
 
+@pytest.mark.slow
 def test_no_variable_is_named_where_the_force_is_noise() -> None:
     rng = np.random.default_rng(4)
     named = 0

@@ -75,6 +75,7 @@ def test_an_effect_is_begun_in_the_place_of_what_the_baseline_has_left_the_file_
     assert np.max(np.abs(in_its_place.point[: len(bent.point)])) < race.FAR
 
 
+@pytest.mark.slow
 def test_of_a_race_over_whole_recordings_each_effects_best_goes_on() -> None:
     """However many starts of the leader are ahead of it: two steps say little of where an effect ends."""
     law = {"alpha": 0.85, "yield_m": 1e-3}

@@ -34,6 +34,7 @@ def _target(bench: Bench, anchor_values: dict) -> Condition:
     return replace(one, looks=(seen,), mean=seen)
 
 
+@pytest.mark.slow
 def test_settled_finds_a_floor_from_a_wrong_start() -> None:
     parameters = read_parameters("p3at-extended").updated({"tire.sliding_speed_m_s": Estimate(0.3, 0.03, "m/s")})
     bench = Bench(parameters)

@@ -60,6 +60,7 @@ def test_without_hidden_physics_the_true_parameters_leave_the_noise(family: str,
         assert row.value < 1.03 * part.noise_floor()
 
 
+@pytest.mark.slow
 def test_no_word_of_a_session_tells_what_is_hidden(tmp_path: Path, tiny: Extent) -> None:
     for number, family in enumerate(FAMILIES, start=1):
         draw = ONE[family][0]

@@ -74,6 +74,7 @@ def test_a_diagnosis_that_changes_the_seals_ends_the_proof(tmp_path: Path, tiny:
         prove(1, 32, out, 1, (sys.executable, "-c", code), tiny)
 
 
+@pytest.mark.slow
 def test_a_kept_session_opens_beside_a_diagnosis_only(tmp_path: Path, tiny: Extent, pretended: tuple[str, ...]) -> None:
     from ssmr_proof.blind import run_blind
 

@@ -106,6 +106,7 @@ def test_every_log_is_listed_and_reads_without_a_warning(raw: Path, folder: str)
         assert not doubts, measurement.name
 
 
+@pytest.mark.slow
 def test_free_responses_have_the_shape_of_the_thesis(decays: Campaign) -> None:
     for motion in WHERE:
         trials = decays.of("free_response", motion=motion)
@@ -116,6 +117,7 @@ def test_free_responses_have_the_shape_of_the_thesis(decays: Campaign) -> None:
             assert recording.time[0] == 0.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("motion", WHERE)
 def test_natural_frequency_and_damping_come_back(decays: Campaign, robot: Robot, motion: str) -> None:
     channel, place = WHERE[motion]
@@ -182,6 +184,7 @@ RISES = (
 )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("stem", RISES)
 def test_first_rise_is_that_of_tires_body_and_cable_in_series(pulls: Campaign, robot: Robot, stem: str) -> None:
     for measurement in named(pulls, stem):

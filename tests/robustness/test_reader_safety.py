@@ -36,6 +36,7 @@ OWN_PROCESS = ("src/ssmr_ident/readers/apart.py", "src/ssmr_ident/readers/apart_
 """They speak through a pipe with a process of their own, and pickle what they say; no file is unpickled."""
 
 
+@pytest.mark.slow
 def test_package_neither_unpickles_nor_evaluates(root: Path) -> None:
     files = sorted((root / "src").rglob("*.py"))
     assert len(files) > 40

@@ -35,6 +35,7 @@ def test_every_engine_of_the_table_takes_a_campaign_and_a_seed() -> None:
         assert {"campaign", "seed"} <= set(inspect.signature(engine_named(name)).parameters)
 
 
+@pytest.mark.slow
 def test_what_is_drawn_for_nulls_has_nothing_missing_and_for_the_others_something() -> None:
     assert opened(NULL).right == ((),)
     drawn = [case for case in cases(("rigs",), 1) if case.key.startswith("bank/")]

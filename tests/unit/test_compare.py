@@ -107,6 +107,7 @@ def test_a_decay_is_explained_by_its_own_parameters_whatever_its_start(root: Pat
     assert wrong > 2.0 * right
 
 
+@pytest.mark.compiles
 def test_a_pull_finds_slack_and_zero(tmp_path: Path) -> None:
     simulate_to_file("p3at-extended", Request(PULL, duration_s=3.0), tmp_path / "pull.csv")
     rows = np.loadtxt(tmp_path / "pull.csv", delimiter=",", skiprows=1)

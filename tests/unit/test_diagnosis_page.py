@@ -23,6 +23,8 @@ from ssmr_ident.report.diagnosis_pictures import scalar
 from ssmr_ident.report.html import Number, Page, Table
 from ssmr_ident.report.svg import inline
 
+pytestmark = pytest.mark.slow
+
 
 class _Elements(HTMLParser):
     """All start tags with their attributes, and the text."""

@@ -122,6 +122,7 @@ def test_one_bad_log_does_not_hide_the_others(tmp_path: Path) -> None:
     assert "Traceback" not in result.stderr
 
 
+@pytest.mark.slow
 def test_error_is_one_line_and_status_2(tmp_path: Path) -> None:
     result = subprocess.run(
         [sys.executable, "-m", "ssmr_ident", "inspect", str(tmp_path / "none.csv")],

@@ -124,6 +124,7 @@ def test_a_moved_foot_is_told_by_its_name_or_by_what_answers(tmp_path: Path, hea
     assert fit.parameters.number("mass_kg") == pytest.approx(2.0, rel=0.01)  # nothing tells it
 
 
+@pytest.mark.slow
 def test_two_machines_become_one_recording(tmp_path: Path) -> None:
     for number in (1, 2):
         made = event(np.random.default_rng(10 + number), hertz=(4.5,), mass=3.0, seconds=14.0, band=(0.5, 9.0))
@@ -146,6 +147,7 @@ def test_two_machines_become_one_recording(tmp_path: Path) -> None:
     assert fit.parameters.number("damping_N_s_m") == pytest.approx(2 * 0.03 * 3.0 * 2 * math.pi * 4.5, rel=0.03)
 
 
+@pytest.mark.slow
 def test_logs_with_nothing_in_common_are_left_out_and_said(tmp_path: Path) -> None:
     rng = np.random.default_rng(30)
     one, other = (event(np.random.default_rng(seed), seconds=12.0) for seed in (31, 32))

@@ -123,6 +123,7 @@ def robot_logs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.mark.slow
 def test_a_robot_s_folder_becomes_a_session_that_fit_takes(robot_logs: Path) -> None:
     before = {path.name: hashlib.sha256(path.read_bytes()).digest() for path in robot_logs.iterdir()}
     draft = draft_session(robot_logs, Told(robot="p3at-extended"))
@@ -156,6 +157,7 @@ def test_an_open_question_is_named_with_its_line(robot_logs: Path, tmp_path: Pat
         fit_session(tmp_path)
 
 
+@pytest.mark.slow
 def test_a_rig_gets_its_first_values_from_the_logs(tmp_path: Path) -> None:
     """8 kg, 20 kN/m, 50 N s/m, pushed by noise: found within a few percent, without a word from the user."""
     (tmp_path / "rig.yaml").write_text(

@@ -92,6 +92,7 @@ def test_long_and_short_ways_agree(tmp_path: Path) -> None:
     np.testing.assert_array_equal(recording.time, [float(line.split(",")[0]) for line in lines])
 
 
+@pytest.mark.slow
 def test_agrees_with_pandas(tmp_path: Path) -> None:
     rng = np.random.default_rng(8)
     table = pd.DataFrame({"Time (s)": np.arange(400_000) / 1000, "Load (N)": rng.standard_normal(400_000)})

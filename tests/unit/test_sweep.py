@@ -88,6 +88,7 @@ def test_slips_are_those_of_the_plane_on_a_level_robot() -> None:
             assert found[row, wheel] == pytest.approx(slip(rate, hub, robot.radius))
 
 
+@pytest.mark.slow
 def test_a_sweep_writes_everything_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     axes = [axis_of("lambda_max=0.5,1")]
     points = points_of("p3at-extended", axes, SHORT, repeats=2)

@@ -7,14 +7,13 @@ import importlib
 import io
 import logging
 import os
-import signal
 import sys
 from typing import Annotated, Any, NoReturn
 
 import typer
 
 from ssmr_ident.core.errors import InputError, SimulationError
-from ssmr_ident.core.stopping import STOPPED, asked
+from ssmr_ident.core.stopping import asked
 
 # Matrices here are small, and threads of the linear algebra only wait for each other: on a busy machine a decay fit
 # takes twenty times as long. Set before numpy is first imported, which each verb does on its own.
