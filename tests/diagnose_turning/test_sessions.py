@@ -1,8 +1,7 @@
-"""Whole sessions of swivels: simulated ones whose truth is known, and the shared practice."""
+"""Whole sessions of swivels, simulated, so that their truth is known. Practice sessions: `make bench-doctor`."""
 
 from __future__ import annotations
 
-import json
 from dataclasses import replace
 from pathlib import Path
 
@@ -17,7 +16,7 @@ from ssmr_ident.diagnose.turning import diagnose_turning
 from ssmr_ident.diagnose.turning.bench import STEP, Bench, measure
 from ssmr_ident.diagnose.turning.conditions import conditions_of, held_back
 from ssmr_ident.diagnose.turning.spectral_distance import channel_logs, distance_db
-from ssmr_ident.experiments.campaign import Campaign, Measurement, load
+from ssmr_ident.experiments.campaign import Campaign, Measurement
 from ssmr_ident.experiments.swivel import swivel
 from ssmr_ident.physics.motor import wheel_rates
 from ssmr_ident.physics.robot import robot_from_parameters
@@ -126,20 +125,3 @@ def test_the_step_of_the_search_is_short_enough():
         logs.append(np.mean(looks, axis=0))
     assert usual is not None
     assert distance_db(*logs) < 1.5
-
-
-@pytest.mark.shared
-@pytest.mark.parametrize(("name", "verdict", "effect"), [("practice-20", "missing_physics", "ground_joints"),
-                                                         ("practice-21", "nothing_missing", None)])  # fmt: skip
-def test_practice(shared, name, verdict, effect):
-    folder = shared / "practice" / name
-    found = diagnose_turning(load(folder / "session"))
-    assert found.verdict == verdict
-    if effect:
-        assert found.effects[0].id == effect
-        before, after = (
-            compare(load(folder / "heldout"), p).overall["log_psd_db"] for p in (found.before, found.after)
-        )
-        assert after < 2.0 / 3.0 * before
-        repeats = json.loads((folder / "truth.json").read_text(encoding="utf-8"))["heldout"]["noise_floor"]
-        assert after < repeats + 1.5

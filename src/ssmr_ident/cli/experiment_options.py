@@ -28,6 +28,9 @@ PushN = Annotated[
     typer.Option("--push-N", help="Free response: pushed by this force and let go, instead of --amplitude-mm."),
 ]
 Direction = Annotated[str, typer.Option(help="Pull: lateral or longitudinal.")]
+AngleDeg = Annotated[
+    float | None, typer.Option(help="Pull: from straight behind (0) to the left (90), instead of --direction.")
+]
 SpeedMmS = Annotated[float, typer.Option(help="Pull, drag, compression: speed of the head.")]
 HeightM = Annotated[float, typer.Option(help="Pull: height of the cable above the floor.")]
 WheelsGripping = Annotated[str, typer.Option(help="Pull: wheels that grip, such as 1,2.")]

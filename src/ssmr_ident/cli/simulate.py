@@ -20,6 +20,7 @@ EXAMPLES = (
     "ident simulate params.yaml -e swivel --yaw-rate-deg-s 45 -o swivel.csv",
     "ident simulate p3at-extended -e swivel --yaw-rate-deg-s 10 --contact printed_6_4 -o swivel.csv",
     "ident simulate p3at-extended -e pull --direction lateral --cable rope -o pull-1.txt",
+    "ident simulate p3at-extended -e pull --angle-deg 45 --cable rope -o pull-2.txt",
     "ident simulate p3at-extended -e free_response --effect dry_friction:F_c_N=2 -o roll-1.csv",
     "ident simulate rig.yaml -e forced --force shaker.csv -o answer.csv",
 )
@@ -38,6 +39,7 @@ def command(
     start: asked.Start = "tilted",
     push_n: asked.PushN = 0.0,
     direction: asked.Direction = "lateral",
+    angle_deg: asked.AngleDeg = None,
     speed_mm_s: asked.SpeedMmS = 1.0,
     height_m: asked.HeightM = 0.05,
     wheels_gripping: asked.WheelsGripping = "1,2,3,4",
@@ -64,7 +66,7 @@ def command(
     from ssmr_ident.workflows.simulate import Request, experiment_of, simulate_to_file, wheels_of
 
     conditions = Conditions(
-        motion=motion, amplitude_mm=amplitude_mm, start=start, push_N=push_n, direction=direction,
+        motion=motion, amplitude_mm=amplitude_mm, start=start, push_N=push_n, direction=direction, angle_deg=angle_deg,
         speed_mm_s=speed_mm_s, height_m=height_m, wheels_gripping=wheels_of(wheels_gripping), cable=cable,
         wheel_rate_rad_s=wheel_rate_rad_s, free_normal=free_normal, yaw_rate_deg_s=yaw_rate_deg_s,
         speed_m_s=speed_m_s,

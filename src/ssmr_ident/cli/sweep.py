@@ -44,6 +44,7 @@ def command(
     start: asked.Start = "tilted",
     push_n: asked.PushN = 0.0,
     direction: asked.Direction = "lateral",
+    angle_deg: asked.AngleDeg = None,
     speed_mm_s: asked.SpeedMmS = 1.0,
     height_m: asked.HeightM = 0.05,
     wheels_gripping: asked.WheelsGripping = "1,2,3,4",
@@ -74,7 +75,7 @@ def command(
     if figure_format not in ("png", "svg", "pdf"):
         raise InputError("--format", f"is {figure_format!r}", did_you_mean(figure_format, ("png", "svg", "pdf")))
     conditions = Conditions(
-        motion=motion, amplitude_mm=amplitude_mm, start=start, push_N=push_n, direction=direction,
+        motion=motion, amplitude_mm=amplitude_mm, start=start, push_N=push_n, direction=direction, angle_deg=angle_deg,
         speed_mm_s=speed_mm_s, height_m=height_m, wheels_gripping=wheels_of(wheels_gripping), cable=cable,
         wheel_rate_rad_s=wheel_rate_rad_s, yaw_rate_deg_s=yaw_rate_deg_s, speed_m_s=speed_m_s,
     )  # fmt: skip

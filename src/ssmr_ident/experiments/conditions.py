@@ -29,6 +29,8 @@ class Conditions:
         Steady force from which it is let go in place of ``amplitude_mm``, where not 0.
     direction : {"lateral", "longitudinal"}
         Of a pull.
+    angle_deg : float or None
+        Of a pull that is neither: from straight behind (0) to the left (90).
     speed_mm_s : float
         Of a testing machine's head.
     height_m : float
@@ -52,6 +54,7 @@ class Conditions:
     start: Annotated[str, Choice(("tilted", "vertical"))] = "tilted"
     push_N: Annotated[float, Number("N", least=-1e9, most=1e9)] = 0.0
     direction: Annotated[str, _ENTRY["direction"][0]] = "lateral"
+    angle_deg: Annotated[float | None, Number("deg", least=0.0, most=90.0)] = None
     speed_mm_s: Annotated[float, _ENTRY["speed_mm_s"][0]] = 1.0
     height_m: Annotated[float, _ENTRY["height_m"][0]] = 0.05
     wheels_gripping: Annotated[tuple[int, ...], _ENTRY["wheels_gripping"][0]] = (1, 2, 3, 4)

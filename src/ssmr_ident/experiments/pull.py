@@ -62,6 +62,7 @@ def _scenario(robot: Robot, conditions: Conditions, duration: float) -> Scenario
         conditions.speed_mm_s,
         duration,
         conditions.cable,
+        angle_deg=conditions.angle_deg,
         height=conditions.height_m,
         wheels_gripping=conditions.wheels_gripping,
         wheel_rates=np.full((1, 2), conditions.wheel_rate_rad_s),

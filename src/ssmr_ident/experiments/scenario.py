@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
@@ -37,6 +38,8 @@ class Scenario:
     head_step : float [s]
     direction : str
         ``lateral`` pulls along +y, ``longitudinal`` along -x (backwards, as in section 3.3).
+    angle_deg : float or None [deg]
+        Of the cable, from straight behind (0) to the left (90), where ``direction`` does not say it.
     height : float [m]
         Of the cable above the floor.
     wheels_gripping : tuple of int
@@ -56,11 +59,20 @@ class Scenario:
     head: Array = field(default_factory=lambda: np.zeros(0))
     head_step: float = 1.0
     direction: str = "lateral"
+    angle_deg: float | None = None
     height: float = 0.05
     wheels_gripping: tuple[int, ...] = (1, 2, 3, 4)
     cable_stiffness: float | None = None
     cable_damping: float | None = None
     held: bool = False
+
+    @property
+    def along(self) -> Array:
+        """Unit vector of the pull in the robot's axes (x ahead, y to the left); (2,) float."""
+        if self.angle_deg is not None:
+            angle = math.radians(self.angle_deg)
+            return np.array([-math.cos(angle), math.sin(angle)])
+        return np.array([0.0, 1.0] if self.direction == "lateral" else [-1.0, 0.0])
 
     @property
     def pulled(self) -> bool:

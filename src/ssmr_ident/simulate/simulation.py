@@ -186,10 +186,12 @@ def _pulling(robot: Robot, scenario: Scenario, active: Effects) -> np.ndarray:
             softer = change(stiffness, **values)
             damping, stiffness = damping * math.sqrt(softer / stiffness), softer
     q[PULLED], q[CABLE_K], q[CABLE_D], q[HELD] = 1.0, stiffness, damping, float(scenario.held)
-    q[PULL_X], q[PULL_Y] = (0.0, 1.0) if scenario.direction == "lateral" else (-1.0, 0.0)
-    # the hook sits above the contact points, on the side that is pulled; its height counts from the unloaded floor
-    q[HOOK_X] = 0.0 if scenario.direction == "lateral" else float(robot.contact_points[:, 0].min())
-    q[HOOK_Y] = robot.half_track if scenario.direction == "lateral" else 0.0
+    q[[PULL_X, PULL_Y]] = scenario.along
+    # the hook sits above the edge of the contact points, on the line through the centre of mass along which is pulled;
+    # its height counts from the unloaded floor
+    edges = (abs(robot.contact_points[:, 0].min()), robot.half_track)
+    reach = min(edge / abs(share) for edge, share in zip(edges, scenario.along, strict=True) if share != 0.0)
+    q[[HOOK_X, HOOK_Y]] = reach * scenario.along
     q[HOOK_Z] = scenario.height - robot.height
     along = np.array([q[PULL_X], q[PULL_Y], 0.0])
     turning = np.cross(q[[HOOK_X, HOOK_Y, HOOK_Z]], along)

@@ -19,8 +19,8 @@ FLOORS = {"concrete": 0.86, "carpet": 0.98}
 """µ_s of section 3.3; µ_k keeps its ratio to µ_s. Other floors come as parameter files, ``robot=A.yaml,B.yaml``."""
 
 _NUMBERS = {
-    "amplitude_mm": "mm", "push_N": "N", "speed_mm_s": "mm/s", "height_m": "m", "wheel_rate_rad_s": "rad/s",
-    "yaw_rate_deg_s": "deg/s", "speed_m_s": "m/s",
+    "amplitude_mm": "mm", "push_N": "N", "speed_mm_s": "mm/s", "height_m": "m", "angle_deg": "deg",
+    "wheel_rate_rad_s": "rad/s", "yaw_rate_deg_s": "deg/s", "speed_m_s": "m/s",
 }  # fmt: skip
 _OPTIONS = ("motion", "start", "direction", "cable")
 _WORDS = ("robot", "floor", "contact", *_OPTIONS)
