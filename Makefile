@@ -11,21 +11,22 @@ export OPENBLAS_NUM_THREADS ?= 1
 demo: $(VENV)/.runtime
 	$(BIN)/ident demo -o out
 
-# types on one processor while the other compiles what the tests need; then the tests, on both
+# types and examples on one processor while the other compiles what the tests need; then the tests, on both
 test: $(VENV)/.test
 	$(MAKE) --no-print-directory -j2 static compiled
-	$(BIN)/pytest -n 3 --dist worksteal -m "not slow and not compiles"
+	$(BIN)/pytest -n 2 --dist worksteal -m "not slow and not compiles" tests
 
 static: $(VENV)/.test
 	$(BIN)/ruff check . && $(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+	$(BIN)/pytest src
 
 compiled: $(VENV)/.test
-	$(BIN)/pytest -m "compiles and not slow" tests
+	$(BIN)/pytest -m "compiles and not slow" $$(grep -rl --include="*.py" mark.compiles tests)
 
 test-all: test
-	$(BIN)/pytest -n 3 --dist worksteal -m slow
+	$(BIN)/pytest -n 3 --dist worksteal -m slow tests
 
 check: $(VENV)/.test
 	$(BIN)/ruff check --fix . && $(BIN)/ruff format . && $(BIN)/mypy && $(BIN)/lint-imports
