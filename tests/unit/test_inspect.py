@@ -102,6 +102,16 @@ def test_folder(tmp_path: Path) -> None:
     code, text, _ = run(tmp_path, "--json")
     assert code == 0
     assert [Path(log["file"]).name for log in json.loads(text)["logs"]] == ["a.xlsx", "b.csv"]
+    (tmp_path / "runs" / "deep").mkdir(parents=True)
+    (tmp_path / ".git").mkdir()
+    for place in ("runs/deep", ".git"):
+        write_csv(tmp_path / place / "c.csv", recording())
+    code, text, _ = run(tmp_path)
+    assert code == 0
+    assert [line.partition(": reader")[0].partition(" (")[0] for line in text.splitlines()[:3]] == [
+        str(tmp_path / name) for name in ("a.xlsx", "b.csv", "runs/deep/c.csv")
+    ]
+    assert text.splitlines()[3].startswith("in common of 3 recordings: 1000 Hz; ")
     (tmp_path / "empty").mkdir()
     _, _, error = run(tmp_path / "empty")
     assert isinstance(error, InputError)

@@ -92,6 +92,18 @@ def test_a_rotary_rig_has_rotary_keys(tmp_path: Path) -> None:
     assert known.number("stiffness_N_m_rad") == pytest.approx(0.05 * (2 * math.pi * 1.3) ** 2, rel=0.02)
 
 
+def test_a_velocity_in_radians_is_an_angular_rate(tmp_path: Path) -> None:
+    torque = np.random.default_rng(8).normal(size=1200)
+    time = np.arange(1200) / RATE
+    rate = np.cumsum(torque) / RATE / 0.012  # of 0.012 kg m^2 alone
+    _write(tmp_path / "run1.csv", "time [s],torque [N*m],velocity [rad/s]", time, torque, rate)
+    draft = _ready(tmp_path, Told(mass=0.012))
+    assert draft.guesses[0].fields["channels"] == {"angular_rate": "velocity"}
+    assert "inertia_kg_m2" in draft.parameters_text
+    (measurement,) = load(tmp_path).measurements
+    np.testing.assert_allclose(measurement.recording["angular_rate"], rate, rtol=1e-5, atol=1e-6)
+
+
 def test_a_shaker_with_one_axis_named_is_a_rig(tmp_path: Path) -> None:
     made = event(np.random.default_rng(4), hertz=(6.0,), mass=1.7, seconds=15.0)
     rng = np.random.default_rng(5)

@@ -224,6 +224,10 @@ def test_a_wrong_call_is_refused(robot_logs: Path, call: dict, told: str) -> Non
 def test_a_folder_without_logs_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="without logs"):
         draft_session(tmp_path)
+    (tmp_path / "runs").mkdir()
+    (tmp_path / "runs" / "a.csv").write_text("time,force\n0,1\n")
+    with pytest.raises(InputError, match=r"Name a folder in it: .*runs"):
+        draft_session(tmp_path)
     with pytest.raises(InputError, match="is no folder"):
         draft_session(tmp_path / "nowhere")
 

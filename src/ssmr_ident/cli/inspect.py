@@ -8,6 +8,8 @@ from typing import Annotated, Literal
 
 import typer
 
+from ssmr_ident.cli.reading_options import Columns, RateHz, Units, pairs
+
 EXAMPLES = (
     "ident inspect roll-1.xlsx pull-3.txt",
     "ident inspect data/raw/pulls",
@@ -18,23 +20,19 @@ EXAMPLES = (
 
 
 def command(
-    paths: Annotated[list[Path], typer.Argument(metavar="FILE...", help="Logs, or folders with logs in them.")],
+    paths: Annotated[
+        list[Path], typer.Argument(metavar="FILE...", help="Logs, or folders with logs in or below them.")
+    ],
     reader: Annotated[
         str | None,
         typer.Option("--reader", help="Such as csv, lvm, tdms, labview-xlsx, mat; left out, the content decides."),
     ] = None,
-    columns: Annotated[
-        str | None, typer.Option("--columns", metavar="QUANTITY=COLUMN,...", help="Such as time=0,force=2.")
-    ] = None,
-    units: Annotated[
-        str | None, typer.Option("--units", metavar="COLUMN=UNIT,...", help="Such as force=lbf,position=in.")
-    ] = None,
+    columns: Columns = None,
+    units: Units = None,
     sheets: Annotated[
-        str | None, typer.Option("--sheets", metavar="AXIS=SHEET,...", help="Such as x=4,y=3,z=2.")
+        list[str] | None, typer.Option("--sheets", metavar="AXIS=SHEET,...", help="Such as x=4,y=3,z=2.")
     ] = None,
-    fs: Annotated[
-        float | None, typer.Option("--fs", metavar="HZ", help="Sampling rate, instead of the log's own time.")
-    ] = None,
+    fs: RateHz = None,
     time_unit: Annotated[
         str | None, typer.Option("--time-unit", metavar="UNIT", help="Of the time column: s, ms, us.")
     ] = None,
@@ -97,7 +95,7 @@ def command(
         raise InputError("ident inspect", str(error), "See ident inspect --help.") from error
     if not 0 < mains < float("inf"):
         raise InputError("--mains", f"{mains} is no frequency", "Give 50 or 60.")
-    files, unread = logs_in(paths)
+    files, unread = logs_in(paths, below=True)
     overview = any(path.is_dir() for path in paths)
     summaries, errors = [], list(unread)
     for file in files:
@@ -147,18 +145,3 @@ def command(
         print(f"ident: {' '.join(str(problem).split())}", file=sys.stderr)
     if errors:
         raise typer.Exit(2)
-
-
-def pairs(option: str, text: str | None) -> dict[str, str]:
-    """``a=1,b=2`` as a mapping."""
-    from ssmr_ident.core.errors import InputError
-
-    pairs = {}
-    for pair in (text or "").split(","):
-        if not pair.strip():
-            continue
-        key, sign, value = (part.strip() for part in pair.partition("="))
-        if not (key and sign and value):
-            raise InputError(option, f"{pair!r} is no pair", "Write for example force=2,time=0.")
-        pairs[key] = value
-    return pairs

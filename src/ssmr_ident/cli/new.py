@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from ssmr_ident.cli import completion
-
-if TYPE_CHECKING:
-    from ssmr_ident.workflows.new.draft import Draft
+from ssmr_ident.cli.reading_options import Columns, RateHz, Units, pairs
 
 EXAMPLES = (
     "ident new my-logs --mass-kg 2.0",
@@ -45,15 +43,9 @@ def command(
     experiment: Annotated[
         str, typer.Option(help="How every log of a rig or a block was made; left out, the samples decide.")
     ] = "",
-    columns: Annotated[
-        str | None, typer.Option("--columns", metavar="QUANTITY=COLUMN,...", help="Such as time=0,force=2.")
-    ] = None,
-    units: Annotated[
-        str | None, typer.Option("--units", metavar="COLUMN=UNIT,...", help="Such as force=lbf,position=in.")
-    ] = None,
-    fs: Annotated[
-        float | None, typer.Option("--fs", metavar="HZ", help="Sampling rate, instead of the logs' own time.")
-    ] = None,
+    columns: Columns = None,
+    units: Units = None,
+    fs: RateHz = None,
     answers: Annotated[
         list[str] | None,
         typer.Option(
@@ -74,7 +66,7 @@ def command(
     from dataclasses import replace
 
     from ssmr_ident.cli.answer import print_json
-    from ssmr_ident.cli.inspect import pairs
+    from ssmr_ident.cli.new_questions import typed
     from ssmr_ident.cli.progress import progress
     from ssmr_ident.core.errors import InputError
     from ssmr_ident.workflows.new.draft import refuse_existing
@@ -99,7 +91,7 @@ def command(
         draft = draft_session(session, told, step)
     terminal = sys.stdin.isatty() and sys.stdout.isatty() and not quiet and not as_json
     if terminal if ask is None else ask:
-        given = _asked(draft)
+        given = typed(draft)
         if given:
             draft = draft_session(session, replace(told, answers={**told.answers, **given}))
     paths = draft.write()
@@ -109,24 +101,6 @@ def command(
         typer.echo(str(draft))
         typer.echo(f"written: {paths[0]}, {paths[1]}")
         typer.echo(f"{'fill in what is asked, then' if draft.questions else 'next'}: {draft.next_command}")
-
-
-def _asked(draft: Draft) -> dict[str, str]:
-    """What the user answers; an empty line keeps the guess."""
-    given = {}
-    typer.echo(
-        f"{draft.folder}: {len(draft.guesses)} recordings of {draft.system}. An empty line keeps [what is shown]."
-    )
-    for guess in draft.suggestions:
-        typer.echo(f"  {guess.why}")
-        answer = typer.prompt(f"  {guess.key}", default=str(guess.value))
-        if answer != str(guess.value):
-            given[guess.key] = answer
-    for key, question in draft.open_keys:
-        answer = typer.prompt(f"  {key}: {question}", default="", show_default=False)
-        if answer:
-            given[key] = answer
-    return given
 
 
 def _answers(texts: list[str]) -> dict[str, str]:

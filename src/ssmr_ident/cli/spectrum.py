@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
+from ssmr_ident.cli.reading_options import RateHz, Units, pairs
+
 if TYPE_CHECKING:
     from ssmr_ident.workflows.spectrum.run import SpectrumReport
 
@@ -43,12 +45,8 @@ def command(
     sample: Annotated[
         int | None, typer.Option("--sample", help="Which recording of a bare log that holds several.")
     ] = None,
-    fs: Annotated[
-        float | None, typer.Option("--fs", metavar="HZ", help="Sampling rate of bare logs, instead of their own.")
-    ] = None,
-    units: Annotated[
-        list[str] | None, typer.Option("--units", metavar="COLUMN=UNIT", help="Unit of a column of bare logs.")
-    ] = None,
+    fs: RateHz = None,
+    units: Units = None,
     format: Annotated[Literal["png", "svg", "pdf"], typer.Option("--format", help="Of the figures.")] = "png",
     figures: Annotated[bool, typer.Option("--figures/--no-figures", help="Draw figures into OUT.")] = True,
     appendix_a: Annotated[
@@ -74,7 +72,7 @@ def command(
         raise InputError("--appendix-a", "writes files", "Say where with -o")
     if sample is not None and sample < 1:
         raise InputError("--sample", f"{sample} is no recording", "Count from 1.")
-    options = ReadOptions(reader=reader, sample=sample, fs=fs, units=_units(units or []))
+    options = ReadOptions(reader=reader, sample=sample, fs=fs, units=pairs("--units", units))
     progress = None if quiet or not sys.stderr.isatty() else _progress
     choices = SpectrumChoices(part, low_pass, half_width, _band(band))
     report = spectrum(paths, choices, options=options, progress=progress)
@@ -110,18 +108,6 @@ def _band(text: str) -> tuple[float, float]:
     if not 0 <= edges[0] < edges[1] < float("inf"):
         raise InputError("--band", f"{text!r} is no band", "Write for example 0.2:50.")
     return edges
-
-
-def _units(pairs: list[str]) -> dict[str, str]:
-    from ssmr_ident.core.errors import InputError
-
-    units = {}
-    for pair in pairs:
-        column, sign, unit = pair.partition("=")
-        if not (column and sign and unit):
-            raise InputError("--units", f"{pair!r} is no unit of a column", "Write for example --units load=N.")
-        units[column] = unit
-    return units
 
 
 def _print_json(report: SpectrumReport) -> None:

@@ -8,6 +8,8 @@ from importlib.metadata import entry_points
 from pathlib import Path
 from typing import Protocol
 
+import numpy as np
+
 from ssmr_ident.core.errors import InputError, did_you_mean
 from ssmr_ident.core.recording import Recording
 from ssmr_ident.readers.admet import mtwdata
@@ -110,7 +112,8 @@ def _read_source(source: Source, options: ReadOptions) -> list[Recording]:
     reader = reader_for(source, options)
     if source.kind in KINDS:
         return read_apart(source, options)
-    return list(reader.read(source, options))
+    with np.errstate(over="ignore", invalid="ignore"):  # a damaged sample may be any number: refuse_out_of_reach tells
+        return list(reader.read(source, options))
 
 
 def read_one(path: str | Path, options: ReadOptions = ReadOptions()) -> Recording:  # noqa: B008 - frozen

@@ -9,15 +9,21 @@ from ssmr_ident.core.errors import InputError
 
 LOG_EXTENSIONS = frozenset(
     {
-        *(".xlsx", ".xlsm", ".lvm", ".tdms", ".csv", ".txt", ".dat", ".asc", ".tsv", ".mtwdata", ".mtxdata"),
-        *(".mat", ".h5", ".hdf5", ".parquet", ".feather", ".jsonl", ".ndjson", ".npz", ".uff", ".unv", ".wav", ".zip"),
-        *(".bag", ".mcap", ".db3"),
+        *(".xlsx", ".xlsm", ".lvm", ".tdms", ".csv", ".txt", ".dat", ".asc", ".tsv", ".log", ".mtwdata", ".mtxdata"),
+        *(".mat", ".h5", ".hdf5", ".parquet", ".feather", ".jsonl", ".ndjson", ".npz", ".npy", ".uff", ".unv"),
+        *(".wav", ".zip", ".bag", ".mcap", ".db3"),
     }
 )
 
 
-def logs_in(paths: Iterable[Path]) -> tuple[list[Path], list[InputError]]:
+def logs_in(paths: Iterable[Path], *, below: bool = False) -> tuple[list[Path], list[InputError]]:
     """Files as named, and the logs in folders that are named.
+
+    Parameters
+    ----------
+    paths : iterable of Path
+    below : bool
+        Whether those in folders within them count as well, after a folder's own.
 
     Returns
     -------
@@ -31,13 +37,28 @@ def logs_in(paths: Iterable[Path]) -> tuple[list[Path], list[InputError]]:
         if not path.is_dir():
             files.append(path)
             continue
-        found = sorted(
-            entry
-            for entry in path.iterdir()
-            if entry.suffix.lower() in LOG_EXTENSIONS and not entry.name.startswith(("~$", ".")) and entry.is_file()
-        )
+        found = _below(path) if below else _of(path)
         if not found:
             kinds = ", ".join(sorted(LOG_EXTENSIONS))
-            errors.append(InputError(str(path), "is a folder without logs", f"Logs end in {kinds}."))
+            within = [] if below else [folder for folder in _folders(path) if _below(folder)]
+            mend = f"Name a folder in it: {', '.join(map(str, within[:3]))}." if within else f"Logs end in {kinds}."
+            errors.append(InputError(str(path), "is a folder without logs", mend))
         files += found
     return files, errors
+
+
+def _shown(entry: Path) -> bool:
+    return not entry.name.startswith(("~$", "."))
+
+
+def _of(folder: Path) -> list[Path]:
+    return sorted(e for e in folder.iterdir() if e.suffix.lower() in LOG_EXTENSIONS and _shown(e) and e.is_file())
+
+
+def _folders(folder: Path) -> list[Path]:
+    """Folders in a folder; links are not followed, for they may lead back."""
+    return sorted(e for e in folder.iterdir() if _shown(e) and e.is_dir() and not e.is_symlink())
+
+
+def _below(folder: Path) -> list[Path]:
+    return _of(folder) + [log for inner in _folders(folder) for log in _below(inner)]

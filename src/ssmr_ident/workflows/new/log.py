@@ -16,6 +16,7 @@ import numpy as np
 from ssmr_ident.core.recording import Recording
 from ssmr_ident.core.units import QUANTITY_OF_UNIT
 from ssmr_ident.experiments import EXPERIMENTS, FORCED, FREE_RESPONSE, PULL, SWIVEL, VERTICAL_COMPRESSION, Experiment
+from ssmr_ident.readers.table.headings import SI_UNIT
 from ssmr_ident.session.entry import QUANTITIES
 from ssmr_ident.signals.filters import low_pass
 from ssmr_ident.workflows.new.names import NameHints, hints_of
@@ -162,11 +163,12 @@ class Quantities:
 
 def quantities_of(recording: Recording) -> Quantities:
     """Samples by quantity; a header that names none is taken by its unit where only one column has it."""
-    named = {c.name: c.samples for c in recording.channels if c.name in SCALES}
+    sound = [c for c in recording.channels if c.name not in SI_UNIT or c.unit in (SI_UNIT[c.name], "V", "")]
+    named = {c.name: c.samples for c in sound if c.name in SCALES}  # velocity [rad/s] is an angular rate
     mapping: dict[str, str] = {}
     several: dict[str, tuple[str, ...]] = {}
     reason = "by their units?"
-    strangers = [c for c in recording.channels if c.name not in QUANTITIES]
+    strangers = [c for c in recording.channels if c.name not in QUANTITIES or not any(c is one for one in sound)]
     for channel in strangers:
         header = channel.label or channel.name
         quantity = SYMBOLS.get(header.lower()) if channel.unit == "" else QUANTITY_OF_UNIT.get(channel.unit)

@@ -12,24 +12,21 @@ from typing import Any
 import yaml
 
 from ssmr_ident.core.errors import InputError, did_you_mean
-from ssmr_ident.core.place import Place
 from ssmr_ident.experiments import EXPERIMENTS
 from ssmr_ident.readers import ReadOptions, read
 from ssmr_ident.readers.folder import logs_in
 from ssmr_ident.session import bundled_robots
 from ssmr_ident.session.entry import BASELINES
-from ssmr_ident.session.schema import KEYS
+from ssmr_ident.workflows.new.answers import Answers, answered, mass_in
 from ssmr_ident.workflows.new.block import block_text, guess_pull
 from ssmr_ident.workflows.new.draft import Draft, Guess
 from ssmr_ident.workflows.new.log import LogGuess, guess_log
 from ssmr_ident.workflows.new.machines import pairs_among
 from ssmr_ident.workflows.new.rig import rig_text
 from ssmr_ident.workflows.new.rig_log import guess_rig
-from ssmr_ident.workflows.new.robot import QUESTIONS, robot_text
+from ssmr_ident.workflows.new.robot import robot_text
 from ssmr_ident.workflows.new.session_text import session_text
 from ssmr_ident.workflows.new.system import BASELINE, Log, system_of
-
-Answers = Mapping[str, str]
 
 
 @dataclass(frozen=True)
@@ -121,8 +118,8 @@ def draft_session(folder: Path, told: Told | None = None, progress: Callable[[in
     if not listed:
         raise _nothing(folder, len(files), aside)
     listed = tuple(_with_reading(guess, told) for guess in listed)
-    listed, of_parameters = _answered(listed, told.answers, system)
-    mass = _mass(of_parameters, told) if system != "robot" else None
+    listed, of_parameters = answered(listed, told.answers, system)
+    mass = mass_in(of_parameters, told.mass) if system != "robot" else None
     name = re.sub(r"[^\w.-]+", "-", folder.resolve().name).strip("-") or "session"
     baseline = told.baseline or BASELINE[system]
     text = {"rig": rig_text, "block": block_text}.get(system)
@@ -191,41 +188,6 @@ def _guesses(
 def _with_reading(guess: LogGuess, told: Told) -> LogGuess:
     """What the user told the readers, for when the session is read."""
     return replace(guess, fields=dict(guess.fields) | told.reading) if told.reading else guess
-
-
-def _answered(
-    guesses: tuple[LogGuess, ...], answers: Answers, system: str
-) -> tuple[tuple[LogGuess, ...], dict[str, Any]]:
-    """Guesses with the caller's own values in the keys that they have; and what is left for the parameter file."""
-    keys = {key for guess in guesses for key in guess.fields} - {"file", "files", "sample"}
-    files = {guess.file for guess in guesses}
-    known = set(QUESTIONS) if system == "robot" else {"mass_kg", "inertia_kg_m2"}
-    of_parameters: dict[str, Any] = {}
-    for key, value in answers.items():
-        file, colon, own = key.rpartition(":")
-        if colon and (file not in files or own not in keys):
-            raise InputError("--set", f"no recording here is {file!r} with {own!r}", did_you_mean(file, files))
-        if not colon and key in known:
-            of_parameters[key] = yaml.safe_load(value)
-        elif not colon and key not in keys:
-            raise InputError("--set", f"no recording here asks for {key!r}", did_you_mean(key, keys | known))
-    return tuple(_one_answered(guess, answers) for guess in guesses), of_parameters
-
-
-def _one_answered(guess: LogGuess, answers: Answers) -> LogGuess:
-    given = {key: answers.get(f"{guess.file}:{key}", answers.get(key)) for key in guess.fields}
-    fields = {
-        key: value if given[key] is None else yaml.safe_load(str(given[key])) for key, value in guess.fields.items()
-    }
-    reasons = {key: reason for key, reason in guess.reasons.items() if given.get(key) is None}
-    return replace(guess, fields=fields, reasons=reasons)
-
-
-def _mass(answers: Mapping[str, Any], told: Told) -> float | None:
-    given = next(((key, answers[key]) for key in ("mass_kg", "inertia_kg_m2") if key in answers), None)
-    if given is None:
-        return told.mass
-    return float(KEYS[given[0]].domain.check(Place("--set", (given[0],)), given[1]))
 
 
 def _mass_guess(parameters: str) -> Guess | None:
