@@ -13,9 +13,7 @@ Columns = Annotated[
 Units = Annotated[
     list[str] | None, typer.Option("--units", metavar="COLUMN=UNIT,...", help="Such as force=lbf,position=in.")
 ]
-RateHz = Annotated[
-    float | None, typer.Option("--fs", metavar="HZ", help="Sampling rate, instead of a log's own time.")
-]
+RateHz = Annotated[float | None, typer.Option("--fs", metavar="HZ", help="Sampling rate, instead of a log's own time.")]
 
 
 def pairs(option: str, texts: Sequence[str] | None) -> dict[str, str]:

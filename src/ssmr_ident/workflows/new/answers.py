@@ -8,8 +8,8 @@ from typing import Any
 
 import yaml
 
-from ssmr_ident.core.domain import declared
 from ssmr_ident.core.errors import InputError, did_you_mean
+from ssmr_ident.core.nested_domain import declared
 from ssmr_ident.core.place import Place
 from ssmr_ident.session.entry import Entry
 from ssmr_ident.session.schema import KEYS
