@@ -8,7 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from ssmr_ident.estimate.exact import polish
-from ssmr_ident.estimate.pieces import Piece
+from ssmr_ident.estimate.generic import BY_RECORDING
+from ssmr_ident.estimate.pieces import Piece, cut
 from ssmr_ident.estimate.regression import starts_of
 from ssmr_ident.estimate.smoother import smoothed
 from ssmr_ident.estimate.values import Fit, Problem, Start
@@ -54,22 +55,14 @@ def _moving(piece: Piece) -> int:
     return int((loud[-1] + 1) * width) if len(loud) else 0
 
 
-def cut(piece: Piece, first: int, after: int) -> Piece:
-    """A stretch of a piece."""
-    drive = piece.drive[first * piece.every : after * piece.every + 1] if piece.driven else piece.drive
-    return replace(
-        piece, time=piece.time[first:after], y=piece.y[first:after], counts=piece.counts[first:after], drive=drive
-    )
-
-
 def _of(problem: Problem, pieces: list[Piece]) -> Problem:
     noise = dict(zip((id(p.white) for p in problem.pieces), problem.noises, strict=True))
     return replace(problem, pieces=tuple(pieces), noises=tuple(noise[id(p.white)] for p in pieces))
 
 
 def held_fit(kept: Problem, fit: Fit) -> Fit | None:
-    """A fit's model on other recordings, their starts and zeros alone refitted; None for courses of their own."""
-    if any(m.tables and len(m.tables.kinds) for m in fit.node.members):
+    """A fit's model on other recordings, their starts and zeros alone refitted; None for a law by recording."""
+    if any(BY_RECORDING in m.form for m in fit.node.members):
         return None
     paths = tuple(smoothed(p, kept.frequency, kept.size) for p in kept.pieces)
     start = Start(fit.point, tuple(starts_of(kept, fit.node, Start(fit.point, paths=paths))))

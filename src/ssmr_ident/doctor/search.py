@@ -12,6 +12,7 @@ import numpy as np
 from ssmr_ident.doctor.laws import Proposal, proposals
 from ssmr_ident.doctor.rules import SECOND, UNIT
 from ssmr_ident.doctor.table import Row, row_of
+from ssmr_ident.estimate.coarser import coarser
 from ssmr_ident.estimate.exact import polish
 from ssmr_ident.estimate.generic import branch, by_recording, changing, clip, delay, lag, memory, rider, static
 from ssmr_ident.estimate.motion import motion
@@ -32,8 +33,8 @@ TRIED_LAWS, FULL_LAWS = 7, 3
 LARGEST_ORDER = 12
 """Of the autoregressive noise."""
 
-SHORT, FULL = 6, 25
-"""Gauss-Newton steps."""
+BEGUN, SHORT, FULL = 2, 6, 25
+"""Gauss-Newton steps: the fewest move the states at the begin, in which all is linear."""
 
 OFFERED = 5
 """Fits, the best ones, that are offered back to what lies below them."""
@@ -93,6 +94,7 @@ def searched(problem: Problem, budget: float = math.inf, progress: Progress | No
     progress : callable, optional
     """
     say = progress or (lambda stage, done, total: None)
+    whole, problem = problem, coarser(problem)
     search = Search(problem, time.monotonic() + budget)
     say("fitting the baseline", 0, 1)
     paths = [smoothed(p, problem.frequency, problem.size) for p in problem.pieces]
@@ -118,7 +120,7 @@ def searched(problem: Problem, budget: float = math.inf, progress: Progress | No
     _offered_back(search)
     search = _with_own_noise(search)
     _second(search, say)
-    return search
+    return search if problem is whole else _in_full(search, whole, say)
 
 
 def kinds(problem: Problem, paths: Sequence[Array]) -> list[Member]:
@@ -133,7 +135,7 @@ def kinds(problem: Problem, paths: Sequence[Array]) -> list[Member]:
     if any(p.driven for p in problem.pieces):
         found.append(delay(piece.step * piece.every))
     if 2 in piece.orders:
-        found.append(lag(3.0 * f))
+        found.append(lag(min(3.0 * f, 0.5 * problem.bandwidth_hz), problem.bandwidth_hz))
     ranges = {p.name: p for p in CATALOGUE["sensor_saturation"].parameters}
     for c, (name, unit) in enumerate(zip(piece.channels, piece.units, strict=True)):
         parameter = {
@@ -241,31 +243,40 @@ def _varied(offers: Sequence[Proposal]) -> list[Proposal]:
 
 
 def own_noise(problem: Problem, fit: Fit) -> tuple[tuple[AutoregressiveNoise, ...], ...]:
-    """What a fit leaves, channel by channel, as autoregressive noise."""
-    found = []
-    for piece, rest in zip(problem.pieces, fit.residuals, strict=True):
-        spent = round(fit.dof / len(problem.pieces)) + 2
-        found.append(
-            tuple(
-                fit_noise(np.where(piece.counts[:, c], rest[:, c] - rest[:, c].mean(), 0.0), LARGEST_ORDER, spent)
-                for c in range(rest.shape[1])
-            )
-        )
-    return tuple(found)
+    """What a fit leaves, recording by recording and channel by channel, as autoregressive noise."""
+    found: dict[int, tuple[AutoregressiveNoise, ...]] = {}
+    recordings = {p.recording for p in problem.pieces}
+    for recording in recordings:
+        own = [k for k, p in enumerate(problem.pieces) if p.recording == recording]
+        spent = round(fit.dof / len(recordings)) + 2 * len(own)
+        counts = np.vstack([problem.pieces[k].counts for k in own])
+        rest = np.vstack([fit.residuals[k] - fit.residuals[k].mean(axis=0) for k in own])
+        columns = np.where(counts, rest, 0.0).T
+        found[recording] = tuple(fit_noise(column, LARGEST_ORDER, spent) for column in columns)
+    return tuple(found[p.recording] for p in problem.pieces)
 
 
 def _with_white(search: Search) -> Search:
-    """The same with white noise from what the best fit leaves, whose differences the motion itself is not in."""
+    """Everything again under the white noise that the best fit leaves."""
     best = search.rows()[0].fit
     assert best is not None
+    problem = left_white(search.problem, best)
+    return replace(search, problem=problem, fits=[_again(problem, f, SHORT) for f in search.fits])
+
+
+def left_white(problem: Problem, fit: Fit) -> Problem:
+    """White noise from what a fit leaves, whose differences the motion itself is not in."""
+    together: dict[int, list[Array]] = {}
+    for piece, rest in zip(problem.pieces, fit.residuals, strict=True):
+        together.setdefault(piece.recording, []).append(rest)
     pieces, noises = [], []
-    for piece, rest in zip(search.problem.pieces, best.residuals, strict=True):
+    for piece in problem.pieces:
         least = 1e-2 * piece.white  # a log has no more digits than its converter
-        white = np.maximum([third_difference_std(column) for column in rest.T], least)
+        left = np.vstack(together[piece.recording])
+        white = np.maximum([third_difference_std(column) for column in left.T], least)
         pieces.append(replace(piece, white=white))
         noises.append(tuple(AutoregressiveNoise(np.ones(1), float(w)) for w in white))
-    problem = replace(search.problem, pieces=tuple(pieces), noises=tuple(noises))
-    return Search(problem, search.until, [_again(problem, f, SHORT) for f in search.fits], search.untried)
+    return replace(problem, pieces=tuple(pieces), noises=tuple(noises))
 
 
 def _again(problem: Problem, fit: Fit, steps: int) -> Fit:
@@ -283,7 +294,24 @@ def _with_own_noise(search: Search) -> Search:
         for f in search.fits
         if math.isfinite(f.cost)
     ]
-    new = Search(problem, search.until, fits, search.untried)
+    new = replace(search, problem=problem, fits=fits)
+    _offered_back(new)
+    return new
+
+
+def _in_full(search: Search, whole: Problem, say: Progress) -> Search:
+    """The table again on every sample: what comes near the best is fitted on, all else only begun."""
+    best = search.rows()[0].fit
+    assert best is not None
+    found = _again(whole, best, SHORT)
+    problem = left_white(whole, found)
+    problem = with_noises(problem, own_noise(problem, found))
+    new = replace(search, problem=problem, fits=[])
+    fits = [f for f in search.fits if math.isfinite(f.cost)]
+    for index, fit in enumerate(fits):
+        say("every sample", index, len(fits))
+        near = fit.cost < FAR_OFF * best.cost or not fit.node.members
+        new.add(_again(problem, found if fit is best else fit, SHORT if near else BEGUN))
     _offered_back(new)
     return new
 

@@ -17,6 +17,10 @@ from ssmr_ident.estimate.values import Fit, Problem, Start, Stop
 Array = np.ndarray
 
 
+LEAST_GAIN, LEAST_SHARE = 0.02, 5e-6
+"""Of the cost, a step that lowers it by less than their sum is the last: a hundredth of what a decision looks at."""
+
+
 def _whitened(problem: Problem, index: int, columns: Array) -> Array:
     """(n, c, …) through each channel's whitening filter, in its standard deviation; uncounted samples are nought."""
     piece = problem.pieces[index]
@@ -79,9 +83,11 @@ def polish(problem: Problem, node: Node, start: Start, steps: int = 30, freeze: 
         return _failed(problem, node, point, nuisances)
     damping, stop = 1e-3, Stop.STEPS
     for _ in range(steps):
-        lower_any = False
+        lower_any, enough = False, LEAST_GAIN + LEAST_SHARE * cost
         for _ in range(6):
             solved = _step(parts, point, nuisances, mean, precision, scales, damping, held)
+            if solved[2] < enough:  # not worth another simulation
+                break
             new_point = bounded(node, point + solved[0])
             new = [v + d for v, d in zip(nuisances, solved[1], strict=True)]
             with np.errstate(over="ignore", invalid="ignore"):
@@ -97,7 +103,7 @@ def polish(problem: Problem, node: Node, start: Start, steps: int = 30, freeze: 
         gain, cost = cost - lower, lower
         point, nuisances, (chi2, residuals, parts) = new_point, new, trial
         damping = damping / 5.0 if damping > 1e-9 else 0.0
-        if gain < 1e-3 + 1e-7 * cost:
+        if gain < enough:
             stop = Stop.CONVERGED
             break
     return _finished(node, point, nuisances, mean, precision, scales, chi2, residuals, parts, stop, held)
@@ -107,7 +113,7 @@ def _step(parts, point, nuisances, mean, precision, scales, damping, held):
     p = len(point)
     left = np.diag(precision + 1e-12)
     right = -precision * (point - mean)
-    eliminated = []
+    eliminated, promised = [], 0.0
     for (h, g, k), nuisance, scale in zip(parts, nuisances, scales, strict=True):
         own = h[:k, :k] + np.diag(1.0 / scale**2)
         own = own + damping * np.diag(np.diag(own))
@@ -116,11 +122,13 @@ def _step(parts, point, nuisances, mean, precision, scales, damping, held):
         left = left + h[k:, k:] - cross.T @ solved[:, :-1]
         right = right - g[k:] + cross.T @ solved[:, -1]
         eliminated.append(solved)
+        promised += float(line @ solved[:, -1])
     left = left + damping * np.diag(np.maximum(np.diag(left), 1e-12))
     free = ~held
     step = np.zeros(p)
     step[free] = solved_evenly(left[np.ix_(free, free)], right[free])
-    return step, [-(solved[:, :-1] @ step) - solved[:, -1] for solved in eliminated]
+    promised += float(right[free] @ step[free])
+    return step, [-(solved[:, :-1] @ step) - solved[:, -1] for solved in eliminated], promised
 
 
 def solved_evenly(left: Array, right: Array) -> Array:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from scipy.interpolate import BSpline
@@ -10,12 +11,13 @@ from scipy.linalg import eigh
 
 from ssmr_ident.estimate.motion_kernel import BY_INERTIA, BY_POSITION, BY_VELOCITY
 from ssmr_ident.estimate.node import BRANCH, LAG, RIDER, Coordinate, Member, Tables
+from ssmr_ident.estimate.pieces import Piece
 from ssmr_ident.estimate.values import Problem
 
 Array = np.ndarray
 
 STATIC, MEMORY, EXTRA, CHANGING, SENSOR = "static_force", "memory", "extra_motion", "changing", "sensor_chain"
-ANY = "any shape"
+ANY, BY_RECORDING = "any shape", "by recording"
 
 CELLS = 400
 """Of a table: straight lines between."""
@@ -68,13 +70,15 @@ def memory(problem: Problem, paths: Sequence[Array]) -> Member:
 
 def changing(problem: Problem) -> Member:
     """Stiffness, damping and inertia as slow functions of the time since a recording began."""
-    courses, longest = [], max(p.time[-1] - p.time[0] for p in problem.pieces)
+    longest = max(p.time[-1] - p.begin for p in problem.pieces)
     driven = any(p.driven and not p.based for p in problem.pieces)
     kinds = [BY_POSITION] * 3 + [BY_VELOCITY] * 2 + [BY_INERTIA] * (2 if driven else 0)
-    for piece in problem.pieces:
-        t = (piece.time - piece.time[0]) / longest
+
+    def courses(piece: Piece) -> Array:
+        t = (piece.time - piece.begin) / longest
         shapes = np.column_stack([t, t**2, t**3])
-        courses.append(np.ascontiguousarray(np.hstack([shapes, shapes[:, :2], shapes[:, : len(kinds) - 5]])))
+        return np.hstack([shapes, shapes[:, :2], shapes[:, : len(kinds) - 5]])
+
     return _courses(problem, courses, kinds, "over time")
 
 
@@ -83,20 +87,21 @@ def by_recording(problem: Problem) -> Member | None:
     count = max(p.recording for p in problem.pieces) + 1
     if count < 2:
         return None
-    courses = []
-    for piece in problem.pieces:
+
+    def courses(piece: Piece) -> Array:
         own = np.zeros((len(piece.y), count))
         own[:, piece.recording] = 1.0
         own -= 1.0 / count
-        courses.append(np.ascontiguousarray(np.hstack([own[:, 1:], own[:, 1:]])))
-    return _courses(problem, courses, [BY_POSITION] * (count - 1) + [BY_VELOCITY] * (count - 1), "by recording")
+        return np.hstack([own[:, 1:], own[:, 1:]])
+
+    return _courses(problem, courses, [BY_POSITION] * (count - 1) + [BY_VELOCITY] * (count - 1), BY_RECORDING)
 
 
-def _courses(problem: Problem, courses: Sequence[Array], kinds: Sequence[int], form: str) -> Member:
+def _courses(problem: Problem, courses: Callable[[Piece], Array], kinds: Sequence[int], form: str) -> Member:
     stiffness, damping = _force(problem) / problem.size, _force(problem) / problem.speed
     size = {BY_POSITION: stiffness, BY_VELOCITY: damping, BY_INERTIA: 1.0}
     coordinates = tuple(Coordinate(f"course_{k}", 0.1 * size[kind], std=10.0 * LOOSE) for k, kind in enumerate(kinds))
-    tables = Tables(courses=tuple(courses), kinds=np.array(kinds, dtype=np.int64))
+    tables = Tables(courses=courses, kinds=np.array(kinds, dtype=np.int64))
     return Member("unlisted", CHANGING, f"{ANY}, {form}", coordinates, tables)
 
 
@@ -126,10 +131,13 @@ def branch(problem: Problem, seconds: float, form: str = "one branch") -> Member
     )  # fmt: skip
 
 
-def lag(hz: float) -> Member:
-    """A slow accelerometer: second-order Butterworth."""
-    bandwidth = Coordinate("bandwidth_hz", hz, True, 0.05 * hz, 50.0 * hz, 0.0, 2.0, "Hz")
-    return Member("sensor_bandwidth", SENSOR, "", (bandwidth,), linear=LAG)
+def lag(hz: float, known_hz: float = math.inf) -> Member:
+    """A slow accelerometer: second-order Butterworth, in place of the one that is known."""
+    bandwidth = Coordinate("bandwidth_hz", hz, True, 0.05 * hz, min(50.0 * hz, 0.999 * known_hz), 0.0, 2.0, "Hz")
+    known = Coordinate("known_hz", known_hz, False, known_hz, known_hz, 1.0, 1e-9, "Hz")
+    return Member(
+        "sensor_bandwidth", SENSOR, "", (bandwidth, known) if math.isfinite(known_hz) else (bandwidth,), linear=LAG
+    )
 
 
 def delay(step: float) -> Member:

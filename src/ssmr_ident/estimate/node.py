@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.linalg import expm
 
+from ssmr_ident.estimate.pieces import Piece
 from ssmr_ident.physics.effects import CATALOGUE
 from ssmr_ident.physics.element import STATES
 from ssmr_ident.physics.slots import SLOTS, effect_vector
@@ -59,6 +60,10 @@ class Coordinate:
         return self.scale * (math.exp(min(at, 200.0)) if self.log else 1.0)
 
 
+def _no_courses(piece: Piece) -> Array:
+    return np.zeros((1, 0))
+
+
 @dataclass(frozen=True, eq=False)
 class Tables:
     """A generic member: forces linear in their coefficients, by tables.
@@ -68,8 +73,8 @@ class Tables:
     by_position, by_velocity, by_both : (g, k) float
         Over -1 … 1 of x/reach; of asinh(v/low)/top; of x/reach, times v.
     reach, low, top : float
-    courses : tuple of (n, k) float
-        Per piece: over its samples.
+    courses : callable
+        ``courses(piece)``: (n, k) float over a piece's samples.
     kinds : (k,) int
         What a course multiplies.
     yields : (k,) float
@@ -82,7 +87,7 @@ class Tables:
     reach: float = 1.0
     low: float = 1.0
     top: float = 1.0
-    courses: tuple[Array, ...] = ()
+    courses: Callable[[Piece], Array] = _no_courses
     kinds: Array = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     yields: Array = field(default_factory=lambda: np.zeros(0))
 
@@ -289,8 +294,9 @@ def matrices(node: Node, values: Array, orders: Array, based: bool) -> tuple[Arr
             rows[c, order] = 1.0
         else:
             rows[c], by_drive[c], by_force[c] = a[1], drive[1] + (1.0 if based else 0.0), -kick[1]
-    for i, (hz,) in places.get(LAG, []):
-        turning, slow = 2.0 * math.pi * hz, np.zeros(n)
+    for i, (hz, *known) in places.get(LAG, []):
+        # logs are rid of the low-pass that is known: this one takes its place, so that the two delay as one does
+        turning, slow = 2.0 * math.pi / (1.0 / hz - sum(1.0 / f for f in known)), np.zeros(n)
         slow[i], slow[i + 1] = -(turning**2), -math.sqrt(2.0) * turning
         a[i, i + 1] = 1.0
         a[i + 1] = turning**2 * a[1] + slow
@@ -357,7 +363,8 @@ def effects_of(node: Node, point: Array) -> dict[str, dict[str, float]]:
         if member.law is not None:
             found[member.id] = CATALOGUE[member.id].begun({**member.law, **own})
         elif member.linear or member.after:
-            found[member.id] = CATALOGUE[member.id].begun(own)
+            declared = {p.name for p in CATALOGUE[member.id].parameters}
+            found[member.id] = CATALOGUE[member.id].begun({n: v for n, v in own.items() if n in declared})
     return found
 
 
@@ -365,9 +372,9 @@ def law_vector(node: Node, point: Array) -> Array:
     return effect_vector({m.id: effects_of(node, point)[m.id] for m in node.members if m.law is not None})
 
 
-def merged(node: Node, pieces: int) -> Tables:
+def merged(node: Node) -> Tables:
     """The tables of a node's generic members side by side; each kind fills places of its own."""
-    found = Tables(courses=tuple(np.zeros((1, 0)) for _ in range(pieces)))
+    found = Tables()
     for own in (m.tables for m in node.members if m.tables):
         if own.by_position.shape[1]:
             found = replace(own, courses=found.courses, kinds=found.kinds, yields=found.yields)

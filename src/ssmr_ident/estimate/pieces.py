@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.ndimage import median_filter
@@ -14,7 +14,7 @@ from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.recording import Recording
 from ssmr_ident.experiments.campaign import Measurement
 from ssmr_ident.experiments.quantities import UNITS
-from ssmr_ident.signals.grid import even_samples
+from ssmr_ident.signals.grid import band_limited, even_samples
 from ssmr_ident.signals.noise import median_std, rounding, third_difference_std
 
 Array = np.ndarray
@@ -33,6 +33,9 @@ STEPS = 60
 FAST = 0.02
 """Share of a channel's size beyond which differences are taken to see the motion as well as noise, until a fit has
 told the two apart."""
+
+RAISED = 3.0
+"""Largest factor by which a known low-pass is undone: beyond it the log holds noise."""
 
 QUIET = 0.1
 """Share of the loudest stretch below which a stretch is at rest."""
@@ -67,6 +70,8 @@ class Piece:
     white : (c,) float
         Standard deviation of white noise: by differences of the log, at most ``FAST`` of its size, until that of what a
         fit leaves is known.
+    begin : float [s]
+        Time at which the recording, or the release, began that this is a part of.
     """
 
     name: str
@@ -82,6 +87,7 @@ class Piece:
     step: float
     every: int
     white: Array
+    begin: float = 0.0
 
     @property
     def rate(self) -> float:
@@ -92,7 +98,15 @@ class Piece:
         return tuple(UNITS[name] for name in self.channels)
 
 
-def pieces_of(measurement: Measurement, index: int, frequency: float) -> tuple[Piece, ...]:
+def cut(piece: Piece, first: int, after: int) -> Piece:
+    """Samples ``first`` to before ``after`` of a piece, with a start of their own."""
+    drive = piece.drive[first * piece.every : after * piece.every + 1] if piece.driven else piece.drive
+    return replace(
+        piece, time=piece.time[first:after], y=piece.y[first:after], counts=piece.counts[first:after], drive=drive
+    )
+
+
+def pieces_of(measurement: Measurement, index: int, frequency: float, bandwidth_hz: float) -> tuple[Piece, ...]:
     """Prepare a recording.
 
     Parameters
@@ -102,6 +116,8 @@ def pieces_of(measurement: Measurement, index: int, frequency: float) -> tuple[P
         Its number.
     frequency : float [Hz]
         Highest at which the rig is expected to move on its own.
+    bandwidth_hz : float [Hz]
+        Of the accelerometer, as known; ``inf`` where nothing has to be undone.
 
     Raises
     ------
@@ -117,26 +133,18 @@ def pieces_of(measurement: Measurement, index: int, frequency: float) -> tuple[P
     found = []
     for first, after in stretches(y, rate, frequency) if not drive_name else [(0, len(y))]:
         part, force, block = y[first:after], drive[first:after], max(1, int(rate / (FINEST * frequency)))
-        count = len(part) // block
         counts = ~np.column_stack([_single(column) for column in part.T])
         part = np.where(counts, part, np.column_stack([median_filter(column, 5) for column in part.T]))
-        averaged = part[: count * block].reshape(count, block, -1).mean(axis=1)
-        kept = counts[: count * block].reshape(count, block, -1).mean(axis=1) > 0.5
-        finer = max(1, math.ceil(STEPS * frequency / rate))
-        every = block if block > 1 else finer
-        fine = (
-            force
-            if block > 1 or not drive_name
-            else np.interp(np.arange((len(force) - 1) * finer + 1) / finer, np.arange(len(force)), force)
-        )
-        if not drive_name:
-            fine = np.zeros(2)
         least = np.array([rounding(column) for column in part.T]) / math.sqrt(block)
+        if math.isfinite(bandwidth_hz):
+            slow = [c for c, name in enumerate(channels) if ORDER[name] == 2]
+            part[:, slow] = before_low_pass(part[:, slow], rate, bandwidth_hz)
+        averaged, kept = (_blocks(x, block) for x in (part, counts))
+        every = max(1, math.ceil(STEPS * frequency * block / rate))
+        fine = _between(force, block, every, len(averaged)) if drive_name else np.zeros(2)
         fast = np.array([third_difference_std(column) for column in averaged.T])
         white = np.maximum(np.minimum(fast, FAST * averaged.std(axis=0)), least)
-        middle = even.start + (first + (np.arange(count) + 0.5 * (block - 1) / block) * block) / rate
-        if block > 1 and drive_name:  # samples stand in the middle of their blocks
-            fine = np.interp(np.arange(count * block + 1) + 0.5 * (block - 1), np.arange(len(force)), force)
+        middle = even.start + (first + np.arange(len(averaged)) * block + 0.5 * (block - 1)) / rate
         found.append(
             Piece(
                 measurement.name,
@@ -145,16 +153,42 @@ def pieces_of(measurement: Measurement, index: int, frequency: float) -> tuple[P
                 np.array([ORDER[name] for name in channels]),
                 middle,
                 averaged,
-                kept,
+                kept > 0.5,
                 fine,
                 drive_name == BASE,
                 bool(drive_name),
-                1.0 / (rate * (every if block == 1 else 1)),
+                block / (rate * every),
                 every,
                 white,
+                float(middle[0]),
             )
         )
     return tuple(found)
+
+
+def _blocks(samples: Array, block: int) -> Array:
+    """Means of so many samples each, (n, c) to (n // block, c)."""
+    count = len(samples) // block
+    return samples[: count * block].reshape(count, block, -1).mean(axis=1)
+
+
+def _between(force: Array, block: int, every: int, count: int) -> Array:
+    """(count·every + 1,) float: a force averaged over blocks as the motion is, on the finer grid of integration."""
+    if block == 1 and every > 1:
+        fine = band_limited(force, every)
+        return np.append(fine, np.full(count * every + 1 - len(fine), fine[-1]))
+    means = np.convolve(force, np.full(block, 1.0 / block), "valid")  # at a block's middle, by where it begins
+    return np.interp(np.arange(count * every + 1) * (block / every), np.arange(len(means)), means)
+
+
+def before_low_pass(samples: Array, rate: float, bandwidth_hz: float) -> Array:
+    """What went into a second-order Butterworth low-pass, (n, c) to (n, c); raised by ``RAISED`` at most."""
+    around = min(len(samples) - 1, math.ceil(20.0 * rate / bandwidth_hz))
+    padded = np.pad(samples, ((around, around), (0, 0)), mode="edge")
+    over = np.fft.rfftfreq(len(padded), 1.0 / rate)[:, None] / bandwidth_hz
+    raised = 1.0 + 1j * math.sqrt(2.0) * over - over**2
+    raised *= np.minimum(RAISED / np.abs(raised), 1.0)
+    return np.fft.irfft(raised * np.fft.rfft(padded, axis=0), len(padded), axis=0)[around : around + len(samples)]
 
 
 def channels_of(recording: Recording) -> tuple[tuple[str, ...], str]:

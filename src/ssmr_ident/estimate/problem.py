@@ -18,6 +18,8 @@ from ssmr_ident.signals.noise import AutoregressiveNoise
 
 Array = np.ndarray
 
+BANDWIDTH = "accelerometer.bandwidth_hz"
+
 VAGUE = 1.0
 """Standard deviation of the logarithm of a mass or stiffness of which the file says no uncertainty."""
 
@@ -43,7 +45,10 @@ def problem_of(measurements: Sequence[Measurement], parameters: ParameterSet) ->
     moving = float(np.median(seen))
     if not 1.0 / FAR < frequency / moving < FAR:
         frequency = moving
-    pieces = tuple(p for i, m in enumerate(measurements) for p in pieces_of(m, i, max(frequency, moving)))
+    bandwidth, fastest = parameters.number(BANDWIDTH, math.inf), max(frequency, moving)
+    if bandwidth >= 0.5 * min(m.recording.sample_rate for m in measurements):
+        bandwidth = math.inf  # cancels with the low-pass of the force's own converter
+    pieces = tuple(p for i, m in enumerate(measurements) for p in pieces_of(m, i, fastest, bandwidth))
     size = float(np.sqrt(np.mean([_size(p, frequency) ** 2 for p in pieces])))
     driven = any(p.driven and not p.based for p in pieces)
     noises = tuple(
@@ -53,7 +58,9 @@ def problem_of(measurements: Sequence[Measurement], parameters: ParameterSet) ->
         )
         for p in pieces
     )
-    return Problem(pieces, baseline_of(parameters, driven, size, frequency), noises, frequency, size)
+    return Problem(
+        pieces, baseline_of(parameters, driven, size, frequency), noises, frequency, size, bandwidth, fastest
+    )
 
 
 def natural_hz(parameters: ParameterSet) -> float:

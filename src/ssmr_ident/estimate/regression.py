@@ -25,13 +25,13 @@ def regressed(problem: Problem, paths: Sequence[Array], node: Node) -> Array:
         Position, velocity, acceleration per piece.
     node : Node
     """
-    mass, tables = problem.baseline[0], merged(node, len(problem.pieces))
+    mass, tables = problem.baseline[0], merged(node)
     rows, right = [], []
-    for index, (piece, path) in enumerate(zip(problem.pieces, paths, strict=True)):
+    for piece, path in zip(problem.pieces, paths, strict=True):
         own = piece.drive[:: piece.every][: len(path)] if piece.driven else np.zeros(len(path))
         if piece.based:  # relative to the base, whose motion acts as a force on the mass
             own = -mass.scale * own
-        beside = tables.along(path, tables.courses[index], mass.scale)
+        beside = tables.along(path, tables.courses(piece), mass.scale)
         rows.append(np.column_stack([path[:, ::-1], np.ones(len(path)), beside]))
         right.append(own)
     design, force = np.vstack(rows), np.concatenate(right)

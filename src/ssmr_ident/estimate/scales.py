@@ -22,8 +22,8 @@ ZERO_SHARE = 0.3
 def nuisance_scales(problem: Problem, node: Node, piece: Piece) -> Array:
     """Prior standard deviations of a piece's nuisances."""
     sizes = 10.0 * state_sizes(problem, node)
-    # what holds a mass aside has loaded its friction; a driven one begins at rest
-    sizes[node.linear_states :] *= 1e-6 if piece.driven else 0.1
+    # what holds a mass aside has loaded its friction, and so has what went before; a driven log begins at rest
+    sizes[node.linear_states :] *= 1e-6 if piece.driven and piece.time[0] <= piece.begin else 0.1
     zero, offsets = zero_scales(piece)
     return np.concatenate([sizes, zero, np.full(len(zero), GAIN), offsets])
 

@@ -96,7 +96,7 @@ def shot(problem: Problem, node: Node, start: Start, continuity: Sequence[float]
             if gain < gain_floor * max(current[0], 1.0):
                 break
     for piece, own in zip(pieces, states, strict=True):
-        own[0, n:] *= 0.0 if piece.driven else 1.0
+        own[0, n:] *= 0.0 if piece.driven and piece.time[0] <= piece.begin else 1.0
     nuisances = []
     for piece, own, extra in zip(pieces, states, local, strict=True):
         driven = int(piece.driven)

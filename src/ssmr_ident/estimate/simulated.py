@@ -50,7 +50,7 @@ class Compiled:
     def of(cls, problem: Problem, node: Node, point: Array, pieces: Sequence[Piece]) -> Compiled:
         places, scales = law_places(node)
         return cls(
-            node, node.values(point), node.slopes(point), merged(node, len(pieces)), law_vector(node, point), places,
+            node, node.values(point), node.slopes(point), merged(node), law_vector(node, point), places,
             scales, tuple(pieces), problem,
         )  # fmt: skip
 
@@ -62,6 +62,9 @@ class Compiled:
                 self.node, self.values[:n], self.slopes[:n], piece.orders, piece.based, piece.step
             )
         return self.steps[key]
+
+    def courses(self, piece: Piece) -> Array:
+        return np.ascontiguousarray(self.tables.courses(piece))
 
     def delay(self) -> tuple[float, int] | None:
         for member in self.node.members:
@@ -81,7 +84,7 @@ def simulate(model: Compiled, index: int, starts: Array, borders: Array, zero: f
     generic = model.values[n_lin : n_lin + n_tab]
     g = (
         tables.reach, (tables.low, tables.top, 0.0 if piece.based else 1.0), tables.by_position, tables.by_velocity,
-        tables.by_both, tables.courses[index], tables.kinds, np.ascontiguousarray(generic),
+        tables.by_both, model.courses(piece), tables.kinds, np.ascontiguousarray(generic),
         np.stack([model.values[:n_lin], model.slopes[:n_lin]]), tables.yields, n_law > 0 or _has_law(node), model.law,
         model.places, model.scales, problem.size, problem.speed, model.remembers,
     )  # fmt: skip

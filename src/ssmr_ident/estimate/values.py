@@ -17,7 +17,7 @@ Array = np.ndarray
 
 
 class Stop(Enum):
-    CONVERGED = "no step lowers the cost by a thousandth of a unit"
+    CONVERGED = "no step lowers the cost by as much as a decision looks at"
     STEPS = "more steps would lower the cost further: begin nearer, or allow more"
     LOST = "the simulation left the finite numbers"
 
@@ -37,6 +37,10 @@ class Problem:
         Of the motion.
     size : float [m]
         RMS deflection.
+    bandwidth_hz : float
+        Of the accelerometer, as known; its low-pass is undone in the pieces.
+    fastest : float [Hz]
+        Highest frequency at which the rig is expected to move; ``frequency`` where it is less.
     """
 
     pieces: tuple[Piece, ...]
@@ -44,6 +48,8 @@ class Problem:
     noises: tuple[tuple[AutoregressiveNoise, ...], ...]
     frequency: float
     size: float
+    bandwidth_hz: float = math.inf
+    fastest: float = 0.0
 
     @property
     def speed(self) -> float:
