@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import math
+
 from ssmr_ident.doctor.decide import MISSING, NOTHING, UNDETERMINED, decide
+from ssmr_ident.doctor.laws import best_shape
 from ssmr_ident.doctor.table import Row
 
 SAMPLES = 5000.0
@@ -91,3 +94,11 @@ def test_a_second_effect_that_is_there() -> None:
     found = decide([BASE, law, shape, pair])
     assert found.chosen is pair
     assert found.listed
+
+
+def test_a_shape_between_those_of_a_grid_is_found() -> None:
+    def along(shape):
+        return (math.log(shape["gap_m"] / 0.37)) ** 2, shape, 0.0, 0.0, shape
+
+    found = best_shape(along, [{"gap_m": 0.1}, {"gap_m": 0.2}, {"gap_m": 0.9}])
+    assert abs(math.log(found[1]["gap_m"] / 0.37)) < 0.13

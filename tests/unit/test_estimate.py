@@ -7,12 +7,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.signal import butter, freqs
 from scipy.special import ellipj
 
+from ssmr_ident.estimate.coarser import coarser
 from ssmr_ident.estimate.exact import polish
 from ssmr_ident.estimate.generic import static
 from ssmr_ident.estimate.node import Coordinate, Member, Node
-from ssmr_ident.estimate.pieces import Piece, stretches
+from ssmr_ident.estimate.pieces import Piece, before_low_pass, stretches
 from ssmr_ident.estimate.regression import regressed
 from ssmr_ident.estimate.shoot_kernel import eliminate
 from ssmr_ident.estimate.shooting import shot
@@ -200,3 +202,30 @@ def test_releases_are_found() -> None:
         y += np.where(time >= begin, 10.0 * np.exp(-3.0 * since) * np.cos(40.0 * since), 0.0)
     found = stretches(y[:, None], rate, 40.0 / (2 * math.pi))
     assert [a / rate for a, _ in found] == pytest.approx([1.0, 3.4], abs=0.02)
+
+
+def test_a_known_low_pass_is_undone() -> None:
+    rate, corner = 2000.0, 300.0
+    time = np.arange(2000) / rate
+    before, after = np.zeros(2000), np.zeros(2000)
+    for hertz, phase in ((20.0, 0.3), (90.0, 1.0), (250.0, 2.0)):
+        _, response = freqs(*butter(2, 2 * math.pi * corner, analog=True), [2 * math.pi * hertz])
+        before += np.cos(2 * math.pi * hertz * time + phase)
+        after += np.abs(response[0]) * np.cos(2 * math.pi * hertz * time + phase + np.angle(response[0]))
+    undone = before_low_pass(after[:, None], rate, corner)[:, 0]
+    assert np.abs(undone - before)[100:-100].max() < 5e-3
+    assert np.abs(after - before)[100:-100].max() > 0.3
+
+
+def test_fewer_samples_give_a_linear_rig_the_same_parameters() -> None:
+    p = problem(driven(0.0, 0.2, rate=200.0))
+    fewer = coarser(p)
+    assert len(fewer.pieces[0].y) == len(p.pieces[0].y) // 3
+    node, start = Node(p.baseline), (np.array([0.0, 0.03, 0.1]),)
+    for one in (p, fewer):
+        paths = tuple(smoothed(own, one.frequency, one.size) for own in one.pieces)
+        found = polish(one, node, Start(*start, paths=paths))
+        mass = found.value("mass_kg")  # the gain of the force is free by 2 %, what is over the mass is not
+        assert found.value("stiffness_N_m") / mass == pytest.approx(STIFFNESS / MASS, rel=5e-3)
+        assert found.value("damping_N_s_m") / mass == pytest.approx(DAMPING / MASS, rel=0.1)
+        assert found.chi2 / one.samples < 1.5

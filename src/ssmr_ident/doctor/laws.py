@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -16,7 +18,11 @@ from ssmr_ident.physics.effects.unlisted import TERMS
 from ssmr_ident.physics.slots import effect_vector
 
 Array = np.ndarray
+
+FINER = (0.5, 0.25, 0.12)
+"""Steps, in logarithms, by which the best shape of a grid is made better along the path."""
 Shape = Mapping[str, float]
+_OnPath = tuple[float, Shape, float, float, Shape]
 
 
 @dataclass(frozen=True)
@@ -157,31 +163,44 @@ def proposals(problem: Problem, found: Fit, paths: Sequence[Array], beside: Sequ
         plain = np.column_stack([plain, column / max(float(np.sqrt(np.mean(column**2))), 1e-300)])
     result = []
     taken = {m.id for m in beside}
+    sizes = reach, fastest, 0.3 * size
     for form in (f for f in FORMS if f.effect not in taken):
-        best = None
-        stiffness = float(found.node.values(found.point)[2])
-        for shape in form.shapes(reach, fastest, 0.3 * size):
-            unit = CATALOGUE[form.effect].begun(form.unit(shape, stiffness, reach, fastest, 0.3 * size))
-            column = _along(problem, paths, first, form.effect, unit, stiffness)
-            norm = float(np.sqrt(np.mean(column**2)))
-            if not np.isfinite(norm) or norm <= 0.0:
-                continue
-            design = np.column_stack([plain, column / norm])
-            coefficients, _, _, _ = np.linalg.lstsq(design, force, rcond=None)
-            rest = float(np.sum((force - design @ coefficients) ** 2))
-            k, d, c = coefficients[0] / reach, coefficients[1] / fastest, coefficients[-1] / norm
-            if form.effect == "hysteresis":
-                c = c * stiffness / max(k, 1e-3 * stiffness)
-            if best is None or rest < best[0]:
-                best = rest, k, d, form.settle(c, unit, k), unit
-        if best is None:
-            continue
-        rest, k, d, values, _ = best
+        along = partial(_on_path, form, partial(_along, problem, paths, first), plain, force, stiff, sizes)
+        rest, _, k, d, values = best_shape(along, form.shapes(*sizes))
         member = member_of(form, values, reach, fastest, size)
         node = Node(found.node.baseline, (*beside, member))
-        point = _begun(node, found, (mass, max(d, 0.0), max(k, 0.05 * stiffness)), member, values)
+        point = _begun(node, found, (mass, max(d, 0.0), max(k, 0.05 * stiff)), member, values)
         result.append(Proposal(node, Start(point, paths=tuple(paths)), -0.5 * np.log(max(rest, 1e-300))))
     return sorted(result, key=lambda p: -p.promise)
+
+
+def best_shape(along: Callable[[Shape], _OnPath], shapes: Sequence[Shape]) -> _OnPath:
+    """The best of a grid, and of ever smaller steps about it."""
+    best = min((along(shape) for shape in shapes), key=lambda found: found[0])
+    for step in FINER:
+        factors = (math.exp(step), math.exp(-step))
+        near = [{**best[1], name: value * factor} for name, value in best[1].items() for factor in factors]
+        best = min((best, *(along(shape) for shape in near)), key=lambda found: found[0])
+    return best
+
+
+def _on_path(
+    form: Form, law_along: Callable[[str, Shape, float], Array], plain: Array, force: Array, stiffness: float,
+    sizes: tuple[float, float, float], shape: Shape,
+) -> _OnPath:  # fmt: skip
+    """The force regressed on the rig and a form: what is left, the shape, stiffness, damping, the form's values."""
+    unit = CATALOGUE[form.effect].begun(form.unit(shape, stiffness, *sizes))
+    column = law_along(form.effect, unit, stiffness)
+    norm = float(np.sqrt(np.mean(column**2)))
+    if not np.isfinite(norm) or norm <= 0.0:  # it acts nowhere along this path
+        norm, column = 1.0, np.zeros(len(column))
+    design = np.column_stack([plain, column / norm])
+    coefficients, _, _, _ = np.linalg.lstsq(design, force, rcond=None)
+    rest = float(np.sum((force - design @ coefficients) ** 2))
+    k, d, c = coefficients[0] / sizes[0], coefficients[1] / sizes[1], coefficients[-1] / norm
+    if form.effect == "hysteresis":
+        c = c * stiffness / max(k, 1e-3 * stiffness)
+    return rest, shape, k, d, form.settle(c, unit, k)
 
 
 def member_of(form: Form, values: Shape, reach: float, fastest: float, force: float) -> Member:

@@ -30,6 +30,9 @@ Progress = Callable[[str, int, int], None]
 TRIED_LAWS, FULL_LAWS = 7, 3
 """Named laws that get a short fit, most promising first, two formulas of one effect at the most; and a full one."""
 
+LOST = 3
+"""Of these, the most promising that are begun by multiple shooting where a short fit ends above the baseline."""
+
 LARGEST_ORDER = 12
 """Of the autoregressive noise."""
 
@@ -218,15 +221,18 @@ def _named(search: Search, say: Progress, best: Fit, beside: Sequence[Member] = 
     """Named laws beside given members, begun along the motion of a fit that follows it well."""
     paths = motion(search.problem, best)
     problem, short = search.problem, []
+    base = next(f for f in search.fits if not f.node.members)
     offers = _varied(proposals(problem, best, paths, beside))
     for index, offer in enumerate(offers):
         say("named laws", index, len(offers))
         if search.late:
             search.untried.append(offer.node.name)
             continue
-        start = Start(offer.start.point, carried(offer.node, best))
-        short.append((polish(problem, offer.node, start, SHORT), offer))
-    base = next(f for f in search.fits if not f.node.members)
+        near = polish(problem, offer.node, Start(offer.start.point, carried(offer.node, best)), SHORT)
+        if near.cost > base.cost and index < LOST:  # above what it contains
+            far = polish(problem, offer.node, shot(problem, offer.node, offer.start), SHORT)
+            near = min(near, far, key=lambda f: f.cost)
+        short.append((near, offer))
     for rank, (near, offer) in enumerate(sorted(short, key=lambda s: s[0].cost)):
         whole = rank < FULL_LAWS and not search.late
         search.add(_finished(search, near, base, offer.start.paths or (), offer.start.point) if whole else near)
