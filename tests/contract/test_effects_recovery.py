@@ -8,13 +8,8 @@ is another floor, and the test says that no neighbouring seed explains the data.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-
 import numpy as np
 import pytest
-from scipy.optimize import least_squares
-from scipy.stats import chi2, norm
 
 from ssmr_ident.experiments import Scenario
 from ssmr_ident.experiments.free_response import free_response
@@ -24,54 +19,27 @@ from ssmr_ident.experiments.swivel import swivel
 from ssmr_ident.physics.effects import CATALOGUE
 from ssmr_ident.physics.linear import LinearRobot, accelerometer_rows, linear_robot, responses
 from ssmr_ident.physics.motor import wheel_rates
-from ssmr_ident.physics.rig import Rig
-from ssmr_ident.physics.robot import GRAVITY, Robot, robot_from_parameters
-from ssmr_ident.session import read_parameters
+from ssmr_ident.physics.robot import GRAVITY, Robot
 from ssmr_ident.simulate import simulate
 from ssmr_ident.simulate.bench import drag_wheel
-from ssmr_ident.simulate.rig import simulate_rig
-
-ACCELERATION_NOISE = 0.02  # m/s^2, of the reference campaign's accelerometers
-FORCE_NOISE = 0.5  # N
-WRONG = 0.3
-DRAWS = 2  # of noise
-
-Effects = dict[str, dict[str, float]]
+from ssmr_ident.workflows.effects.promises import robot_for_checks
+from ssmr_ident.workflows.effects.recovery import (
+    ACCELERATION_NOISE,
+    EVEN,
+    FORCE_NOISE,
+    HELD,
+    Case,
+    Effects,
+    accelerations,
+    decay_of_a_tire,
+    forces,
+    recovered,
+)
 
 
 @pytest.fixture(scope="module")
 def robot() -> Robot:
-    return robot_from_parameters(read_parameters("p3at-extended")).with_changes(slip_coupling=0.0)
-
-
-@dataclass(frozen=True)
-class Case:
-    """One recovery: values that differ from nominal, the parameters fitted, and what is measured."""
-
-    measure: Callable[[Robot, Effects], np.ndarray]
-    noise: float
-    fitted: tuple[str, ...]
-    true: Mapping[str, float]
-
-
-def _rig(robot: Robot, effects: Effects) -> np.ndarray:
-    """Acceleration of a quarter of the robot on one tire, let go from 3 mm; [m/s^2]."""
-    rig = Rig(robot.mass / 4.0, float(robot.damping[1]), float(robot.stiffness[1]))
-    return simulate_rig(rig, np.zeros(1200), 1000.0, position=3e-3, effects=effects)[:, 2]
-
-
-def _accelerations(scenario: Callable[[Robot], Scenario], **changes: object) -> Callable[[Robot, Effects], np.ndarray]:
-    def measure(robot: Robot, effects: Effects) -> np.ndarray:
-        result = simulate(robot.with_changes(**changes), scenario(robot), effects=effects)
-        return np.concatenate([result["ax"], result["ay"], result["az"]])
-
-    return measure
-
-
-def _force(scenario: Callable[[Robot], Scenario], **changes: object) -> Callable[[Robot, Effects], np.ndarray]:
-    return lambda robot, effects: simulate(robot.with_changes(**changes), scenario(robot), 100.0, effects=effects)[
-        "force"
-    ]
+    return robot_for_checks()
 
 
 def _fast_drag(robot: Robot, effects: Effects) -> np.ndarray:
@@ -91,48 +59,46 @@ def _spinning(robot: Robot) -> Scenario:
     return pull("lateral", 1.0, 3.0, wheel_rates=np.full((1, 2), 0.003 / robot.radius), held=True)
 
 
-HELD = {"mu_static": 1e9, "mu_kinetic": 1e9}  # no contact lets go
-EVEN = {"mu_static": 0.8, "mu_kinetic": 0.8}  # Coulomb: contacts slide without teeth
 CASES = {
-    "nonlinear_stiffness": Case(_rig, ACCELERATION_NOISE, ("k3_N_m3",), {}),
-    "dry_friction": Case(_rig, ACCELERATION_NOISE, ("F_c_N",), {}),
-    "hysteresis": Case(_rig, ACCELERATION_NOISE, ("alpha",), {"alpha": 0.7}),
-    "quadratic_damping": Case(_rig, ACCELERATION_NOISE, ("d2_N_s2_m2",), {}),
-    "viscoelastic_relaxation": Case(_rig, ACCELERATION_NOISE, ("K_m_N_m",), {}),
+    "nonlinear_stiffness": Case(decay_of_a_tire, ACCELERATION_NOISE, ("k3_N_m3",), {}),
+    "dry_friction": Case(decay_of_a_tire, ACCELERATION_NOISE, ("F_c_N",), {}),
+    "hysteresis": Case(decay_of_a_tire, ACCELERATION_NOISE, ("alpha",), {"alpha": 0.7}),
+    "quadratic_damping": Case(decay_of_a_tire, ACCELERATION_NOISE, ("d2_N_s2_m2",), {}),
+    "viscoelastic_relaxation": Case(decay_of_a_tire, ACCELERATION_NOISE, ("K_m_N_m",), {}),
     "unlisted": Case(
-        _rig,
+        decay_of_a_tire,
         ACCELERATION_NOISE,
         ("c_abs_v_N_s_m", "c_s2_N_m2", "c_sv_N_s_m2"),
         {"c_abs_v_N_s_m": 40.0, "c_s2_N_m2": 6e5, "c_sv_N_s_m2": 1e4},
     ),
-    "free_play": Case(_rig, ACCELERATION_NOISE, ("gap_m",), {}),
-    "sensor_bandwidth": Case(_rig, ACCELERATION_NOISE, ("bandwidth_hz",), {}),
-    "sensor_delay": Case(_rig, ACCELERATION_NOISE, ("delay_s",), {}),
-    "sensor_saturation": Case(_rig, ACCELERATION_NOISE, ("range_m_s2",), {"range_m_s2": 4.0}),
-    "flexible_mast": Case(_accelerations(_release, **HELD), ACCELERATION_NOISE, ("f_mast_Hz",), {}),
-    "com_offset": Case(_accelerations(_release, **HELD), ACCELERATION_NOISE, ("offset_x_m", "offset_y_m"), {}),
+    "free_play": Case(decay_of_a_tire, ACCELERATION_NOISE, ("gap_m",), {}),
+    "sensor_bandwidth": Case(decay_of_a_tire, ACCELERATION_NOISE, ("bandwidth_hz",), {}),
+    "sensor_delay": Case(decay_of_a_tire, ACCELERATION_NOISE, ("delay_s",), {}),
+    "sensor_saturation": Case(decay_of_a_tire, ACCELERATION_NOISE, ("range_m_s2",), {"range_m_s2": 4.0}),
+    "flexible_mast": Case(accelerations(_release, **HELD), ACCELERATION_NOISE, ("f_mast_Hz",), {}),
+    "com_offset": Case(accelerations(_release, **HELD), ACCELERATION_NOISE, ("offset_x_m", "offset_y_m"), {}),
     "sensor_misalignment": Case(
-        _accelerations(_release), ACCELERATION_NOISE, ("angle_x_rad", "angle_y_rad", "angle_z_rad"), {}
+        accelerations(_release), ACCELERATION_NOISE, ("angle_x_rad", "angle_y_rad", "angle_z_rad"), {}
     ),
-    "motor_belt": Case(_force(lambda _: pull("longitudinal", 2.0, 4.0)), FORCE_NOISE, ("K_b_N_m",), {}),
-    "cable_compliance": Case(_force(lambda _: pull("lateral", 1.0, 2.0)), FORCE_NOISE, ("K_cable_N_m",), {}),
+    "motor_belt": Case(forces(lambda _: pull("longitudinal", 2.0, 4.0)), FORCE_NOISE, ("K_b_N_m",), {}),
+    "cable_compliance": Case(forces(lambda _: pull("lateral", 1.0, 2.0)), FORCE_NOISE, ("K_cable_N_m",), {}),
     "load_cell_drift": Case(
-        _force(lambda _: pull("longitudinal", 1.0, 16.0)),
+        forces(lambda _: pull("longitudinal", 1.0, 16.0)),
         FORCE_NOISE,
         ("zero_drift_N_s", "gain_drift_1_s"),
         {"gain_drift_1_s": 0.01},
     ),
     "stribeck": Case(_fast_drag, FORCE_NOISE, ("kinetic_share",), {}),
     "load_sensitive_friction": Case(
-        _force(lambda _: pull("lateral", 2.0, 6.0, height=0.2), **EVEN), FORCE_NOISE, ("exponent",), {}
+        forces(lambda _: pull("lateral", 2.0, 6.0, height=0.2), **EVEN), FORCE_NOISE, ("exponent",), {}
     ),
-    "slip_coupling": Case(_force(_spinning, **EVEN), FORCE_NOISE, ("weight",), {"weight": 0.8}),
-    "rolling_resistance": Case(_accelerations(_rolling, **EVEN), ACCELERATION_NOISE, ("c_rr",), {}),
-    "ground_roughness": Case(_accelerations(_rolling, **HELD), ACCELERATION_NOISE, ("height_m",), {}),
-    "ground_joints": Case(_accelerations(_rolling, **HELD), ACCELERATION_NOISE, ("depth_m",), {}),
-    "wheel_eccentricity": Case(_accelerations(_rolling, **HELD), ACCELERATION_NOISE, ("eccentricity_m",), {}),
+    "slip_coupling": Case(forces(_spinning, **EVEN), FORCE_NOISE, ("weight",), {"weight": 0.8}),
+    "rolling_resistance": Case(accelerations(_rolling, **EVEN), ACCELERATION_NOISE, ("c_rr",), {}),
+    "ground_roughness": Case(accelerations(_rolling, **HELD), ACCELERATION_NOISE, ("height_m",), {}),
+    "ground_joints": Case(accelerations(_rolling, **HELD), ACCELERATION_NOISE, ("depth_m",), {}),
+    "wheel_eccentricity": Case(accelerations(_rolling, **HELD), ACCELERATION_NOISE, ("eccentricity_m",), {}),
     "coriolis": Case(
-        _accelerations(lambda robot: swivel(wheel_rates(robot, 0.2, 1.0), 1.0), **EVEN),
+        accelerations(lambda robot: swivel(wheel_rates(robot, 0.2, 1.0), 1.0), **EVEN),
         ACCELERATION_NOISE,
         ("share",),
         {"share": 0.8},
@@ -147,39 +113,8 @@ def test_no_effect_is_passed_over() -> None:
 
 @pytest.mark.parametrize("effect_id", CASES)
 def test_the_amplitude_comes_back_within_its_uncertainty(effect_id: str, robot: Robot) -> None:
-    case, effect = CASES[effect_id], CATALOGUE[effect_id]
-    true = effect.values(case.true)
-    clean = case.measure(robot, {effect_id: true})
-    off = {p.name: p.off for p in effect.parameters}
-    scale = np.array([_distance(true[name], off[name]) for name in case.fitted])
-    errors = []
-    for seed in range(DRAWS):
-        data = clean + case.noise * np.random.default_rng(seed).standard_normal(clean.shape)
-
-        def residual(factors: np.ndarray, data: np.ndarray = data) -> np.ndarray:
-            trial = dict(true)
-            for name, factor, size in zip(case.fitted, factors, scale, strict=True):
-                trial[name] = _placed(off[name], factor, size)
-            return (case.measure(robot, {effect_id: trial}) - data) / case.noise
-
-        start = np.full(len(case.fitted), 1.0 - WRONG)
-        found = least_squares(residual, start, diff_step=1e-3, x_scale="jac")
-        information = found.jac.T @ found.jac
-        std = np.sqrt(np.diag(np.linalg.inv(information)))
-        assert np.all(std < 0.1), f"{case.fitted} known to {std} only"
-        assert found.cost < 0.5 * len(data) * 1.15  # what is left is the noise
-        errors.append((found.x - 1.0) @ information @ (found.x - 1.0))
-    # three standard deviations, for all draws and parameters together
-    assert sum(errors) < chi2.isf(2.0 * norm.sf(3.0), DRAWS * len(case.fitted)), errors
-
-
-def _distance(value: float, off: float | None) -> float:
-    """How far from off, in the parameter; the parameter itself where off is infinite."""
-    return value if off is None or not np.isfinite(off) else value - off
-
-
-def _placed(off: float | None, factor: float, size: float) -> float:
-    return factor * size + (0.0 if off is None or not np.isfinite(off) else off)
+    outcome = recovered(CATALOGUE[effect_id], CASES[effect_id], robot)
+    assert outcome.passed, outcome.figure
 
 
 @pytest.mark.parametrize("truth", [0.0, 1.0])

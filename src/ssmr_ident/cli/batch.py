@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from ssmr_ident.cli.effect_files import EffectFiles
+
 EXAMPLES = (
     "ident batch sessions -o results",
     "ident batch sessions -o results --jobs 4 --timeout 600",
@@ -35,6 +37,7 @@ def command(
     retry: Annotated[
         bool, typer.Option("--retry", help="Run again what failed, hung or was killed in an earlier run.")
     ] = False,
+    effects: EffectFiles = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the table of sessions as JSON.")] = False,
     quiet: Annotated[bool, typer.Option("-q", "--quiet", help="Print nothing but errors.")] = False,
     seed: Annotated[int, typer.Option(help="Of random starts, permutation tests and simulated floors.")] = 0,
@@ -48,6 +51,7 @@ def command(
         batch = run_batch(
             folder, output, params=params, diagnose=diagnose, report=report, seed=seed, jobs=jobs, scheduler=scheduler,
             timeout=timeout, retry=retry, command=called(), progress=lambda row, done, total: step(done, total),
+            effects=tuple(effects or ()),
         )  # fmt: skip
     if as_json:
         typer.echo(batch.results.sessions.to_json(orient="records", force_ascii=False))

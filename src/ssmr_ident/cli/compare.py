@@ -10,6 +10,7 @@ import typer
 from ssmr_ident.cli import completion
 from ssmr_ident.cli.answer import print_json
 from ssmr_ident.cli.called import called
+from ssmr_ident.cli.effect_files import EffectFiles
 
 EXAMPLES = (
     "ident compare data/raw/free_response --params out/parameters.yaml -o out/compare",
@@ -31,6 +32,7 @@ def command(
     output: Annotated[
         Path | None, typer.Option("-o", "--output", help="Folder for report.html, overlay plots and compare.csv.")
     ] = None,
+    effects: EffectFiles = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
     quiet: Annotated[bool, typer.Option("-q", "--quiet", help="Print nothing but errors.")] = False,
 ) -> None:

@@ -7,10 +7,13 @@ from typing import Annotated
 
 import typer
 
+from ssmr_ident.cli.effect_files import EffectFiles
+
 EXAMPLES = (
     "ident diagnose data/raw/free_response -o out/diagnosis",
     "ident diagnose my-session --params params.yaml -o diagnosis",
     "ident diagnose my-session -o diagnosis --json",
+    "ident diagnose my-session -o diagnosis --effects my_law.py",
 )
 
 
@@ -23,6 +26,7 @@ def command(
     params: Annotated[
         str, typer.Option("--params", "-p", help="What is known beforehand; left out: the session's own robot.")
     ] = "",
+    effects: EffectFiles = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the diagnosis as JSON.")] = False,
     quiet: Annotated[bool, typer.Option("-q", "--quiet", help="Print nothing but errors.")] = False,
     seed: Annotated[int, typer.Option(min=0, help="Of permutation tests and simulated floors.")] = 0,

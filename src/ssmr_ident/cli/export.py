@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from ssmr_ident.cli.effect_files import EffectFiles
+
 EXAMPLES = (
     "ident export params.yaml --to mjcf -o robot.xml",
     "ident export p3at-extended --to csv -o robot.csv",
@@ -19,6 +21,7 @@ def command(
     to: Annotated[str, typer.Option("--to", help="Parameters: mjcf, urdf, mat or csv. A log: parquet, mat or uff.")],
     output: Annotated[Path, typer.Option("-o", "--output", help="File to write.")],
     sample: Annotated[int, typer.Option(min=1, help="Which recording of a log that holds several.")] = 1,
+    effects: EffectFiles = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print what was written as JSON.")] = False,
     quiet: Annotated[bool, typer.Option("-q", "--quiet", help="Print nothing but errors.")] = False,
 ) -> None:

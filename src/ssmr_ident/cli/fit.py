@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from ssmr_ident.cli.effect_files import EffectFiles
+
 EXAMPLES = (
     "ident fit data/raw/free_response -o out/params.yaml",
     "ident fit my-session -o params.yaml --figures figures",
@@ -19,6 +21,7 @@ def command(
     output: Annotated[
         Path | None, typer.Option("-o", "--output", help="Where to write the parameters (params.yaml).")
     ] = None,
+    effects: EffectFiles = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
     quiet: Annotated[bool, typer.Option("-q", "--quiet", help="Print nothing.")] = False,
     seed: Annotated[int, typer.Option(min=0, help="Of the random starts of output error.")] = 0,

@@ -9,6 +9,7 @@ import typer
 
 from ssmr_ident.cli import completion
 from ssmr_ident.cli import experiment_options as asked
+from ssmr_ident.cli.effect_files import EffectFiles
 
 CHOICES = "free_response, pull, swivel, straight, wheel_drag, vertical_compression, forced"
 
@@ -23,6 +24,7 @@ EXAMPLES = (
     "ident simulate p3at-extended -e pull --angle-deg 45 --cable rope -o pull-2.txt",
     "ident simulate p3at-extended -e free_response --effect dry_friction:F_c_N=2 -o roll-1.csv",
     "ident simulate rig.yaml -e forced --force shaker.csv -o answer.csv",
+    "ident simulate rig.yaml -e forced --force shaker.csv --effects my_law.py --effect my_law -o answer.csv",
 )
 
 
@@ -51,6 +53,7 @@ def command(
     force: Annotated[str, typer.Option(help="Forced rig: a log with columns time and force.")] = "",
     contact: asked.Contact = None,
     effect: asked.EffectIds = None,
+    effects: EffectFiles = None,
     duration_s: asked.DurationS = None,
     rate_hz: asked.RateHz = None,
     noise: Annotated[bool, typer.Option(help="Add the noise of the parameter file's noise block.")] = False,

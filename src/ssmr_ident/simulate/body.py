@@ -130,7 +130,8 @@ def body_of(robot: Robot, effects: Effects) -> Body:
     InputError
         An unknown effect or parameter, or a mast heavier than the robot.
     """
-    key = robot, *((effect_id, *values.items()) for effect_id, values in effects.items())
+    # by the effect itself: one of a file may be another under the same id, once its author has changed it
+    key = robot, *((CATALOGUE.get(effect_id), effect_id, *values.items()) for effect_id, values in effects.items())
     return _BODIES.of(key, lambda: _body(robot, checked_for_robot(effects)))
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -45,6 +45,7 @@ def run_batch(
     scheduler: str = "",
     timeout: float = float("inf"),
     retry: bool = False,
+    effects: Sequence[str | Path] = (),
     command: str = "",
     progress: Progress | None = None,
 ) -> Batch:
@@ -67,6 +68,8 @@ def run_batch(
         What one session may take.
     retry : bool
         Try again what failed, hung or was killed in an earlier run.
+    effects : sequence of path
+        Python files with effects beyond the catalogue, which every process runs.
     command : str
         The call, for the page's last lines.
     progress : callable, optional
@@ -82,7 +85,8 @@ def run_batch(
     if out.exists() and not out.is_dir():
         raise InputError(str(out), "is a file, expected a folder", "Give another name with -o")
     params = str(Path(params).absolute()) if Path(params).is_file() else params
-    tasks = find_tasks(folder, out, params, diagnose, report, seed)
+    files = tuple(str(Path(file).absolute()) for file in effects)
+    tasks = find_tasks(folder, out, params, diagnose, report, seed, files)
     out.mkdir(parents=True, exist_ok=True)
     with held(out):
         rows = {task.name: row for task in tasks if (row := task.done()) and (row["status"] == "done" or not retry)}

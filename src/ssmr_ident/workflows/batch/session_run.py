@@ -12,6 +12,7 @@ from ssmr_ident.core.documents import json_text
 from ssmr_ident.core.errors import InputError, SimulationError
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.experiments.campaign import Campaign, load
+from ssmr_ident.physics.effects import effects_of
 from ssmr_ident.session import read_parameters, write_parameters
 from ssmr_ident.workflows.batch.task import ROW, Task
 
@@ -31,9 +32,10 @@ def run_session(task: Task) -> dict[str, Any]:
     out = Path(task.out)
     out.mkdir(parents=True, exist_ok=True)
     try:
-        campaign = load(task.folder)
-        row |= _facts(campaign)
-        _answers(task, campaign, row, out)
+        with effects_of(*task.effects):
+            campaign = load(task.folder)
+            row |= _facts(campaign)
+            _answers(task, campaign, row, out)
     except (InputError, SimulationError) as error:
         row |= {"status": "failed", "error": " ".join(str(error).split())}
     except Exception as error:  # a fault of this package costs the one session, and is told as such

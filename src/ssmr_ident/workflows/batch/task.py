@@ -33,6 +33,8 @@ class Task:
     diagnose, report : bool
         Whether the session is diagnosed beside being fitted, and whether its page is drawn.
     seed : int
+    effects : tuple of str
+        Absolute: Python files with effects of the user's own.
     """
 
     name: str
@@ -42,6 +44,7 @@ class Task:
     diagnose: bool = True
     report: bool = True
     seed: int = 0
+    effects: tuple[str, ...] = ()
 
     def as_line(self) -> str:
         """One line of JSON."""
@@ -49,7 +52,8 @@ class Task:
 
     @classmethod
     def from_line(cls, line: str) -> Task:
-        return cls(**json.loads(line))
+        values = json.loads(line)
+        return cls(**{**values, "effects": tuple(values["effects"])})
 
     def fingerprint(self) -> str:
         """SHA-256 of everything that the answer rests on: files by their content, settings, this package's version."""
@@ -58,7 +62,7 @@ class Task:
             files = files_read(self.folder, self.params)
         except (InputError, OSError):  # a session that cannot be read is told by its file, and tried again once mended
             files = [Path(self.folder) / "session.yaml"]
-        for file in files:
+        for file in (*files, *map(Path, self.effects)):
             digest.update(os.path.relpath(file, self.folder).encode())
             digest.update(hashlib.sha256(file.read_bytes()).digest() if file.is_file() else b"")
         return digest.hexdigest()
@@ -72,7 +76,9 @@ class Task:
         return row if isinstance(row, dict) and row.get("fingerprint") == self.fingerprint() else None
 
 
-def find_tasks(folder: Path, out: Path, params: str, diagnose: bool, report: bool, seed: int) -> tuple[Task, ...]:
+def find_tasks(
+    folder: Path, out: Path, params: str, diagnose: bool, report: bool, seed: int, effects: tuple[str, ...] = ()
+) -> tuple[Task, ...]:
     """Every session below a folder, by name; results of an earlier run are not searched.
 
     Raises
@@ -83,7 +89,7 @@ def find_tasks(folder: Path, out: Path, params: str, diagnose: bool, report: boo
     if not folder.is_dir():
         raise InputError(str(folder), "is no folder", "Give the folder that the sessions are in")
     tasks = tuple(
-        Task(name, str(place), str(out.absolute() / "sessions" / name), params, diagnose, report, seed)
+        Task(name, str(place), str(out.absolute() / "sessions" / name), params, diagnose, report, seed, effects)
         for name, place in _sessions(folder.absolute(), out.absolute())
     )
     if not tasks:
