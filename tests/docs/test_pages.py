@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import struct
 import subprocess
@@ -12,7 +13,9 @@ from types import ModuleType
 
 import numpy as np
 import pytest
+from typer.main import get_command
 
+from ssmr_ident.cli import app
 from ssmr_ident.physics.effect import Effect, Site
 from ssmr_ident.readers import door, read_one
 
@@ -70,6 +73,18 @@ def test_the_example_of_an_effect_does_what_it_says() -> None:
         assert passed["force"] is wave
         assert np.array_equal(change(time, {"ay": wave}, corner_Hz=0.0)["ay"], wave)
     assert effect.is_off({"corner_Hz": 0.0})
+
+
+def test_the_dockerfile_copies_what_is_there_and_calls_what_ident_takes() -> None:
+    """No daemon is asked: what can go stale in it are the paths, and the call that it ends in."""
+    lines = [line.split(maxsplit=1) for line in (DOCS.parent / "Dockerfile").read_text("utf-8").splitlines()]
+    words = {key: json.loads(rest) for key, rest in filter(lambda line: line[0] in ("ENTRYPOINT", "CMD"), lines)}
+    for source in (name for key, rest in lines if key == "COPY" for name in rest.split()[:-1]):
+        assert (DOCS.parent / source).exists(), source
+    assert words["ENTRYPOINT"] == ["ident"]
+    verb, *options = words["CMD"]
+    known = {name for parameter in get_command(app).commands[verb].params for name in parameter.opts}  # type: ignore[attr-defined]
+    assert {option for option in options if option.startswith("-")} <= known
 
 
 @pytest.mark.slow
