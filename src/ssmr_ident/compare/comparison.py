@@ -4,17 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ssmr_ident.compare.prediction import Prediction, predict
+from ssmr_ident.core.frame import frame
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.core.shown import Shown, html_table
 from ssmr_ident.experiments.campaign import Campaign
 from ssmr_ident.signals.filters import ORDER, low_pass
 from ssmr_ident.signals.metrics import log_psd_db, nrmse_percent
 from ssmr_ident.signals.noise.hum import MAINS_HZ, mains_line
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,6 +65,20 @@ class Comparison(Shown):
     def overall(self) -> dict[str, float]:
         metrics = dict.fromkeys(r.metric for r in self.recordings)
         return {m: float(np.mean([r.value for r in self.recordings if r.metric == m])) for m in metrics}
+
+    def to_frame(self) -> pd.DataFrame:
+        """A row a channel of a recording: ``file``, ``experiment``, ``metric``, ``channel``, ``value``.
+
+        ``together`` is the value of all channels of the recording.
+        """
+        rows = [
+            {"file": r.file, "experiment": r.experiment, "metric": r.metric, "channel": name, "value": value,
+             "together": r.value}
+            for r in self.recordings
+            for name, value in r.channels.items()
+        ]  # fmt: skip
+        columns = ("file", "experiment", "metric", "channel", "value", "together")
+        return frame(rows, columns, session=self.session, params=self.params)
 
     def as_dict(self) -> dict[str, Any]:
         """The contract's ``ident compare --json``."""

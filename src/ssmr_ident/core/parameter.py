@@ -5,11 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ssmr_ident.core.frame import frame
 from ssmr_ident.core.shown import Shown, html_table
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 Value = float | np.ndarray
 
@@ -98,6 +102,22 @@ class ParameterSet(Shown, Mapping[str, Estimate]):
         """A copy with some estimates replaced or added."""
         return replace(self, estimates={**self.estimates, **changes}, **fields)
 
+    def to_frame(self) -> pd.DataFrame:
+        """A row a number, by its path: ``value``, ``std`` (or NaN), ``unit``, ``source``, ``fixed``, ``at_bound``.
+
+        Parts of an array are ``path[0]``, ``path[0,1]``; parameters of effects are ``effects.ID.NAME``.
+        """
+        named = [*self.estimates.items()]
+        named += [(f"effects.{id}.{key}", e) for id, block in self.effects.items() for key, e in block.items()]
+        rows = [
+            {"parameter": path + place, "value": value, "std": math.nan if e.std is None else e.std, "unit": e.unit,
+             "source": e.source, "fixed": e.fixed, "at_bound": e.at_bound}
+            for path, e in named
+            for place, value in _parts(e.value)
+        ]  # fmt: skip
+        columns = ("parameter", "value", "std", "unit", "source", "fixed", "at_bound")
+        return frame(rows, columns, "parameter", name=self.name)
+
     def _repr_html_(self) -> str:
         rows = [(path, str(e), e.source + (", fixed" if e.fixed else "")) for path, e in self.estimates.items()]
         rows += [(path, word, "") for path, word in self.choices.items()]
@@ -112,3 +132,9 @@ class ParameterSet(Shown, Mapping[str, Estimate]):
         for effect, parameters in self.effects.items():
             lines += [f"  {effect}: {key} = {estimate}" for key, estimate in parameters.items()]
         return "\n".join(lines)
+
+
+def _parts(value: Value) -> list[tuple[str, float]]:
+    """Numbers of a value with their place in it, empty for one that is a number."""
+    array = np.asarray(value, dtype=float)
+    return [(f"[{','.join(map(str, at))}]" if at else "", float(array[at])) for at in np.ndindex(array.shape)]

@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.shown import Shown, html_table
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 ENDS = 0.999
 """Share of a sensor's range from which samples count as at its end."""
@@ -262,6 +266,14 @@ class Recording(Shown):
     def with_channels(self, channels: Sequence[Channel], *notes: Note) -> Recording:
         """The same recording with other channels and further notes."""
         return replace(self, channels=tuple(channels), notes=self.notes + notes)
+
+    def to_frame(self) -> pd.DataFrame:
+        """A column a channel over ``time_s``; their units are in ``attrs["units"]``, the file in ``attrs["file"]``."""
+        import pandas as pd  # half a second, which who asks for no frame need not wait
+
+        made = pd.DataFrame({c.name: c.samples for c in self.channels}, index=pd.Index(self.time, name="time_s"))
+        made.attrs.update(units={c.name: c.unit for c in self.channels}, file=self.provenance.file)
+        return made
 
     def _repr_html_(self) -> str:
         rows = [

@@ -6,11 +6,15 @@ import math
 import textwrap
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+from ssmr_ident.core.frame import frame
 from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.core.shown import Shown
 from ssmr_ident.diagnose.evidence import Evidence
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 SCHEMA = "ssmr-ident/diagnosis/1"
 MISSING, NOTHING, UNDETERMINED = "missing_physics", "nothing_missing", "undetermined"
@@ -156,6 +160,21 @@ class Diagnosis(Shown):
     summary: str
     notes: tuple[str, ...] = ()
     evidence: Evidence = field(default_factory=Evidence)
+
+    def to_frame(self) -> pd.DataFrame:
+        """A row an explanation that was tried, the baseline among them: ``id``, ``named`` (part of the answer),
+        ``confidence`` (NaN where it is not), ``log_evidence`` and ``heldout_metric`` as in ``Tried``.
+
+        The numbers that the answer comes to are ``after.to_frame()``.
+        """
+        sure = {effect.id: effect.confidence for effect in self.effects}
+        rows = [
+            {"id": t.id, "named": set(t.id.split("+")) <= sure.keys(), "confidence": sure.get(t.id, math.nan),
+             "log_evidence": t.log_evidence, "heldout_metric": t.heldout_metric}
+            for t in self.tried
+        ]  # fmt: skip
+        columns = ("id", "named", "confidence", "log_evidence", "heldout_metric")
+        return frame(rows, columns, session=self.session, verdict=self.verdict, metric=self.metric)
 
     def as_dict(self) -> dict[str, Any]:
         """The contract's diagnosis.yaml; key order is the file's."""

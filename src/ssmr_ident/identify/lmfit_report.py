@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ssmr_ident.core.frame import frame
+
 if TYPE_CHECKING:
     import lmfit
+    import pandas as pd
 
 LEAST_CORRELATION = 0.5
 
@@ -39,6 +43,13 @@ class Variable:
     before: float | None = None
     before_std: float | None = None
     source: str = ""
+
+
+def variables_frame(variables: Sequence[Variable]) -> pd.DataFrame:
+    """A row a variable, by its name; NaN for a number that is not known."""
+    columns = tuple(field.name for field in fields(Variable))
+    known = ({name: math.nan if value is None else value for name, value in vars(v).items()} for v in variables)
+    return frame(known, columns, "name")
 
 
 def as_parameters(

@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ssmr_ident.core.errors import InputError
+from ssmr_ident.core.frame import frame
 from ssmr_ident.core.shown import Shown
 from ssmr_ident.signals.checks import checked_samples
 from ssmr_ident.signals.filters import SWIVEL_LOW_PASS_HZ, low_pass
 from ssmr_ident.signals.spectra import Spectrum
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 COUNT = 3
 BAND_HZ = (1.0, 50.0)
@@ -37,6 +42,12 @@ class Peaks(Shown):
 
     def __len__(self) -> int:
         return len(self.frequency)
+
+    def to_frame(self) -> pd.DataFrame:
+        """A row a peak, the highest first: ``frequency_hz``, ``amplitude`` in the unit of the samples."""
+        pairs = zip(self.frequency, self.amplitude, strict=True)
+        rows = ({"frequency_hz": f, "amplitude": a} for f, a in pairs)
+        return frame(rows, ("frequency_hz", "amplitude"), resolution_hz=self.resolution)
 
     def __str__(self) -> str:
         if not len(self):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -35,6 +36,9 @@ from ssmr_ident.simulate.robot_kernel import run
 from ssmr_ident.simulate.sensed import sensed
 from ssmr_ident.simulate.step import choose_step
 from ssmr_ident.simulate.together import Run
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 _UNITS = ["m/s^2"] * 3 + ["rad/s"] * 3 + ["m"] * 3 + ["rad"] * 3 + ["m/s"] * 2
 _UNITS += ["N", "m", "rad/s", "rad/s", "1"] + ["N"] * 12
@@ -69,6 +73,10 @@ class Simulation(Shown):
         """Chosen channels as a Recording, in SI units."""
         channels = tuple(Channel(name, self[name].copy(), UNITS[name], name) for name in names)
         return Recording(self.time, channels, Provenance(f"simulated {self.scenario.experiment}", "", "simulator"))
+
+    def to_frame(self) -> pd.DataFrame:
+        """Every channel over ``time_s``, SI; ``attrs["units"]`` names their units."""
+        return self.recording(*self.names).to_frame()
 
     def __str__(self) -> str:
         lines = [f"{self.scenario.experiment}: {len(self.time)} samples, {self.time[-1]:g} s, step {self.step:g} s"]

@@ -11,10 +11,11 @@ import numpy as np
 
 from ssmr_ident.core.shown import Shown
 from ssmr_ident.identify.decays.poles import Block, PoleFit, fit_poles, modelled
-from ssmr_ident.identify.lmfit_report import Variable, matrix_correlations, variables_report
+from ssmr_ident.identify.lmfit_report import Variable, matrix_correlations, variables_frame, variables_report
 
 if TYPE_CHECKING:
     import lmfit
+    import pandas as pd
 
 
 @dataclass(frozen=True)
@@ -159,6 +160,10 @@ class DecayFit(Shown):
                     rows.append(Variable(f"A{place}", size, std, self.unit))
                     rows.append(Variable(f"B{place}", float(mode.phases[r, c]), None, "rad"))
         return rows
+
+    def to_frame(self) -> pd.DataFrame:
+        """A row a variable, by its name: ``value``, ``std``, ``unit`` and what else ``Variable`` has."""
+        return variables_frame(self.variables())
 
     def minimize(self) -> lmfit.minimizer.MinimizerResult:
         """lmfit's own fit of ω_n and ξ, polished from this optimum on the whitened residual.

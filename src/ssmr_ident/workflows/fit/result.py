@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.core.shown import Shown
-from ssmr_ident.identify.lmfit_report import Variable
+from ssmr_ident.identify.lmfit_report import Variable, variables_frame
 from ssmr_ident.report.figures_fit import (
     NamedBackbone,
     NamedDecay,
@@ -19,7 +19,10 @@ from ssmr_ident.report.figures_fit import (
     sawtooth_figure,
 )
 from ssmr_ident.report.style import save
-from ssmr_ident.report.text_fit import fit_report
+from ssmr_ident.report.text_fit import file_variables, fit_report
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,6 +68,13 @@ class SessionFit(Shown):
     backbones: tuple[NamedBackbone, ...] = ()
     pulls: tuple[NamedPull, ...] = ()
     decays: tuple[NamedDecay, ...] = ()
+
+    def to_frame(self) -> pd.DataFrame:
+        """A row an unknown of the fit, by name: ``value``, ``std``, ``unit``, ``before``, ``before_std``, ``source``.
+
+        All parameters, those that stayed among them, are ``parameters.to_frame()``.
+        """
+        return variables_frame(self.variables or file_variables(self.before, self.parameters, self.changed))
 
     def __str__(self) -> str:
         return fit_report(

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ssmr_ident.core.errors import InputError
+from ssmr_ident.core.frame import frame
 from ssmr_ident.core.recording import Channel, Note, Recording
 from ssmr_ident.core.shown import Shown
 from ssmr_ident.experiments.campaign import load
@@ -30,6 +31,9 @@ from ssmr_ident.workflows.spectrum.table import (
     label_of_file,
     speed_label,
 )
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 ACCELEROMETERS = ("ax", "ay", "az")
 VOLTS_ZERO = 2.6
@@ -87,6 +91,11 @@ class SpectrumReport(Shown):
 
     def average_rows(self) -> list[dict[str, Any]]:
         return [average_row(average, self.speed_key) for average in self.averages]
+
+    def to_frame(self) -> pd.DataFrame:
+        """A row a channel of a recording, as in the table that ``ident spectrum`` writes with NaN for nothing."""
+        rows = [row.as_dict() for row in self.rows]
+        return frame(rows, list(rows[0]) if rows else (), source=self.source)
 
     def __str__(self) -> str:
         lines = [f"spectra of {self.source}: {len(self.rows)} channels"]
