@@ -59,6 +59,7 @@ def test_plucked_and_quiet_before(tmp_path: Path, hertz: float) -> None:
     assert [m.recording.time[0] for m in campaign.measurements] == pytest.approx(starts, abs=0.01)
     assert "let go at 0.7" in campaign.found[0]
     known = campaign.parameters
+    assert known.estimates["mass_kg"].fixed  # decays tell ratios to it alone
     assert known.number("stiffness_N_m") == pytest.approx(2.5 * (2 * math.pi * hertz) ** 2, rel=0.02)
     assert known.number("damping_N_s_m") == pytest.approx(2 * 0.02 * 2.5 * 2 * math.pi * hertz, rel=0.1)
     assert fit_session(tmp_path).parameters.number("stiffness_N_m") == pytest.approx(

@@ -89,6 +89,8 @@ def clocked(source: Source, columns: list[Column], options: ReadOptions, table: 
 
 def _ticking(times: list[Column]) -> list[Column]:
     """Columns that are called a time; of several, what falls as it rises is none: an X_Value beside Y_Value."""
+    if len(times) < 2:
+        return times
     steps = [np.diff(c.values[np.isfinite(c.values)]) for c in times]
     falls = [c for c, step in zip(times, steps, strict=True) if not c.given and (step < 0).sum() > _FALLS * len(step)]
     if len(falls) == len(times):

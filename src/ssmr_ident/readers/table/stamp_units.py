@@ -10,7 +10,7 @@ import numpy as np
 
 from ssmr_ident.readers.options import ReadOptions
 from ssmr_ident.readers.source import Source
-from ssmr_ident.readers.table.columns import Column, Table
+from ssmr_ident.readers.table.columns import Column, Table, all_finite
 from ssmr_ident.readers.table.vocabulary import words_of
 
 DAY = 86400.0
@@ -61,8 +61,10 @@ def clock_of(source: Source, column: Column, options: ReadOptions, table: Table)
     InputError
         No numbers in it, a unit that is no time, or whole numbers of which nothing says what they count.
     """
-    values = np.where(np.abs(column.values) < LARGEST, column.values, np.nan)
-    finite = values[np.isfinite(values)]
+    values = column.values
+    if not (len(values) and values.min() > -LARGEST and values.max() < LARGEST):  # a copy only where one is needed
+        values = np.where(np.abs(values) < LARGEST, values, np.nan)
+    finite = values if all_finite(values) else values[np.isfinite(values)]
     if not len(finite):
         raise source.error(f"time column {column.shown} has no numbers", "Give --fs.", table.part)
     notes: list[str] = []
@@ -82,15 +84,14 @@ def clock_of(source: Source, column: Column, options: ReadOptions, table: Table)
         )
     if conversion.changes and not notes:
         notes.append(f"{column.shown}: {unit} × {conversion.factor:g} = s")
-    return _from_zero(column, values, conversion.factor, notes)
+    return _from_zero(column, values, float(finite[0]), conversion.factor, notes)
 
 
-def _from_zero(column: Column, values: np.ndarray, factor: float, notes: list[str]) -> Clock:
+def _from_zero(column: Column, values: np.ndarray, first: float, factor: float, notes: list[str]) -> Clock:
     """Scaled; counts since 1904 or 1970 begin at 0, subtracted before they are scaled to lose no digit."""
-    first = values[np.isfinite(values)][0]
-    begin = float(first) * factor
+    begin = first * factor
     absolute = EPOCH[0] < begin
-    seconds = (values - first) * factor if absolute else values * factor
+    seconds = (values - first) * factor if absolute else values * factor if factor != 1.0 else values
     if absolute:
         resolution = max(float(np.spacing(np.nanmax(np.abs(values)))) * factor, 1e-9)
         origin = "LabVIEW counts from 1904" if begin > SECONDS_1904 else f"since 1970: {_date(begin)}"

@@ -33,10 +33,10 @@ def rig_text(name: str, guesses: Sequence[LogGuess], mass: float | None) -> str:
         source = (
             f"nobody said: with 1 {unit}, stiffness and damping are those of a {unit}; give it by --{_option(rotary)}"
         )
-    unknown = mass is None and found.mass is None
+    held = found.mass is None  # without a measured force only ratios to it show, and nothing could move it
     values = (own, _digits(found.damping * own), _digits(found.stiffness * own))
     estimates = {
-        keys[0]: Estimate(own, None, UNITS[keys[0]], source, fixed=unknown),
+        keys[0]: Estimate(own, None, UNITS[keys[0]], source, fixed=held),
         keys[1]: Estimate(values[1], None, UNITS[keys[1]], FIRST_LOOK),
         keys[2]: Estimate(values[2], None, UNITS[keys[2]], FIRST_LOOK, fixed=found.springless),
     }
