@@ -8,7 +8,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from ssmr_ident.core.parameter import Estimate, ParameterSet
-from ssmr_ident.diagnose.diagnosis import Conflict, Diagnosis, Located, NamedEffect, PredictionQuality, Tried
+from ssmr_ident.diagnose.diagnosis import Conflict, Diagnosis, KindShare, Located, NamedEffect, PredictionQuality, Tried
 from ssmr_ident.diagnose.evidence import Drift, Evidence, ForceSurface, Overlay, ResidualMap, SpeedMap
 
 K, MASS, DAMPING, CUBIC = 18000.0, 22.0, 25.0, 3.1e8
@@ -124,6 +124,9 @@ def undetermined() -> Diagnosis:
                 {"d2_N_s2_m2": Estimate(8.1, None, "N s^2/m^2")},
                 0.52,
                 ("dry_friction", "hysteresis"),
+                kind="static_force",
+                element="spring",
+                curve={"variable": "displacement [m]", "points": [0.0, 0.1], "force": [0.0, 2.0], "std": [0.0, 0.1]},
             ),
         ),
         _tried("quadratic_damping", 41.3, 6.1, 9.8, "dry_friction", "hysteresis"),
@@ -137,6 +140,7 @@ def undetermined() -> Diagnosis:
         "Something takes energy out of the rig; quadratic damping, dry friction and hysteresis fit alike.",
         (),
         Evidence((_overlay("shaker-2.csv", "acceleration", 3, True, 0.2, 60.0),), (_map(6.0),), (), ()),
+        (KindShare("static_force", "spring", 0.94, 1210.0), KindShare("memory", "spring", 0.9, 1140.0)),
     )
 
 

@@ -26,7 +26,9 @@ def test_nothing_beats_the_baseline() -> None:
 
 
 def test_much_is_left_and_nothing_takes_it() -> None:
-    assert decide([BASE, row("dry_friction", "static_force", 4.0, 49_990.0, 3.0)]).verdict == UNDETERMINED
+    found = decide([BASE, row("dry_friction", "static_force", 4.0, 49_990.0, 3.0)])
+    assert found.verdict == UNDETERMINED
+    assert [s.kind for s in found.kinds] == ["static_force"]
 
 
 def test_a_named_law_beside_its_kind_in_any_shape() -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import textwrap
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 from ssmr_ident.core.frame import frame
@@ -96,6 +96,19 @@ class NamedEffect:
 
 
 @dataclass(frozen=True)
+class KindShare:
+    """What a kind of physics takes of the misfit at its best, alone: answered also where no law is.
+
+    ``share`` is of the misfit in squares, 0 … 1; ``log_evidence`` is natural, the baseline's being 0.
+    """
+
+    kind: str
+    element: str
+    share: float
+    log_evidence: float
+
+
+@dataclass(frozen=True)
 class Tried:
     """An explanation (ids joined by ``+``; ``baseline`` for none) and how it fared.
 
@@ -143,6 +156,8 @@ class Diagnosis(Shown):
         What limits the answer, in sentences: recordings kept back, clipped channels, weak spots.
     evidence : Evidence
         What the figures are drawn from.
+    kinds : tuple of KindShare
+        Largest first; empty where that was not asked, or nothing is missing.
     """
 
     session: str
@@ -160,6 +175,7 @@ class Diagnosis(Shown):
     summary: str
     notes: tuple[str, ...] = ()
     evidence: Evidence = field(default_factory=Evidence)
+    kinds: tuple[KindShare, ...] = ()
 
     def to_frame(self) -> pd.DataFrame:
         """A row an explanation that was tried, the baseline among them: ``id``, ``named`` (part of the answer),
@@ -183,6 +199,7 @@ class Diagnosis(Shown):
             "session": self.session,
             "verdict": self.verdict,
             "summary": self.summary,
+            **({"kinds": [asdict(kind) for kind in self.kinds]} if self.kinds else {}),
             "located": [
                 {"recording": p.recording, "channel": p.channel, "time_s": [float(t) for t in p.time_s],
                  "band_hz": [float(f) for f in p.band_hz], "region": p.region, "share_of_misfit": float(p.share),
@@ -225,6 +242,9 @@ class Diagnosis(Shown):
                 f"  {name:<9} before {worth.before:.3g} {unit}, after {worth.after:.3g} {unit}, "
                 f"noise floor {worth.noise_floor:.3g} {unit}"
             )
+        for kind in self.kinds[:3]:
+            name = kind.kind.replace("_", " ")
+            lines.append(f"  kind: {name} at {kind.element} takes {100 * kind.share:.0f} % of the misfit")
         lines += [f"  where: {place.sentence}" for place in self.located[:3] if place.sentence]
         for c in self.conflicts[:5]:
             lines.append(f"  moved: {c.parameter} {c.prior:.4g} -> {c.fitted:.4g} {c.unit} ({c.sigmas:+.1f} std)")

@@ -14,9 +14,10 @@ MISSING, NOTHING, UNDETERMINED = "missing_physics", "nothing_missing", "undeterm
 
 @dataclass(frozen=True)
 class Share:
-    """What a kind's generic member takes of the misfit."""
+    """What a kind takes of the misfit by ``row``, its best member alone."""
 
     kind: str
+    row: Row
     share: float
     log_evidence: float
 
@@ -63,7 +64,7 @@ def decide(rows: Sequence[Row]) -> Decision:
     rows = [r for r in rows if stands(r, rows)]
     best = max(rows, key=lambda r: r.log_evidence)
     if best.log_evidence - base.log_evidence < CERTAIN:
-        return Decision(NOTHING if base.over < OVER_NOISE else UNDETERMINED)
+        return Decision(NOTHING) if base.over < OVER_NOISE else Decision(UNDETERMINED, kinds=kind_shares(rows, base))
     shares = kind_shares(rows, base)
     named = [r for r in rows if r.ids and not r.generic and r.log_evidence > base.log_evidence + CERTAIN]
     top = max(named, key=lambda r: r.log_evidence, default=None)
@@ -109,7 +110,7 @@ def kind_shares(rows: Sequence[Row], base: Row) -> tuple[Share, ...]:
     found: dict[str, Share] = {}
     for row in sorted((r for r in rows if len(r.ids) == 1), key=lambda r: -r.log_evidence):
         share = min(max((base.chi2 - row.chi2) / span, 0.0), 1.0)
-        found.setdefault(row.kinds[0], Share(row.kinds[0], share, row.log_evidence))
+        found.setdefault(row.kinds[0], Share(row.kinds[0], row, share, row.log_evidence))
     return tuple(found.values())
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from ssmr_ident.compare.comparison import measure
 from ssmr_ident.compare.prediction import Prediction
 from ssmr_ident.core.parameter import Estimate, ParameterSet
-from ssmr_ident.diagnose.diagnosis import Conflict, Diagnosis, Located, NamedEffect, PredictionQuality, Tried
+from ssmr_ident.diagnose.diagnosis import Conflict, Diagnosis, KindShare, Located, NamedEffect, PredictionQuality, Tried
 from ssmr_ident.diagnose.evidence import Evidence
 from ssmr_ident.diagnose.words import law, missing, nothing, told, undetermined
 from ssmr_ident.diagnose.worth import overlays, worth
@@ -103,6 +103,11 @@ def answer(found: Examined) -> Diagnosis:
         summary=summary,
         notes=(*found.notes, *_notes(decision, chosen, heldout)),
         evidence=Evidence(overlays=drawn),
+        kinds=tuple(
+            KindShare(s.kind, element_of(s.row.fit.node.members[0]), float(s.share), float(s.log_evidence))
+            for s in decision.kinds
+            if s.row.fit is not None
+        ),
     )
 
 
@@ -247,13 +252,9 @@ def _next(decision: Decision) -> str:
 
 
 def _notes(decision: Decision, chosen: Row, heldout: PredictionQuality) -> tuple[str, ...]:
-    notes = [
-        f"{share.kind.replace('_', ' ')} in any shape takes {100 * share.share:.0f} % of the misfit"
-        for share in decision.kinds[:3]
-    ]
     if decision.verdict == MISSING and heldout.after > 1.6 * heldout.noise_floor:
-        notes.append(
+        return (
             f"{chosen.name} still leaves {heldout.after / heldout.noise_floor:.1f} times the noise floor: its form, or "
-            "a smaller effect beside it, is not quite the world's"
+            "a smaller effect beside it, is not quite the world's",
         )
-    return tuple(notes)
+    return ()

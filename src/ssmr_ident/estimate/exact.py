@@ -17,6 +17,9 @@ from ssmr_ident.estimate.values import Fit, Problem, Start, Stop
 Array = np.ndarray
 
 
+LEAST_CURVATURE = 1e-12
+"""That every coordinate has, in its own units: of what the data do not see, round-off alone is left."""
+
 LEAST_GAIN, LEAST_SHARE = 0.02, 5e-6
 """Of the cost, a step that lowers it by less than their sum is the last: a hundredth of what a decision looks at."""
 
@@ -60,6 +63,8 @@ def _exact(problem: Problem, node: Node, point: Array, nuisances: Sequence[Array
         chi2 += float(white[:, -1] @ white[:, -1])
         residuals.append(rest)
         normal = white.T @ white
+        if not np.isfinite(normal).all():
+            return math.inf, [], []
         parts.append((normal[:-1, :-1], normal[:-1, -1], len(nuisance)))
     return chi2, residuals, parts
 
@@ -111,7 +116,7 @@ def polish(problem: Problem, node: Node, start: Start, steps: int = 30, freeze: 
 
 def _step(parts, point, nuisances, mean, precision, scales, damping, held):
     p = len(point)
-    left = np.diag(precision + 1e-12)
+    left = np.diag(precision + LEAST_CURVATURE)
     right = -precision * (point - mean)
     eliminated, promised = [], 0.0
     for (h, g, k), nuisance, scale in zip(parts, nuisances, scales, strict=True):
@@ -133,7 +138,7 @@ def _step(parts, point, nuisances, mean, precision, scales, damping, held):
 
 def solved_evenly(left: Array, right: Array) -> Array:
     """Symmetric equations, rows and columns first brought to one size."""
-    size = np.sqrt(np.maximum(np.diag(left), 1e-300))
+    size = np.sqrt(np.maximum(np.diag(left), LEAST_CURVATURE))
     return np.linalg.lstsq(left / np.outer(size, size), right / size, rcond=1e-13)[0] / size
 
 
