@@ -22,6 +22,7 @@ from ssmr_ident.physics import own_effect
 from ssmr_ident.physics.effect import Effect, Site
 from ssmr_ident.physics.effects import CATALOGUE, effects_of
 from ssmr_ident.physics.rig import Rig
+from ssmr_ident.session import read_parameters
 from ssmr_ident.simulate.rig import simulate_rig
 from ssmr_ident.workflows.batch.task import Task
 from ssmr_ident.workflows.effects import promises
@@ -138,6 +139,15 @@ def test_check_fails_with_one_line_for_each_promise_that_is_not_kept(tmp_path: P
 def test_units_of_the_catalogue_are_units(unit: str) -> None:
     assert promises.UNIT.fullmatch(unit)
     assert not promises.UNIT.fullmatch(f"{unit} lbf")
+
+
+def test_a_parameter_file_with_a_law_that_is_not_there_says_how_to_bring_it(law: Path) -> None:
+    file = law.with_name("after.yaml")
+    file.write_text(f"{RIG}effects:\n  {ID}:\n    corner_Hz: {{value: 1.5, unit: Hz}}\n", encoding="utf-8")
+    with pytest.raises(InputError, match=f"effects.{ID}: is no known effect.*One of your own: --effects FILE"):
+        read_parameters(file)
+    with effects_of(law):
+        assert read_parameters(file).effects[ID]["corner_Hz"].value == 1.5
 
 
 def test_a_session_cannot_name_a_file_that_is_run(law: Path) -> None:

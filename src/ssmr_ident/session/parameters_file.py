@@ -102,7 +102,9 @@ def _effects(place: Place, block: Any, turning: bool) -> dict[str, dict[str, Est
     for effect, parameters in block.items():
         here = place.at(str(effect))
         if effect not in known:
-            raise here.error("is no known effect", did_you_mean(str(effect)[:60], known))
+            raise here.error(
+                "is no known effect", f"{did_you_mean(str(effect)[:60], known)} One of your own: --effects FILE"
+            )
         if not isinstance(parameters, Mapping):
             raise here.error(f"is {shown(parameters)}, expected a mapping of its parameters")
         found[effect] = {}
