@@ -102,20 +102,21 @@ def test_folder(tmp_path: Path) -> None:
     code, text, _ = run(tmp_path, "--json")
     assert code == 0
     assert [Path(log["file"]).name for log in json.loads(text)["logs"]] == ["a.xlsx", "b.csv"]
-    (tmp_path / "runs" / "deep").mkdir(parents=True)
-    (tmp_path / ".git").mkdir()
-    for place in ("runs/deep", ".git"):
-        write_csv(tmp_path / place / "c.csv", recording())
-    code, text, _ = run(tmp_path)
-    assert code == 0
-    assert [line.partition(": reader")[0].partition(" (")[0] for line in text.splitlines()[:3]] == [
-        str(tmp_path / name) for name in ("a.xlsx", "b.csv", "runs/deep/c.csv")
-    ]
-    assert text.splitlines()[3].startswith("in common of 3 recordings: 1000 Hz; ")
     (tmp_path / "empty").mkdir()
     _, _, error = run(tmp_path / "empty")
     assert isinstance(error, InputError)
     assert "folder without logs" in str(error)
+
+
+def test_a_folder_without_logs_stands_for_those_below_it(tmp_path: Path) -> None:
+    for place in ("runs/a", "runs/b", "runs/a/meta", ".git"):
+        (tmp_path / place).mkdir(parents=True, exist_ok=True)
+        write_csv(tmp_path / place / "c.csv", recording())
+    code, text, _ = run(tmp_path)
+    assert code == 0
+    lines = [line.partition(": reader")[0].partition(" (")[0] for line in text.splitlines()]
+    assert lines[:2] == [str(tmp_path / name) for name in ("runs/a/c.csv", "runs/b/c.csv")]
+    assert text.splitlines()[2].startswith("in common of 2 recordings: reader csv; 1000 Hz; ")
 
 
 @pytest.mark.slow

@@ -23,7 +23,8 @@ def logs_in(paths: Iterable[Path], *, below: bool = False) -> tuple[list[Path], 
     ----------
     paths : iterable of Path
     below : bool
-        Whether those in folders within them count as well, after a folder's own.
+        Whether a folder without logs of its own stands for those in the folders within it. Beside logs, folders hold
+        what speaks of them: a phone's properties, results.
 
     Returns
     -------
@@ -61,4 +62,4 @@ def _folders(folder: Path) -> list[Path]:
 
 
 def _below(folder: Path) -> list[Path]:
-    return _of(folder) + [log for inner in _folders(folder) for log in _below(inner)]
+    return _of(folder) or [log for inner in _folders(folder) for log in _below(inner)]
