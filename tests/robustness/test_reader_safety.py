@@ -32,16 +32,21 @@ def offences(source: str) -> list[str]:
     return found
 
 
-OWN_PROCESS = ("src/ssmr_ident/readers/apart.py", "src/ssmr_ident/readers/apart_child.py")
-"""They speak through a pipe with a process of their own, and pickle what they say; no file is unpickled."""
+MAY = {
+    # they speak through a pipe with a process of their own, and pickle what they say; no file is unpickled
+    "src/ssmr_ident/readers/apart.py": ["pickle"],
+    "src/ssmr_ident/readers/apart_child.py": ["pickle"],
+    # the Python file that a user names on the call by --effects; nothing that a log or session names comes here
+    "src/ssmr_ident/physics/own_effect.py": ["exec()", "compile()"],
+}
 
 
 @pytest.mark.slow
 def test_package_neither_unpickles_nor_evaluates(root: Path) -> None:
     files = sorted((root / "src").rglob("*.py"))
     assert len(files) > 40
-    bad = {file.relative_to(root).as_posix(): offences(file.read_text()) for file in files}
-    assert {name: found for name, found in bad.items() if found} == {name: ["pickle"] for name in OWN_PROCESS}
+    found = {file.relative_to(root).as_posix(): offences(file.read_text()) for file in files}
+    assert {name: [one.partition(" in line")[0] for one in bad] for name, bad in found.items() if bad} == MAY
 
 
 @pytest.mark.parametrize(
