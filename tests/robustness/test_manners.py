@@ -16,6 +16,11 @@ import typer
 from ssmr_ident import cli
 
 GROUP = typer.main.get_command(cli.app)
+MY_LAW = """
+from dataclasses import replace
+from ssmr_ident.physics.effects.sensor_saturation import EFFECT as KNOWN
+EFFECT = replace(KNOWN, id="my_law")
+"""
 
 
 def _ident(*arguments: str, **environment: str) -> subprocess.CompletedProcess[str]:
@@ -53,13 +58,16 @@ def _on_a_terminal(*arguments: str, **environment: str) -> str:
 
 
 @pytest.mark.parametrize("verb", cli.VERBS)
-def test_every_verb_has_examples_that_parse(verb: str) -> None:
+def test_every_verb_has_examples_that_parse(verb: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "my_law.py").write_text(MY_LAW)
+    monkeypatch.chdir(tmp_path)
     examples = importlib.import_module(f"ssmr_ident.cli.{verb}").EXAMPLES
     assert examples
     for example in examples:
         program, name, *arguments = shlex.split(example)
         assert (program, name) == ("ident", verb)
-        GROUP.commands[verb].make_context(verb, arguments)
+        with GROUP.commands[verb].make_context(verb, arguments):
+            pass
     shown = _ident(verb, "--help").stdout
     assert "Examples:" in shown
     assert all(word in shown for word in shlex.split(examples[0]))

@@ -12,8 +12,8 @@ words:
   swings on it;
 - **how the wheels run** (`wheel_signs`, `turns`): against each other, or together;
 - **what has to be logged** (`channels`), **what may be seen in it** (`shows`), **how the robot's simulator runs it**
-  (`scenario`, `duration`, `sample_rate`), **what hints at it in a file's name** (`file_words`), and what one tells a
-  person to do (`verb`).
+  (`scenario`, `duration`, `sample_rate`; `effect_checks` to see what an effect does in it), **what hints at it in a
+  file's name** (`file_words`), and what one tells a person to do (`verb`).
 
 What only one upper room needs, such as the panels of a page, stands there in one table by `Experiment`. A new kind is a
 file here, a line in `EXPERIMENTS`, and its name in the format of session.yaml (`session/session_file.py`).

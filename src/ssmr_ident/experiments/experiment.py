@@ -76,6 +76,9 @@ class Experiment(Shown):
     scenario : callable or None
         ``scenario(robot, conditions, duration)`` is what the robot's simulator runs; None where that is a bench or a
         rig.
+    effect_checks : callable or None
+        ``effect_checks(robot, seconds)``: what an effect is switched on and off in, to see that it keeps its promises;
+        ``seconds`` are long enough for contacts to let go, or shorter.
     """
 
     name: str
@@ -92,6 +95,7 @@ class Experiment(Shown):
     wheel_axis: str = ""
     wheel_signs: tuple[float, float] = (0.0, 0.0)
     scenario: Callable[[Robot, Conditions, float], Scenario] | None = None
+    effect_checks: Callable[[Robot, float], tuple[Scenario, ...]] | None = None
 
     @property
     def words(self) -> str:

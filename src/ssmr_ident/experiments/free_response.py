@@ -88,6 +88,11 @@ def _scenario(robot: Robot, conditions: Conditions, duration: float) -> Scenario
     return free_response(conditions.motion, conditions.amplitude_mm * 1e-3, duration)
 
 
+def _effect_checks(robot: Robot, seconds: float) -> tuple[Scenario, ...]:
+    tilted = Scenario("free_response", 0.5, offset={"roll": 2e-3, "pitch": 1e-3, "yaw": 2e-3})
+    return tilted, free_response("roll", 4e-3, 0.5)
+
+
 FREE_RESPONSE = Experiment(
     name="free_response",
     sentence="Displaced or struck, let go, and left to swing.",
@@ -100,4 +105,5 @@ FREE_RESPONSE = Experiment(
     file_words=("free", "release", "decay", "ring", "ringdown", "hammer", "tap"),
     duration=4.096,
     scenario=_scenario,
+    effect_checks=_effect_checks,
 )

@@ -70,6 +70,15 @@ def _scenario(robot: Robot, conditions: Conditions, duration: float) -> Scenario
     )
 
 
+def _effect_checks(robot: Robot, seconds: float) -> tuple[Scenario, ...]:
+    spinning = np.full((1, 2), 0.003 / robot.radius)
+    return (
+        pull("lateral", 1.0, seconds, height=0.2),
+        pull("longitudinal", 2.0, seconds),
+        pull("lateral", 1.0, seconds, wheel_rates=spinning, held=True),
+    )
+
+
 PULL = Experiment(
     name="pull",
     sentence="Dragged over the floor by a testing machine's cable at constant speed.",
@@ -83,4 +92,5 @@ PULL = Experiment(
     duration=16.0,
     sample_rate=100.0,
     scenario=_scenario,
+    effect_checks=_effect_checks,
 )

@@ -20,6 +20,10 @@ def _scenario(robot: Robot, conditions: Conditions, duration: float) -> Scenario
     return straight(rates_of(robot, conditions.speed_m_s, 0.0), duration)
 
 
+def _effect_checks(robot: Robot, seconds: float) -> tuple[Scenario, ...]:
+    return (straight(rates_of(robot, 0.4, 0.0), 1.0),)
+
+
 STRAIGHT = Experiment(
     name="straight",
     sentence="Driving straight on at a constant wanted speed.",
@@ -33,4 +37,5 @@ STRAIGHT = Experiment(
     duration=10.0,
     wheel_signs=(1.0, 1.0),
     scenario=_scenario,
+    effect_checks=_effect_checks,
 )

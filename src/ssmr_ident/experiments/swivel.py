@@ -20,6 +20,10 @@ def _scenario(robot: Robot, conditions: Conditions, duration: float) -> Scenario
     return swivel(rates_of(robot, 0.0, float(np.deg2rad(conditions.yaw_rate_deg_s))), duration)
 
 
+def _effect_checks(robot: Robot, seconds: float) -> tuple[Scenario, ...]:
+    return (swivel(rates_of(robot, 0.0, 1.0), 1.0),)
+
+
 SWIVEL = Experiment(
     name="swivel",
     sentence="Turning on the spot at a constant wanted yaw rate.",
@@ -33,4 +37,5 @@ SWIVEL = Experiment(
     duration=20.0,
     wheel_signs=(-1.0, 1.0),
     scenario=_scenario,
+    effect_checks=_effect_checks,
 )

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ssmr_ident.core.shown import Shown
+from ssmr_ident.experiments import EXPERIMENTS
 from ssmr_ident.physics.effect import Effect
 from ssmr_ident.physics.effects import effects_of
 from ssmr_ident.workflows.effects import promises
@@ -65,7 +66,7 @@ def _outcomes(effect: Effect) -> Iterator[Outcome]:
     yield promises.shows(effect, found)
     yield promises.moves(effect, robot)
     yield promises.inputs_left(effect, robot)
-    if "free_response" in effect.experiments and effect.moves:
+    if effect.moves and any(kind.free and kind.shows(effect) for kind in EXPERIMENTS.values()):
         yield promises.passive(effect, robot)
     if case := clearest(effect, found):
         yield recovered(effect, case, robot)

@@ -5,16 +5,13 @@ from __future__ import annotations
 import copy
 import inspect
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from ssmr_ident.core.shown import Shown
-from ssmr_ident.experiments import EXPERIMENTS, Scenario
-from ssmr_ident.experiments.free_response import free_response
-from ssmr_ident.experiments.pull import pull
-from ssmr_ident.experiments.straight import straight
+from ssmr_ident.experiments import EXPERIMENTS, Drive, Experiment, Scenario
 from ssmr_ident.experiments.swivel import swivel
 from ssmr_ident.physics.effect import Effect
 from ssmr_ident.physics.motor import wheel_rates
@@ -78,8 +75,8 @@ def declared(effect: Effect, values: Values | None = None) -> Outcome:
         lacks.append("no parameter has an off value")
     if not effect.experiments:
         lacks.append("experiments is empty")
-    lacks += [f"{name!r} is no experiment" for name in effect.experiments if name not in EXPERIMENTS]
-    if effect.rig != ("forced" in effect.experiments):
+    lacks += [f"{name!r} is no experiment" for name in sorted(set(effect.experiments).difference(EXPERIMENTS))]
+    if effect.rig != any(kind.drive is Drive.FORCE and kind.shows(effect) for kind in EXPERIMENTS.values()):
         lacks.append("rig and the experiment forced go together")
     for p in effect.parameters:
         if not UNIT.fullmatch(p.unit):
@@ -114,23 +111,15 @@ def named_in_the_law(effect: Effect) -> Outcome:
     return Outcome("parameters reach the law", True, ", ".join(names))
 
 
-def scenarios(robot: Robot, long: bool) -> dict[str, list[Scenario]]:
+def scenarios(robot: Robot, long: bool) -> dict[str, tuple[Scenario, ...]]:
     """Scenarios by experiment, for nesting (short) or for traces (long enough to let go)."""
-    spinning = np.full((1, 2), 0.003 / robot.radius)
-    seconds = 8.0 if long else 3.0
-    return {
-        "free_response": [
-            Scenario("free_response", 0.5, offset={"roll": 2e-3, "pitch": 1e-3, "yaw": 2e-3}),
-            free_response("roll", 4e-3, 0.5),
-        ],
-        "pull": [
-            pull("lateral", 1.0, seconds, height=0.2),
-            pull("longitudinal", 2.0, seconds),
-            pull("lateral", 1.0, seconds, wheel_rates=spinning, held=True),
-        ],
-        "swivel": [swivel(wheel_rates(robot, 0.0, 1.0), 1.0)],
-        "straight": [straight(wheel_rates(robot, 0.4, 0.0), 1.0)],
-    }
+    checked = {name: kind.effect_checks for name, kind in EXPERIMENTS.items() if kind.effect_checks}
+    return {name: made(robot, 8.0 if long else 3.0) for name, made in checked.items()}
+
+
+def bench_of(kind: Experiment) -> Callable[..., np.ndarray]:
+    """What simulates one wheel on a bench."""
+    return compress_wheel if kind.vertical else drag_wheel
 
 
 def rig_motion(effects: Mapping[str, Values]) -> np.ndarray:
@@ -163,18 +152,19 @@ def traces(effect: Effect, robot: Robot, values: Values | None = None) -> dict[s
     """Rms change by experiment, in steps of a converter or in tenths of a newton; ``values`` in place of nominal."""
     on = {effect.id: effect.values(values)}
     found: dict[str, float] = {}
-    for experiment, some in scenarios(robot, long=True).items():
-        if experiment in effect.experiments:
-            for scenario in some:
-                plain, changed = simulate(robot, scenario), simulate(robot, scenario, effects=on)
-                names = ["force"] if experiment == "pull" else ["ax", "ay", "az"]
-                floor = FORCE_FLOOR if experiment == "pull" else QUANTUM
-                size = max(_rms(changed[name] - plain[name]) for name in names) / floor
-                found[experiment] = max(size, found.get(experiment, 0.0))
-    for experiment, bench in (("wheel_drag", drag_wheel), ("vertical_compression", compress_wheel)):
-        if experiment in effect.experiments:
+    for name, some in scenarios(robot, long=True).items():
+        kind = EXPERIMENTS[name]
+        for scenario in some if kind.shows(effect) else ():
+            plain, changed = simulate(robot, scenario), simulate(robot, scenario, effects=on)
+            channels = ["force"] if kind.on_a_testing_machine else ["ax", "ay", "az"]
+            floor = FORCE_FLOOR if kind.on_a_testing_machine else QUANTUM
+            size = max(_rms(changed[channel] - plain[channel]) for channel in channels) / floor
+            found[name] = max(size, found.get(name, 0.0))
+    for kind in EXPERIMENTS.values():
+        if kind.of_one_wheel and kind.shows(effect):
+            bench = bench_of(kind)
             difference = bench(robot, _HEAD, 0.05, effects=on) - bench(robot, _HEAD, 0.05)
-            found[experiment] = _rms(difference) / FORCE_FLOOR
+            found[kind.name] = _rms(difference) / FORCE_FLOOR
     if effect.rig:
         found["forced"] = _rms((rig_motion(on) - rig_motion({}))[:, 2]) / QUANTUM
     return found
@@ -192,8 +182,8 @@ def moves(effect: Effect, robot: Robot, values: Values | None = None) -> Outcome
     """What a sensor makes of a motion leaves it as it is, to the last bit; all else changes it in an experiment."""
     on, names = {effect.id: effect.values(values)}, ["x", "y", "z", "roll", "pitch", "yaw"]
     changed, asked = 0, 0
-    for experiment, some in scenarios(robot, long=False).items():
-        if experiment in effect.experiments or not effect.moves:
+    for kind, some in scenarios(robot, long=False).items():
+        if EXPERIMENTS[kind].shows(effect) or not effect.moves:
             for scenario in some:
                 plain, other = (simulate(robot, scenario, 200.0, effects=e) for e in ({}, on))
                 asked += 1

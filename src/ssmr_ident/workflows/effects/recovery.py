@@ -9,14 +9,13 @@ import numpy as np
 from scipy.optimize import least_squares
 from scipy.stats import chi2, norm
 
-from ssmr_ident.experiments import Scenario
+from ssmr_ident.experiments import EXPERIMENTS, Scenario
 from ssmr_ident.physics.effect import Effect
 from ssmr_ident.physics.rig import Rig
 from ssmr_ident.physics.robot import Robot
 from ssmr_ident.simulate import simulate
-from ssmr_ident.simulate.bench import compress_wheel, drag_wheel
 from ssmr_ident.simulate.rig import simulate_rig
-from ssmr_ident.workflows.effects.promises import Outcome, scenarios
+from ssmr_ident.workflows.effects.promises import Outcome, bench_of, scenarios
 
 ACCELERATION_NOISE = 0.02
 """m/s^2, of the reference campaign's accelerometers."""
@@ -62,15 +61,18 @@ def clearest(effect: Effect, traces: Mapping[str, float]) -> Case | None:
     )
     if not fitted or not traces:
         return None
-    experiment = "forced" if effect.rig else max(traces, key=lambda name: traces[name])
-    if experiment == "forced":
+    if effect.rig:
         return Case(decay_of_a_tire, ACCELERATION_NOISE, fitted)
-    if experiment in ("wheel_drag", "vertical_compression"):
-        return Case(_bench(experiment), FORCE_NOISE, fitted)
-    if experiment == "pull":
-        return Case(forces(lambda robot: scenarios(robot, long=False)["pull"][0], **EVEN), FORCE_NOISE, fitted)
-    measure = accelerations(lambda robot: scenarios(robot, long=False)[experiment][0], **HELD)
-    return Case(measure, ACCELERATION_NOISE, fitted)
+    kind = EXPERIMENTS[max(traces, key=lambda name: traces[name])]
+    if kind.of_one_wheel:
+        return Case(_on_bench(bench_of(kind)), FORCE_NOISE, fitted)
+
+    def first(robot: Robot) -> Scenario:
+        return scenarios(robot, long=False)[kind.name][0]
+
+    if kind.on_a_testing_machine:
+        return Case(forces(first, **EVEN), FORCE_NOISE, fitted)
+    return Case(accelerations(first, **HELD), ACCELERATION_NOISE, fitted)
 
 
 def decay_of_a_tire(robot: Robot, effects: Effects) -> np.ndarray:
@@ -98,8 +100,7 @@ def forces(scenario: Callable[[Robot], Scenario], **changes: object) -> Measure:
     return measure
 
 
-def _bench(experiment: str) -> Measure:
-    run = drag_wheel if experiment == "wheel_drag" else compress_wheel
+def _on_bench(run: Callable[..., np.ndarray]) -> Measure:
     return lambda robot, effects: run(robot, np.linspace(0.0, 0.012, 240), 0.05, effects=effects)
 
 
