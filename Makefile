@@ -6,14 +6,14 @@ BIN := $(VENV)/bin
 # small matrices: threads of the linear algebra only get into each other's way
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: demo test static compiled test-all check docs bench bench-doctor data clean
+.PHONY: demo test static test-all check docs bench bench-doctor data clean
 
 demo: $(VENV)/.runtime
 	$(BIN)/ident demo -o out
 
-# types and examples on one processor while the other compiles what the tests need; then the tests, on both
+# types and examples, while loops are compiled that the tests need; then the tests
 test: $(VENV)/.test
-	$(MAKE) --no-print-directory -j2 static compiled
+	$(MAKE) --no-print-directory -j3 static compiled-contract compiled-unit
 	$(BIN)/pytest -n 2 --dist worksteal -m "not slow and not compiles" tests
 
 static: $(VENV)/.test
@@ -22,8 +22,8 @@ static: $(VENV)/.test
 	$(BIN)/lint-imports
 	$(BIN)/pytest src
 
-compiled: $(VENV)/.test
-	$(BIN)/pytest -m "compiles and not slow" $$(grep -rl --include="*.py" mark.compiles tests)
+compiled-%: $(VENV)/.test
+	$(BIN)/pytest -m "compiles and not slow" $$(grep -rl --include="*.py" mark.compiles tests/$*)
 
 test-all: test
 	$(BIN)/pytest -n 3 --dist worksteal -m slow tests

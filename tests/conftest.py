@@ -32,7 +32,7 @@ from numba.core.event import install_timer
 mpl.use("Agg")
 os.environ.setdefault("NO_COLOR", "1")
 ROOT = Path(__file__).resolve().parents[1]
-OUTGROWN = 3.0
+OUTGROWN = 1.5
 """Processor seconds from which a test without the mark ``slow`` is named: three times what the mark means, since
 processors differ."""
 

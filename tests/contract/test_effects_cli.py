@@ -34,6 +34,7 @@ def test_the_list_names_every_effect_once_with_its_sentence() -> None:
     assert json.loads(_out("--json"))[0]["id"] == next(iter(CATALOGUE))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("effect_id", sorted(CATALOGUE))
 def test_one_effect_as_text_and_values(effect_id: str) -> None:
     effect = CATALOGUE[effect_id]
@@ -87,6 +88,7 @@ def test_the_reference_page_is_what_the_catalogue_says(root: Path) -> None:
     assert (root / "docs" / "reference" / "effects.md").read_text(encoding="utf-8") == page
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("effect_id", ["dry_friction", "motor_belt", "ground_joints", "translation_coupling"])
 def test_panels_show_a_difference_with_units_on_every_axis(effect_id: str) -> None:
     effect = CATALOGUE[effect_id]

@@ -111,6 +111,7 @@ def test_no_effect_is_passed_over() -> None:
     assert set(CASES) | SWITCHES == set(CATALOGUE)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("effect_id", CASES)
 def test_the_amplitude_comes_back_within_its_uncertainty(effect_id: str, robot: Robot) -> None:
     outcome = recovered(CATALOGUE[effect_id], CASES[effect_id], robot)

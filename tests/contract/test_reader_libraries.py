@@ -147,6 +147,7 @@ def test_frames(tmp_path: Path, kind: str) -> None:
     assert pyarrow is not None
 
 
+@pytest.mark.slow
 def test_parquet_of_repeats_is_refused_before_it_is_laid_out(tmp_path: Path) -> None:
     pyarrow = pytest.importorskip("pyarrow")
     from pyarrow import parquet

@@ -95,6 +95,7 @@ def test_each_formula_is_begun_once_and_what_is_no_law_is_left_to_others() -> No
     assert all(is_law(s) for group in groups for s in group if s not in rest)
 
 
+@pytest.mark.slow
 def test_a_law_whose_force_is_no_number_is_not_begun(monkeypatch: pytest.MonkeyPatch) -> None:
     fit = fitted(prepared(campaign({"free_play": {"gap_m": 6e-4, "rounding": 0.1}}, SHAKEN, seed=6)))
     monkeypatch.setattr(

@@ -58,6 +58,7 @@ def test_a_simulation_that_has_burst_tells_nothing(alike: tuple[Setup, JointFit,
     assert np.isnan(discriminate._differ(replace(one, trial=replace(one.trial, run=bursting)), best, rival))
 
 
+@pytest.mark.slow
 def test_distances_grow_with_the_amplitude_and_say_what_a_repeat_gives(
     alike: tuple[Setup, JointFit, JointFit],
 ) -> None:

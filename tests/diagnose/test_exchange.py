@@ -43,6 +43,7 @@ def hardens() -> tuple[dict[str, Explanation], tuple[Trial, ...]]:
     return {e.id: e for e in found}, kept
 
 
+@pytest.mark.slow
 def test_what_stands_behind_another_takes_its_place(hardens: tuple[dict[str, Explanation], tuple[Trial, ...]]) -> None:
     found, kept = hardens
     pair, first = found["dry_friction+nonlinear_stiffness"], found["dry_friction"]

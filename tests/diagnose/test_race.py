@@ -89,6 +89,7 @@ def test_of_a_race_over_whole_recordings_each_effects_best_goes_on() -> None:
     assert len(found) <= 2 * kept
 
 
+@pytest.mark.slow
 def test_what_grows_while_a_recording_lasts_is_asked_for_on_whole_recordings(monkeypatch: pytest.MonkeyPatch) -> None:
     """A stiffness that drifts hardly shows on a first horizon, and a few steps there may lose it."""
     runs = [Run(force=20.0), Run(force=40.0), Run(force=10.0)]

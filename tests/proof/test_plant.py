@@ -41,6 +41,7 @@ def test_a_rig_rings_as_its_closed_form_says() -> None:
     assert np.abs(position - exact).max() < 5e-3 * exact.max()
 
 
+@pytest.mark.slow
 def test_a_second_mass_splits_the_line_where_two_masses_do() -> None:
     """Undamped frequencies from the 2 x 2 eigenvalue problem, against the peaks of the free vibration's spectrum."""
     share, hertz = 0.1, 8.0

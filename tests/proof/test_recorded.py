@@ -46,6 +46,7 @@ def test_all_kinds_and_families_are_drawn() -> None:
     assert all((effect.strength < 0.0) == (case.kind == "faint") for case in cases for effect in case.effects)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("family", FAMILIES)
 def test_without_hidden_physics_the_true_parameters_leave_the_noise(family: str, tmp_path: Path, tiny: Extent) -> None:
     """Against the bundled simulator, on recordings of the other engine."""

@@ -222,6 +222,7 @@ def rig_motion(mass: float, damping: float, stiffness: float, force: np.ndarray,
     return out
 
 
+@pytest.mark.slow
 def test_rig_comes_back() -> None:
     rng = np.random.default_rng(12)
     records = []

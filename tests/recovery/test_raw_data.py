@@ -195,6 +195,7 @@ def test_first_rise_is_that_of_tires_body_and_cable_in_series(pulls: Campaign, r
         assert rise.slope_std < 2e-3 * rise.slope
 
 
+@pytest.mark.slow
 def test_belt_comes_back_from_the_longitudinal_ramp(pulls: Campaign, robot: Robot) -> None:
     for measurement in named(pulls, "concrete-longitudinal-steel") + named(pulls, "carpet-longitudinal-steel"):
         belt = belt_stiffness(behind_cable(taken_apart(measurement).first.slope, STEEL_STIFFNESS))
@@ -204,6 +205,7 @@ def test_belt_comes_back_from_the_longitudinal_ramp(pulls: Campaign, robot: Robo
         assert belt == pytest.approx(2 * robot.stiffness[0], rel=6e-3)
 
 
+@pytest.mark.slow
 def test_lateral_tire_stiffness_comes_back_from_one_wheel(pulls: Campaign, robot: Robot) -> None:
     truth = robot.stiffness[1]
     for measurement in named(pulls, "concrete-wheel-drag"):

@@ -6,6 +6,7 @@ import ast
 import re
 from pathlib import Path
 
+import pytest
 import typer.main
 
 from ssmr_ident.cli import app
@@ -37,6 +38,7 @@ def advised(folder: Path) -> dict[str, set[str]]:
     return found
 
 
+@pytest.mark.slow
 def test_advice_of_readers_can_be_followed_on_inspect() -> None:
     named = advised(ROOT / "readers")
     assert len(named) > 8

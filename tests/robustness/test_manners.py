@@ -99,6 +99,7 @@ def test_a_wrong_call_gets_one_line_and_the_nearest_name(call: list[str], told: 
     assert not done.stdout
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("typed", "offered"),
     [
@@ -115,12 +116,14 @@ def test_the_tab_key(typed: str, offered: str) -> None:
     assert offered in done.stdout.split()
 
 
+@pytest.mark.slow
 def test_completion_scripts_are_shown_without_being_installed() -> None:
     for shell in ("bash", "zsh", "fish"):
         done = _ident(_IDENT_COMPLETE=f"source_{shell}")
         assert "_IDENT_COMPLETE" in done.stdout
 
 
+@pytest.mark.slow
 def test_colour_for_people_who_want_it() -> None:
     colour = re.compile(r"\x1b\[[0-9;]*3[0-9]")
     assert colour.search(_on_a_terminal("--help"))

@@ -125,6 +125,7 @@ def test_sheet_in_utf16_does_not_slip_through(workbook: Path) -> None:
     refused(repack(workbook, SHEET, lambda _: text.encode("utf-16")), "is not UTF-8")
 
 
+@pytest.mark.slow
 def test_both_ways_find_the_same_corner() -> None:
     rng = np.random.default_rng(1)
     for _ in range(20):

@@ -157,6 +157,7 @@ def test_options_are_asked_by_the_same_declaration(tmp_path: Path, options: str)
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", MADE)
 def test_shipped_schemas_are_the_declaration(name: str) -> None:
     shipped = json.loads(schema_file(name).read_text(encoding="utf-8"))

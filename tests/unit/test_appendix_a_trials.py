@@ -32,6 +32,7 @@ def test_the_low_pass_halves_a_line_at_its_edge() -> None:
     assert band_amplitude(one) == pytest.approx(1.0, rel=0.02)
 
 
+@pytest.mark.slow
 def test_every_trial_is_written(tmp_path: Path) -> None:
     rows = tuple(row(f"{k}.xlsx", 10.0 * k, 1.0 + 0.1 * k) for k in (1, 2, 3))
     report = write(SpectrumReport("made", rows, (), (), RATE_LABEL), tmp_path)

@@ -87,6 +87,7 @@ def test_torques_and_back(robot: Robot) -> None:
     assert torques @ rates == pytest.approx(pushed[0] * 0.3 + pushed[5] * 0.5)
 
 
+@pytest.mark.slow
 def test_what_the_floor_does_on_the_body_is_its_energy(robot: Robot) -> None:
     """The work of all wheel forces, which the simulator logs, is the change of ½VᵀMV + mgz, which its poses give."""
     run = simulate(robot, swivel(wheel_rates(robot, 0.0, 1.2), 1.5), 5000.0, step=1e-4)

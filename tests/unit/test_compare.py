@@ -79,6 +79,7 @@ def test_json_is_what_the_contract_says(rig_session: Path) -> None:
     assert list(row["channels"]) == ["acceleration"]
 
 
+@pytest.mark.slow
 def test_plots_and_table_are_written_where_asked(rig_session: Path, tmp_path: Path) -> None:
     compare_session(rig_session, output=tmp_path / "out", command="ident compare rig -o out")
     assert (tmp_path / "out" / "log.png").stat().st_size > 10_000

@@ -25,6 +25,8 @@ from ssmr_ident.physics.rig import Rig
 from ssmr_ident.signals.noise import AutoregressiveNoise
 from ssmr_ident.simulate.rig import simulate_rig
 
+pytestmark = pytest.mark.slow
+
 MASS, DAMPING, STIFFNESS = 2.0, 1.5, 800.0
 HZ = math.sqrt(STIFFNESS / MASS) / (2.0 * math.pi)
 
@@ -77,7 +79,6 @@ def compiled(p: Problem, node: Node, point: np.ndarray):
     return Compiled.of(p, node, point, p.pieces)
 
 
-@pytest.mark.compiles
 @pytest.mark.parametrize(
     ("member", "agree"),
     # the simulator iterates the velocity that friction acts on three times, the kernel until it holds
@@ -106,7 +107,6 @@ def test_kernel_is_the_simulator_and_its_slopes_are_differences(member, agree: f
         assert np.abs(differences - slopes).max() < 3e-3 * np.abs(differences).max()
 
 
-@pytest.mark.compiles
 def test_elimination_is_dense_algebra() -> None:
     random = np.random.default_rng(5)
     count, n, m = 5, 2, 3
@@ -136,7 +136,6 @@ def test_elimination_is_dense_algebra() -> None:
     assert before == pytest.approx(dense[-m - 2 * n : -m - n])
 
 
-@pytest.mark.compiles
 @pytest.mark.parametrize(("stiff", "damp"), [(1.0, 1.0), (3.0, 10.0), (1.0 / 3.0, 0.1)])
 def test_multiple_shooting_comes_from_far_away(stiff: float, damp: float) -> None:
     k3 = 2e5

@@ -70,6 +70,7 @@ def test_order_follows_evidence() -> None:
     assert fit.evidence[2] < fit.evidence[1]
 
 
+@pytest.mark.slow
 def test_coloured_noise_is_whitened() -> None:
     """Noise of low frequency: the std must follow the density at the mode, not the variance of a sample."""
     rng = np.random.default_rng(5)

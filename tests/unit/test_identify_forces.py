@@ -162,6 +162,7 @@ def test_block_pull_says_when_the_zero_is_unknown() -> None:
     assert unknown.level - unknown.zero == pytest.approx(4.0, abs=0.05)
 
 
+@pytest.mark.slow
 def test_speed_knee() -> None:
     """Section 3.3: a nearly linear fall, flat from 0.04 m/s on."""
     rng = np.random.default_rng(8)

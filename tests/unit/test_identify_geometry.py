@@ -18,6 +18,7 @@ TABLE_5_1 = [[-0.15, 0.18, -0.23], [0.13, 0.18, -0.23], [0.13, -0.18, -0.23], [-
 BY_HAND = {"xx": 1.13, "yy": 1.52, "zz": 0.91, "xy": 0.001, "xz": -0.04, "yz": -0.002}
 
 
+@pytest.mark.slow
 def test_example_gives_table_5_1_and_a_tensor_of_the_hand_made_kind(root: Path, tmp_path: Path) -> None:
     sheet = root / "docs" / "howto" / "measurements.yaml"
     result = CliRunner().invoke(app, ["geometry", str(sheet), "-o", str(tmp_path / "geometry.yaml")])

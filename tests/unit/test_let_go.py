@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from ssmr_ident.compare import compare
 from ssmr_ident.core.parameter import Estimate
@@ -19,6 +20,7 @@ RATE, SECONDS = 1000.0, 2.5
 GROWS = 1.14e8  # N s/m^3: 570 N s/m at the 2.2 mm that the contacts go, ten times what the tires have else
 
 
+@pytest.mark.slow
 def test_a_release_is_followed_that_creeps_back_before_it_swings() -> None:
     known = read_parameters("p3at-extended")
     effects = {"unlisted": {"c_s2v_N_s_m3": GROWS}}

@@ -41,6 +41,7 @@ def _ready(folder: Path, told: Told):
     return draft
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("hertz", [3.0, 9.0])
 def test_plucked_and_quiet_before(tmp_path: Path, hertz: float) -> None:
     rng = np.random.default_rng(1)
@@ -105,6 +106,7 @@ def test_a_velocity_in_radians_is_an_angular_rate(tmp_path: Path) -> None:
     np.testing.assert_allclose(measurement.recording["angular_rate"], rate, rtol=1e-5, atol=1e-6)
 
 
+@pytest.mark.slow
 def test_a_shaker_with_one_axis_named_is_a_rig(tmp_path: Path) -> None:
     made = event(np.random.default_rng(4), hertz=(6.0,), mass=1.7, seconds=15.0)
     rng = np.random.default_rng(5)
@@ -119,6 +121,7 @@ def test_a_shaker_with_one_axis_named_is_a_rig(tmp_path: Path) -> None:
     assert known.number("stiffness_N_m") == pytest.approx(1.7 * (2 * math.pi * 6.0) ** 2, rel=0.05)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("heads", ["table [m/s^2],mass [m/s^2]", "ch1 [m/s^2],ch2 [m/s^2]"])
 def test_a_moved_foot_is_told_by_its_name_or_by_what_answers(tmp_path: Path, heads: str) -> None:
     made = event(np.random.default_rng(6), hertz=(7.0,), mass=1.0, seconds=15.0, band=(1.0, 20.0))

@@ -30,6 +30,7 @@ def test_fit_page_says_conflict_first_and_what_was_learnt_most() -> None:
     assert "the mass is not what the scales said" in text
 
 
+@pytest.mark.slow
 def test_spectrum_page_finds_the_line_that_is_there(tmp_path: Path) -> None:
     time = np.arange(0, 10, 0.005)
     log = tmp_path / "log.csv"

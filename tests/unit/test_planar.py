@@ -149,6 +149,7 @@ def test_steady_turns_agree_with_the_six_degrees_of_freedom(robot: Robot, limit:
     assert -left / turning == pytest.approx(-sideways / rate, abs=0.015)
 
 
+@pytest.mark.slow
 def test_the_larger_lambda_max_the_slower_the_turn_either_way_round(robot: Robot) -> None:
     plane = planar_dynamics.planar_robot(robot)
     for wanted in (0.8, -0.8):

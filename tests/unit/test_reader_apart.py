@@ -26,6 +26,7 @@ def log(tmp_path: Path) -> Path:
     return path
 
 
+@pytest.mark.slow
 def test_a_type_that_ends_scipy_is_one_line_and_the_next_file_is_read(log: Path, tmp_path: Path) -> None:
     damaged = tmp_path / "damaged.mat"
     damaged.write_bytes(log.read_bytes().replace(DOUBLE, RESERVED))

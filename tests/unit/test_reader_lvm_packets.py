@@ -42,6 +42,7 @@ def test_triggered_packets_are_records(tmp_path: Path) -> None:
     assert any("read as 3 records" in note.text for note in recordings[0].warnings)
 
 
+@pytest.mark.slow
 def test_a_running_acquisition_stays_one_record(tmp_path: Path) -> None:
     """Samples is the size of a packet only; rows are trusted. 1 in 100 may be split at the level of 0.01."""
     split = 0

@@ -202,6 +202,7 @@ def test_clocks_may_be_named_among_the_units(tmp_path: Path) -> None:
     np.testing.assert_allclose(recording["P"], 2e-3 * np.arange(20), atol=1e-12)
 
 
+@pytest.mark.slow
 def test_friction_originals_agree_with_the_clean_files(shared: Path) -> None:
     """Somebody else's clean version of the same recording: each force once, the position interpolated there."""
     folder = shared / "recordings" / "friction_pull"

@@ -78,6 +78,7 @@ def test_energy_is_kept_without_damping_and_friction(robot: Robot) -> None:
     assert np.ptp(energy) < 2e-3 * swing
 
 
+@pytest.mark.slow
 def test_energy_never_grows_with_damping_and_friction(robot: Robot) -> None:
     result = simulate(robot, Scenario("free_response", 2.0, offset={"roll": 0.004, "y": 0.001}), 2000.0)
     damped = _energy(_gripping(robot), result)

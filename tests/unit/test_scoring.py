@@ -47,6 +47,7 @@ def test_outcomes(truth: tuple[str, ...], diagnosis: Diagnosis, expected: str) -
     assert outcome(truth, diagnosis) == expected
 
 
+@pytest.mark.slow
 def test_errors_are_in_the_diagnosis_own_standard_deviations() -> None:
     diagnosis = hardening()
     after = diagnosis.after.updated({"mass_kg": Estimate(20.0, 0.5, "kg")})
@@ -63,6 +64,7 @@ def test_a_session_that_breaks_the_engine_is_a_result() -> None:
     assert "ZeroDivisionError" in row["error"]
 
 
+@pytest.mark.slow
 def test_a_row_holds_the_floor_of_what_was_kept_back() -> None:
     row, _ = row_of("a", ("nonlinear_stiffness",), hardening, {"roll-3.xlsx": 3.0, "pitch-3.xlsx": 3.0}, seed=1)
     assert (row["outcome"], row["floor"], row["seed"]) == ("right", 3.0, 1)

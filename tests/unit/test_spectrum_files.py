@@ -86,6 +86,7 @@ def test_a_slow_line_is_named(tmp_path: Path) -> None:
     assert wide.rows[0].analysis.peaks.frequency[0] == pytest.approx(0.4)
 
 
+@pytest.mark.slow
 def test_same_names_in_two_folders_stay_apart(tmp_path: Path) -> None:
     t = np.arange(500) / 100.0
     logs = []

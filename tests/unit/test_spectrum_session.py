@@ -53,6 +53,7 @@ def session(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.mark.slow
 def test_table_holds_what_was_put_in(session: Path, tmp_path: Path) -> None:
     report = write(spectrum([session]), tmp_path, figures=False)
     with (tmp_path / "spectrum.csv").open(encoding="utf-8") as stream:
@@ -74,6 +75,7 @@ def test_table_holds_what_was_put_in(session: Path, tmp_path: Path) -> None:
             assert float(row["mean"]) == pytest.approx(9.8, abs=0.01)
 
 
+@pytest.mark.slow
 def test_repeats_are_averaged_over_both_senses_of_turning(session: Path) -> None:
     report = spectrum([session])
     assert len(report.averages) == 4 * 3
@@ -105,6 +107,7 @@ def test_figures_are_drawn_and_the_same_twice(session: Path, tmp_path: Path) -> 
         assert one.read_bytes() == other.read_bytes()
 
 
+@pytest.mark.slow
 def test_axes_over_speed_hold_every_point(session: Path) -> None:
     report = spectrum([session])
     own = [average for average in report.averages if average.configuration == "concrete, aluminium"]
@@ -125,6 +128,7 @@ def test_axes_over_speed_hold_every_point(session: Path) -> None:
             assert "deg/s" in figure.axes[-1].get_xlabel()
 
 
+@pytest.mark.slow
 def test_choices_reach_the_table(session: Path) -> None:
     report = spectrum([session], SpectrumChoices(part="2:6", low_pass_hz=20.0))
     chosen = next(r for r in report.rows if r.label.file == "concrete-20-0.csv" and r.channel == "ay")
@@ -134,6 +138,7 @@ def test_choices_reach_the_table(session: Path) -> None:
     assert np.ptp(chosen.analysis.low_passed[200:-200]) / 2 == pytest.approx(0.1 * gain, abs=2e-3)
 
 
+@pytest.mark.slow
 def test_the_screen_shows_every_log_once(session: Path) -> None:
     text = screen_text(spectrum([session]))
     for floor, speed in LINES:
@@ -142,6 +147,7 @@ def test_the_screen_shows_every_log_once(session: Path) -> None:
     assert "concrete, aluminium" in text
 
 
+@pytest.mark.slow
 def test_json_is_json(session: Path) -> None:
     result = CliRunner().invoke(app, ["spectrum", str(session), "--json", "--no-figures"])
     assert result.exit_code == 0
@@ -155,6 +161,7 @@ def test_a_session_and_a_log_do_not_mix(session: Path) -> None:
         spectrum([session, session / "carpet-20-0.csv"])
 
 
+@pytest.mark.slow
 def test_a_range_outside_the_log_names_log_and_channel(session: Path) -> None:
     with pytest.raises(InputError, match=r"concrete-20-0.csv: ax: --range: 30:40 holds 0 samples"):
         spectrum([session], SpectrumChoices(part="30:40"))
