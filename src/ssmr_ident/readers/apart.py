@@ -12,6 +12,7 @@ import pickle
 import subprocess
 import sys
 import threading
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -91,7 +92,7 @@ class Apart:
         child, self._child = self._child, None
         if child is not None:
             child.kill()
-            with child:
+            with suppress(BrokenPipeError), child:  # what it was still to be told is nobody's loss
                 pass
 
 
