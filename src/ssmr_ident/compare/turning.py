@@ -14,7 +14,7 @@ from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.core.recording import Recording
 from ssmr_ident.experiments.campaign import Measurement
-from ssmr_ident.experiments.scenario import NO_PULL, Scenario
+from ssmr_ident.experiments.scenario import Scenario
 from ssmr_ident.physics.motor import wheel_rates
 from ssmr_ident.physics.robot import Robot, robot_from_parameters
 from ssmr_ident.physics.slots import Effects, effect_values
@@ -34,13 +34,13 @@ def turning_robot(parameters: ParameterSet) -> Robot:
 
 
 def with_floor(effects: Effects, parameters: ParameterSet, seed: float = 1.0) -> dict[str, dict[str, float]]:
-    """The effects, and what every floor has: a fine unevenness where none is among them, and no pull (4.15)."""
+    """The effects, and the fine unevenness that every floor has where none is among them."""
     grain = {
         "height_m": parameters.number("floor.height_m", FLOOR_HEIGHT),
         "length_m": parameters.number("floor.length_m", FLOOR_LENGTH),
         "seed": seed,
     }
-    return {"ground_roughness": grain, **NO_PULL, **{name: dict(values) for name, values in effects.items()}}
+    return {"ground_roughness": grain, **{name: dict(values) for name, values in effects.items()}}
 
 
 def predict(parameters: ParameterSet, measurement: Measurement) -> Prediction:

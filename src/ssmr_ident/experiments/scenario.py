@@ -11,10 +11,6 @@ import numpy as np
 Array = np.ndarray[tuple[int, ...], np.dtype[np.float64]]
 
 
-NO_PULL = {"wheel_lift": {"active": 1.0}}
-"""N >= 0 (4.15): part of the baseline where a robot drives itself; of decays it is asked (``wheel_lift``)."""
-
-
 @dataclass(frozen=True, eq=False)
 class Scenario:
     """One run of the robot's simulator.

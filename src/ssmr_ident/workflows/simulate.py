@@ -17,7 +17,6 @@ from ssmr_ident.core.place import Place, shown
 from ssmr_ident.core.recording import Channel, Provenance, Recording
 from ssmr_ident.experiments import EXPERIMENTS, Conditions, Experiment
 from ssmr_ident.experiments.experiment import ACCELERATIONS
-from ssmr_ident.experiments.scenario import NO_PULL
 from ssmr_ident.physics.rig import rig_from_parameters
 from ssmr_ident.physics.robot import Robot, accelerometer_from_parameters, robot_from_parameters
 from ssmr_ident.physics.sensor import Noise
@@ -171,12 +170,15 @@ def _run(parameters: ParameterSet, request: Request) -> Recording:
 def run_robot(
     robot: Robot, effects: Effects, request: Request, offset: Mapping[str, float] | None = None
 ) -> Simulation:
-    """The whole robot in one of the experiments that are done with it, begun ``offset`` further away."""
+    """The whole robot in one of the experiments that are done with it, begun ``offset`` further away.
+
+    N >= 0 (4.15) is part of the baseline here; in free responses it is the effect ``wheel_lift``, which decays tell.
+    """
     experiment = request.experiment
     if experiment.scenario is None:
         raise InputError("--experiment", f"{experiment.name} is not done with a whole robot")
     if not experiment.free:
-        effects = {**NO_PULL, **effects}
+        effects = {"wheel_lift": {"active": 1.0}, **effects}
     scenario = experiment.scenario(robot, request.conditions, request.duration)
     if offset:
         scenario = replace(scenario, offset={**scenario.offset, **offset})
