@@ -109,6 +109,28 @@ FORMS: dict[str, tuple[list[str], Row, str, str]] = {
     "words among numbers": (
         ["time_s,state,raw,force_N,valid"],
         lambda k, t, a, f, x: f"{t:.4f},{'RUN' if k > 5 else 'INIT'},0x{k:04X},{f:.5f},true", "force", "utf-8"),
+    "a header on every page": (
+        [], lambda k, t, a, f, x: ("" if k % 20 else f"Page {k // 20 + 1}\nTime   Load\n(s)    (N)\n-----------\n")
+        + f"{t:.4f}   {f:.5f}", "force", "utf-8"),
+    "names that a row says": (
+        ["Operator:\tJ.", "Channel names:\tForce\tAccel", "Units:\tN\tg", "dt:\t0.004", ""],
+        lambda k, t, a, f, x: f"{f:.5f}\t{a / G:.7f}", "force acceleration", "utf-8"),
+    "a word before the names": (
+        ["#SampleRate, 250,Hz", "#Headers, force_N,acc_g"], lambda k, t, a, f, x: f"{f:.5f},{a / G:.7f}",
+        "force acceleration", "utf-8"),
+    "a header over two rows": (
+        ["Zeit;Sensor 1;", "s;Kraft [N];Beschl. [g]"], lambda k, t, a, f, x: f"{comma(t)};{comma(f)};{comma(a / G, 8)}",
+        "force acceleration", "utf-8"),
+    "rates of every channel": (
+        ['"SampleRate",250,250', '"TraceName","Force (N)","Accel (m/s^2)"', '"HUnit","s"', ""],
+        lambda k, t, a, f, x: f",{f:.5f},{a:.6f}", "force acceleration", "utf-8"),
+    "dates between tabs": (
+        ["time[0]\tForce [N]"],
+        lambda k, t, a, f, x: f"02.06.2025 {stamp(k)}\t{comma(f)}".replace(".", ",").replace(",06,2025", ".06.2025"),
+        "force", "utf-8"),
+    "words for no number": (
+        ["time_s,force_N,other_N"], lambda k, t, a, f, x: f"{t:.4f},{f:.5f},{'OVERLOAD' if k % 7 == 3 else f'{f:.2f}'}",
+        "force", "utf-8"),
     "a clock with colons throughout": (
         ["Time\tForce (N)"], lambda k, t, a, f, x: f"12:00:00:{4 * k:03d}\t{f:.5f}", "force", "utf-8"),
 }  # fmt: skip

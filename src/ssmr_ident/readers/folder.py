@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -14,6 +15,8 @@ LOG_EXTENSIONS = frozenset(
         *(".wav", ".zip", ".bag", ".mcap", ".db3"),
     }
 )
+_HEAD = 65536  # bytes of a .json that are looked at
+_ARRAY = re.compile(rb"\[(?:\s*-?\d[\d.eE+-]{0,30}\s*,){8}")  # so many numbers in a row are samples
 
 
 def logs_in(paths: Iterable[Path], *, below: bool = False) -> tuple[list[Path], list[InputError]]:
@@ -53,7 +56,21 @@ def _shown(entry: Path) -> bool:
 
 
 def _of(folder: Path) -> list[Path]:
-    return sorted(e for e in folder.iterdir() if e.suffix.lower() in LOG_EXTENSIONS and _shown(e) and e.is_file())
+    return sorted(e for e in folder.iterdir() if _shown(e) and _is_log(e) and e.is_file())
+
+
+def _is_log(entry: Path) -> bool:
+    """True for a log's extension; a ``.json`` may be settings, properties or results, so its head is asked as well."""
+    extension = entry.suffix.lower()
+    if extension != ".json":
+        return extension in LOG_EXTENSIONS
+    try:
+        with entry.open("rb") as file:
+            head = file.read(_HEAD)
+    except OSError:
+        return False
+    rows = re.match(rb"[^{}\[\]]*\[\s*\{[^{}]*\d", head) is not None
+    return b'"schema"' not in head and (rows or _ARRAY.search(head) is not None)
 
 
 def _folders(folder: Path) -> list[Path]:

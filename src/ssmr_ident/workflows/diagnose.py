@@ -14,6 +14,7 @@ from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.diagnosis import Diagnosis
 from ssmr_ident.experiments.campaign import Campaign, load
 from ssmr_ident.session import write_parameters
+from ssmr_ident.session.effects_block import in_rotary_units
 from ssmr_ident.workflows.files_read import files_read
 
 Progress = Callable[[str, int, int], None]
@@ -45,7 +46,15 @@ def diagnose(
     known = campaign.parameters if parameters is None else parameters
     # recordings are simulated side by side; matrices are small, and threads of their own would stand in the way
     with threadpool_limits(1, user_api="blas"):
-        return _diagnosed(replace(campaign, parameters=known), known, seed, progress)
+        found = _diagnosed(replace(campaign, parameters=known), known, seed, progress)
+    return in_rig_units(found) if "inertia_kg_m2" in known else found
+
+
+def in_rig_units(found: Diagnosis) -> Diagnosis:
+    """The diagnosis of a rotary rig with its effects' parameters in moments and angles, on the page and in files."""
+    named = tuple(replace(effect, parameters=in_rotary_units(effect.parameters)) for effect in found.effects)
+    after = {name: in_rotary_units(estimates) for name, estimates in found.after.effects.items()}
+    return replace(found, effects=named, after=replace(found.after, effects=after))
 
 
 def _diagnosed(campaign: Campaign, known: ParameterSet, seed: int, progress: Progress | None) -> Diagnosis:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,7 @@ from ssmr_ident.readers.source import Source, missing_library
 from ssmr_ident.readers.table.assemble import recordings_of
 from ssmr_ident.readers.table.columns import Column, Table
 from ssmr_ident.readers.table.headings import heading_of
+from ssmr_ident.readers.table.long_form import Words, in_own_columns
 
 NAMES = ("parquet",)
 
@@ -44,6 +46,8 @@ def read(source: Source, options: ReadOptions) -> list[Recording]:
             frame = file.read(use_threads=False)
         else:
             frame = feather.read_table(io.BytesIO(source.data), memory_map=False, use_threads=False)
+        while any(pyarrow.types.is_struct(field.type) for field in frame.schema):
+            frame = frame.flatten()
         made, words = _columns(source, frame, pyarrow)
     except (pyarrow.ArrowException, OSError, ValueError, TypeError, OverflowError, MemoryError) as error:
         raise source.error(
@@ -51,20 +55,19 @@ def read(source: Source, options: ReadOptions) -> list[Recording]:
         ) from error
     if not made:
         raise source.error("has no columns of numbers", f"Columns: {', '.join(words) or 'none'}.")
-    table = Table(made, lambda row: f"row {row + 1}", split=True, words=words)
+    table = Table(made, lambda row: f"row {row + 1}", split=True, words=list(words))
+    table.columns = in_own_columns(source, made, words, table)
     return recordings_of(source, "parquet", table, options)
 
 
-def _columns(source: Source, frame: Any, pyarrow: Any) -> tuple[list[Column], list[str]]:
-    """Columns of numbers and stamps, and the names of the others."""
+def _columns(source: Source, frame: Any, pyarrow: Any) -> tuple[list[Column], dict[str, Words]]:
+    """Columns of numbers and stamps, and the others."""
     made: list[Column] = []
-    words: list[str] = []
+    words: dict[str, Words] = {}
     for number, field in enumerate(frame.schema):
         kind, name = field.type, str(field.name)
         units = {k.decode().lower(): v.decode() for k, v in (field.metadata or {}).items()}
         unit = next((v for k, v in units.items() if k in ("unit", "units")), None)
-        if name.startswith("__index_level_"):
-            continue
         if pyarrow.types.is_timestamp(kind):
             whole = frame.column(number).cast(pyarrow.timestamp("ns")).to_numpy()
             whole = whole.astype("datetime64[ns]").astype(np.int64)
@@ -73,10 +76,16 @@ def _columns(source: Source, frame: Any, pyarrow: Any) -> tuple[list[Column], li
         elif pyarrow.types.is_duration(kind):
             seconds = frame.column(number).cast(pyarrow.duration("ns")).to_numpy().astype(np.int64) * 1e-9
             made.append(Column(name, "s", seconds, quantity="time", number=number))
+        elif name.startswith("__index_level_") and pyarrow.types.is_integer(kind):
+            continue  # pandas counts the rows
         elif pyarrow.types.is_integer(kind) or pyarrow.types.is_floating(kind):
             heading = heading_of(name, unit, source.vocabulary)
             values = np.asarray(frame.column(number).to_numpy(), dtype=float)
             made.append(Column(heading.label, heading.unit, values, number=number))
         else:
-            words.append(name)
+            words[name] = partial(_texts, frame.column(number))
     return made, words
+
+
+def _texts(column: Any, rows: slice) -> list[str]:
+    return ["" if cell is None else str(cell) for cell in column[rows].to_pylist()]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections import Counter
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,7 @@ from ssmr_ident.readers.source import Source
 from ssmr_ident.readers.table.assemble import recordings_of
 from ssmr_ident.readers.table.columns import Column, Table
 from ssmr_ident.readers.table.headings import heading_of
+from ssmr_ident.readers.table.long_form import Words, in_own_columns
 from ssmr_ident.readers.text.encoding import text_of
 from ssmr_ident.readers.text.stamps import is_stamp, seconds_of
 
@@ -97,7 +99,8 @@ def _of_objects(source: Source, objects: list[tuple[int, Any]], what: str, optio
     if len(rows) < len(flat):
         source.inform(f"{len(flat) - len(rows)} object(s) that are no samples left out")
     names = list(dict.fromkeys(name for _, row in rows for name in row))
-    columns, words = [], []
+    columns: list[Column] = []
+    words: dict[str, Words] = {}
     for number, name in enumerate(names):
         cells = [row.get(name) for _, row in rows]
         texts = [c.encode()[:64] if isinstance(c, str) else b"" for c in cells]
@@ -108,10 +111,15 @@ def _of_objects(source: Source, objects: list[tuple[int, Any]], what: str, optio
             values = np.array([_number(c) for c in cells])
             columns.append(Column(heading.label, heading.unit, values, source=heading.source, number=number))
         else:
-            words.append(name)
+            words[name] = partial(_texts, cells)
     places = [k for k, _ in rows]
-    table = Table(columns, lambda row: f"{what} {places[row]}", split=True, words=words)
+    table = Table(columns, lambda row: f"{what} {places[row]}", split=True, words=list(words))
+    table.columns = in_own_columns(source, columns, words, table)
     return recordings_of(source, "json", table, options)
+
+
+def _texts(cells: list[Any], rows: slice) -> list[str]:
+    return ["" if cell is None else str(cell) for cell in cells[rows]]
 
 
 def _flat(value: Any, prefix: str = "", depth: int = 0) -> dict[str, Any]:

@@ -198,14 +198,15 @@ def _ask_for_units(
         return
     shown = ", ".join(c.shown for c in asked)
     reason = f"; {why.why}" if why is not None else ""
-    unit = (why.unit if why else "") or "…"
-    examples = sorted({_EXAMPLES.get(SI_UNIT.get(c.quantity or "", ""), "N, mm, V or g") for c in asked})
-    such = "" if unit != "…" else f"such as {'; '.join(examples)}"
+    units = [(why.unit if why and any(c is v for v in vector) else "") or "…" for c in asked]
+    open_ones = [c for c, unit in zip(asked, units, strict=True) if unit == "…"]
+    examples = sorted({_EXAMPLES.get(SI_UNIT.get(c.quantity or "", ""), "N, mm, V or g") for c in open_ones})
+    such = f"such as {'; '.join(examples)}" if open_ones else ""
     clock = next((c.number for c in table.columns if not any(c is one for one in data)), None)
-    raise source.error(f"unit of {shown} unknown{reason} ({seen})", _mend(asked, such, unit, clock), table.part)
+    raise source.error(f"unit of {shown} unknown{reason} ({seen})", _mend(asked, such, units, clock), table.part)
 
 
-def _mend(columns: list[Column], such_as: str, unit: str = "…", clock: int | None = None) -> str:
+def _mend(columns: list[Column], such_as: str, units: list[str] | None = None, clock: int | None = None) -> str:
     """How a unit is told: on the command line, or where a session lists the recording.
 
     Parameters
@@ -214,15 +215,16 @@ def _mend(columns: list[Column], such_as: str, unit: str = "…", clock: int | N
         Number of a time column without a name.
     """
     such = f", {such_as}" if such_as else ""
+    units = units or ["…"] * len(columns)
     if not any(c.label for c in columns):
         names = ("ax", "ay", "az") if len(columns) == 3 else ("force", "acceleration", "position")
         named = dict(zip(names, columns, strict=False))
         numbers = {**({} if clock is None else {"time": clock}), **{name: c.number for name, c in named.items()}}
         pairs = ",".join(f"{name}={number}" for name, number in numbers.items())
         said = "" if len(columns) == 3 else f" What they are only you know: {' and '.join(named)} are examples."
-        return f"Give --columns {pairs} --units {','.join(f'{a}={unit}' for a in named)}{such}.{said}"
-    pairs = ",".join(f"{c.shown}={unit}" for c in columns)
-    keys = ", ".join(f"{c.shown}: {unit}" for c in columns)
+        return f"Give --columns {pairs} --units {','.join(map('='.join, zip(named, units, strict=False)))}{such}.{said}"
+    pairs = ",".join(f"{c.shown}={unit}" for c, unit in zip(columns, units, strict=True))
+    keys = ", ".join(f"{c.shown}: {unit}" for c, unit in zip(columns, units, strict=True))
     return f"Give --units {pairs}{such}; in session.yaml, units: {{{keys}}} beside the file."
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -57,6 +57,8 @@ def clocked(source: Source, columns: list[Column], options: ReadOptions, table: 
         data = [c for c in columns if not any(c is t for t in times)]
     if not data:
         raise source.error("has a time column and no other", "Export the measured channels too.", table.part)
+    if any(c.rows is not None for c in data):
+        return _by_sensor(source, times, data, options, table)
     if options.fs is not None:
         used = f"; column {times[0].shown} not used" if times else ""
         table.inform(f"time from --fs {options.fs:g} Hz{used}")
@@ -117,6 +119,48 @@ def _clocks(
     for column, why in unclear:
         table.inform(f"clock {column.shown} left out: {why.problem}")
     return clocks
+
+
+def _by_sensor(
+    source: Source, times: list[Column], data: list[Column], options: ReadOptions, table: Table
+) -> list[Clocked]:
+    """Columns of a table in long form at the stamps of their own rows; sensors that tick together share a clock."""
+    groups: dict[bytes, list[Column]] = {}
+    for column in data:
+        assert column.rows is not None
+        groups.setdefault(column.rows.tobytes(), []).append(column)
+    found: list[tuple[Clock, list[Column]]] = []
+    for members in groups.values():
+        rows = members[0].rows
+        known = len(table.notes)
+        mine = [replace(c, values=c.values[rows]) for c in times]
+        if options.fs is not None:
+            seconds = np.arange(len(mine[0].values)) / options.fs
+            clock = Clock("--fs", seconds, 0.0, [f"time from --fs {options.fs:g} Hz for every sensor"], mine[0])
+        else:
+            clocks = _clocks(source, _distinct(mine, table), mine, options, table)
+            clock = clocks[0] if len(clocks) == 1 else _evenest(clocks, table)
+        if found:
+            del table.notes[known:]  # said of the first sensor
+        else:
+            for note in clock.notes:
+                table.inform(note)
+        found.append((clock, members))
+    earliest = min(clock.begin for clock, _ in found)
+    made: list[Clocked] = []
+    for clock, members in found:
+        stamps = clock.seconds + (clock.begin - earliest)
+        same = next((c for c in made if np.array_equal(c.stamps, stamps, equal_nan=True)), None)
+        if same is None:
+            made.append(Clocked(stamps, members, members[0].rows, label=clock.label))
+            continue
+        assert same.rows is not None
+        for column in members:
+            here = np.full(len(column.values), np.nan)
+            here[same.rows] = column.values[column.rows]
+            column.values = here
+        same.columns += members
+    return made
 
 
 def _is_time_unit(source: Source, unit: str) -> bool:

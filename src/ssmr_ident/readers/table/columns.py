@@ -35,6 +35,8 @@ class Column:
         True when the user named the quantity.
     role : str
         ``counter`` or ``ignored`` for what is no measurement.
+    rows : (k,) int or None
+        Rows of the table that are this column's samples, where a row is of one sensor; None for all.
     """
 
     label: str
@@ -48,6 +50,7 @@ class Column:
     number: int = -1
     given: bool = False
     role: str = ""
+    rows: np.ndarray | None = None
 
     @property
     def shown(self) -> str:

@@ -81,6 +81,7 @@ def blocks_of(source: Source, items: list[NumberRun | TextRow], layout: Layout) 
     blocks: list[Block] = []
     pending: list[TextRow] = []
     facts: dict[str, str] = {}
+    repeated = 0
     for item in _without_strays(items, layout):
         if isinstance(item, TextRow):
             pending.append(item)
@@ -90,6 +91,11 @@ def blocks_of(source: Source, items: list[NumberRun | TextRow], layout: Layout) 
         facts = facts | header.facts
         previous = blocks[-1] if blocks else None
         results = any(_is_results(row) for row in filled[-4:])
+        if previous is not None and header.used and not results and _goes_on(previous, header, item):
+            _join(previous, item, [])
+            repeated += 1
+            pending = []
+            continue
         if (
             previous is not None
             and not header.used
@@ -103,6 +109,8 @@ def blocks_of(source: Source, items: list[NumberRun | TextRow], layout: Layout) 
             header = Header(previous.headings)
         blocks.append(_block(item, header, facts, results))
         pending = []
+    if repeated:
+        source.inform(f"the header stands {repeated + 1} times among rows that go on evenly; read as one recording")
     for block in blocks:
         if block.more:
             block.values = np.concatenate([block.values, *(run.values for run in block.more)])
@@ -187,6 +195,18 @@ def _restarts(previous: Block, item: NumberRun) -> bool:
     if not len(previous.values) or index >= item.values.shape[1]:
         return False
     return bool(item.values[0, index] <= previous.values[0, index] + 1e-12)
+
+
+def _goes_on(previous: Block, header: Header, item: NumberRun) -> bool:
+    """True for rows under the same names whose first stamp is a step behind the last: a header on every page."""
+    if [(h.label, h.unit) for h in header.headings] != [(h.label, h.unit) for h in previous.headings]:
+        return False
+    index = next((i for i, h in enumerate(previous.headings) if h.quantity == "time"), None)
+    last = previous.more[-1].values if previous.more else previous.values
+    if index is None or len(last) < 2:
+        return False
+    step = float(np.median(np.diff(previous.values[:, index]))) if len(previous.values) > 1 else 0.0
+    return bool(0.0 < item.values[0, index] - last[-1, index] < 1.5 * step)
 
 
 def _join(block: Block, item: NumberRun, between: list[TextRow]) -> None:

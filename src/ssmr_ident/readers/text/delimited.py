@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from ssmr_ident.readers.source import Source
 from ssmr_ident.readers.table.assemble import recordings_of
 from ssmr_ident.readers.table.columns import Column, Table, facts
 from ssmr_ident.readers.table.headings import heading_of
+from ssmr_ident.readers.table.long_form import Words, in_own_columns
 from ssmr_ident.readers.table.vocabulary import words_of
 from ssmr_ident.readers.text.blocks import Block, blocks_of, refuse_many_broken
 from ssmr_ident.readers.text.dialect import Layout, sniff
@@ -82,7 +84,7 @@ def recordings_of_text(
         if len(blocks) > 1:
             part = f"block {number} of {len(blocks)}, {part}"
         part = f"{within}, {part}" if within and len(blocks) > 1 else within or part
-        recordings += _recordings_of_block(source, block, part, layout, options, reader, place)
+        recordings += _recordings_of_block(source, text, block, part, layout, options, reader, place)
     return recordings
 
 
@@ -132,6 +134,7 @@ def _refuse_split_decimals(source: Source, items: list[NumberRun | TextRow], blo
 
 def _recordings_of_block(
     source: Source,
+    text: Text,
     block: Block,
     part: str,
     layout: Layout,
@@ -164,10 +167,26 @@ def _recordings_of_block(
         rate_from=told,
         words=words,
     )
+    named = {w: _words(text, block, layout, k) for w, k in zip(words, block.text, strict=False)}
+    table.columns = in_own_columns(source, columns, named, table)
     recordings = recordings_of(source, reader, table, options)
     if reader == "csv" and _is_testing_machine(columns):
         return [_by_machine(recording) for recording in recordings]
     return recordings
+
+
+def _words(text: Text, block: Block, layout: Layout, number: int) -> Words:
+    """Cells of a column of words, read when they are asked for: few logs need them."""
+
+    @cache
+    def lines() -> list[bytes]:
+        return text.data.split(b"\n")
+
+    def cells(rows: slice) -> list[str]:
+        found = [layout.dialect.cells(text.decode(lines()[line - 1])) for line in block.lines[rows].tolist()]
+        return [row[number] if number < len(row) else "" for row in found]
+
+    return cells
 
 
 def _units_said(source: Source, columns: list[Column], facts: dict[str, str]) -> None:

@@ -52,6 +52,14 @@ def value_of(token: str, decimal: str) -> float | None:
         return None
 
 
+def filled_up(cells: list[str], line: bytes, layout: Layout) -> list[str]:
+    """The cells with the empty ones at the end of a line that the body's columns are counted with."""
+    sign, count = layout.dialect.delimiter, len(layout.kinds)
+    if sign == " " or len(cells) >= count or line.count(sign.encode()) < count - 1:
+        return cells
+    return cells + [""] * (count - len(cells))
+
+
 def is_row(cells: list[str], layout: Layout) -> bool:
     """True when the cells are a row of the body, or all of them are numbers or stamps, at least one a finite one."""
     found = False
@@ -84,10 +92,15 @@ def sniff(source: Source, text: Text, options: ReadOptions, *, delimiters: str =
         head = text.data[: count * 400].split(b"\n", count)[:count]
         lines = [text.decode(line) for line in head if len(line) <= LONGEST_LINE]
         best, most, rows = None, 0.0, []
+        whole = 0
         for dialect in _CANDIDATES:
             if dialect.delimiter not in delimiters or (options.decimal or dialect.decimal) != dialect.decimal:
                 continue
             run, worth = _longest_run(lines, dialect)
+            if dialect.delimiter == " " and len(run) <= whole:
+                continue  # blanks within cells of a table that a sign separates throughout
+            if dialect.delimiter != " " and len(run) > whole and _without_words(run, dialect):
+                whole = len(run)
             if worth > most:
                 best, most, rows = dialect, worth, run
         if best is not None and len(rows) >= 20:
@@ -118,6 +131,7 @@ def _longest_run(lines: list[str], dialect: Dialect) -> tuple[list[list[str]], f
     run: list[list[str]] = []
     numeric: frozenset[int] = frozenset()
     words: frozenset[int] = frozenset()
+    written = 0  # cells of the run's first row, empty ones at its end counted
     for line in lines:
         cells = dialect.cells(line)
         if not cells:
@@ -129,15 +143,24 @@ def _longest_run(lines: list[str], dialect: Dialect) -> tuple[list[list[str]], f
             run, numeric, words = [], frozenset(), frozenset()
             continue
         # a row may lack cells at its end, which were empty; it may not turn a column of numbers to words, or back
-        apart = run and (len(cells) > len(run[0]) or 2 * len(cells) < len(run[0]) or numeric & text or numbers & words)
+        apart = run and (len(cells) > written or 2 * len(cells) < len(run[0]) or numeric & text or numbers & words)
         if apart:
             run, numeric, words = [], frozenset(), frozenset()
+        if not run:
+            written = len(cells) if dialect.delimiter == " " else max(len(cells), line.count(dialect.delimiter) + 1)
         run.append(cells)
         numeric, words = numeric | numbers, words | text
         worth = len(run) * len(numeric) ** 2 / max(len(run[0]), len(cells))
         if worth > best[1]:
             best = (list(run), worth)
     return best
+
+
+def _without_words(run: list[list[str]], dialect: Dialect) -> bool:
+    """True for rows of several cells that hold numbers, stamps, or nothing."""
+    return min(map(len, run), default=0) > 1 and not any(
+        _sure(c, dialect.decimal) == TEXT for row in run for c in row if c
+    )
 
 
 def _sure(cell: str, decimal: str) -> int:

@@ -14,6 +14,10 @@ _RULE = re.compile(r"[-=_+|*#~:. \t]{3,}\Z")
 _MARKS = "#%!;*/"
 _KEY = re.compile(r"([^=:]{1,60})(?:=|:(?!\d\d)|(?<=[^\d\s]):)(.+)\Z", re.DOTALL)  # 12:00 is no key with a value
 _LISTS = re.compile(r"(?:columns?|channels?|fields|header|names|variables|spalten|kanäle)\s?[:=]\s?", re.IGNORECASE)
+_LIST_WORD = re.compile(
+    r"(?:columns?|channels?|fields|headers?|variables|labels?|spalten|kanäle|"
+    r"(?:channel|column|trace|signal|variable|field)?[\s_]?names?)\s?[:=]?\Z", re.IGNORECASE
+)  # fmt: skip
 _NO_UNITS = {"ts", "rn", "none", "n/a", "-", "index"}
 _PROCESSES = {"smp", "avg", "max", "min", "std", "tot", "med", "sample", "average"}
 _UNITED = re.compile(r"[^()\[\]]{1,80}[(\[][^()\[\]]{1,20}[)\]]")
@@ -71,19 +75,51 @@ def header_of(rows: list[TextRow], width: int, dialect: Dialect, vocabulary: Voc
             if units is None and above and is_units_row(above, vocabulary) and not any(map(_is_number, above)):
                 units = above
                 left.pop(-2)
-            headings = [
-                heading_of(name, unit or None, vocabulary)
-                for name, unit in zip(cells, _bare(units, width, vocabulary), strict=True)
-            ]
             left.pop()
+            bare = _bare(units, width, vocabulary)
+            if left and units is None:
+                cells, bare = _over_two_rows(cells, _fitting(left[-1].raw, width, dialect), vocabulary)
+            headings = [heading_of(name, unit or None, vocabulary) for name, unit in zip(cells, bare, strict=True)]
             return Header(headings, len(rows) - len(left), facts_of(left, dialect) | paired)
         if _marked(last.raw) and units is None and len(rows) - len(left) < 8 and len(left) > 1:
             left = _without_last_remark(left, width, dialect)
             if left:
                 continue
         break
+    said = _names_said(rows, width)
+    if said is not None:
+        headings = [heading_of(name, None, vocabulary) for name in said]
+        return Header(headings, 1, facts_of(rows, dialect) | paired)
     blank = [Heading("", None, None) for _ in range(width)]
     return Header(blank, 0, facts_of(rows, dialect), _names(rows[-1].raw, dialect) if rows else [])
+
+
+def _over_two_rows(
+    cells: list[str], above: list[str] | None, vocabulary: Vocabulary
+) -> tuple[list[str], list[str | None]]:
+    """Names and units where the lower row of a header has a unit, or nothing, below a name in the upper one."""
+    units: list[str | None] = [None] * len(cells)
+    if above is None or any(map(_is_number, above)):
+        return cells, units
+    names = list(cells)
+    for k, (cell, upper) in enumerate(zip(cells, above, strict=True)):
+        unit = bare_unit(cell, vocabulary) if cell else None
+        if upper and not cell:
+            names[k] = upper
+        elif upper and unit is not None and bare_unit(upper, vocabulary) is None:
+            names[k], units[k] = upper, unit
+    return names, units
+
+
+def _names_said(rows: list[TextRow], width: int) -> list[str] | None:
+    """Names of the columns in a row that says so: ``Channel names: Force, Accel``; empty for a blank first column."""
+    for row in rows[-_FACTS:]:
+        first, *names = [_unmarked(cell) if k == 0 else cell for k, cell in enumerate(row.cells)] or [""]
+        if not _LIST_WORD.match(first[:40]) or not names or any(map(_is_number, names)):
+            continue
+        if len(names) in (width, width - 1):
+            return [*[""] * (width - len(names)), *names]
+    return None
 
 
 def _without_last_remark(rows: list[TextRow], width: int, dialect: Dialect) -> list[TextRow]:
@@ -118,6 +154,8 @@ def _fitting(raw: str, width: int, dialect: Dialect) -> list[str] | None:
     if dialect.delimiter == " ":
         ways += [[c.strip() for c in re.split(r" {2,}|\t", text.strip())], _united(text), _UNITED.findall(text)]
     for cells in ways:
+        if len(cells) == width + 1 and _LIST_WORD.match(cells[0].strip()[:40]):
+            return [cell.strip() for cell in cells[1:]]
         # one name too many is the Comment column of a table whose comments are empty
         if len(cells) == width or (width > 1 and len(cells) == width + 1 and "\t;,".find(dialect.delimiter) >= 0):
             return [cell.strip() for cell in cells[:width]]
@@ -153,7 +191,9 @@ def _is_units(cells: list[str], above: list[str], vocabulary: Vocabulary) -> boo
     if not filled or all(_is_number(cell) for cell in above if cell):
         return False
     named = sum(bare_unit(cell, vocabulary) is None for cell in above if cell.strip())
-    return len(known) == len(filled) or (2 * len(known) > len(filled) and named == sum(bool(c.strip()) for c in above))
+    return len(known) == len(filled) or (
+        2 * len(known) > len(filled) and 2 * named > sum(bool(c.strip()) for c in above)
+    )
 
 
 def _bare(units: list[str] | None, width: int, vocabulary: Vocabulary) -> list[str | None]:
@@ -190,7 +230,7 @@ def facts_of(rows: list[TextRow], dialect: Dialect) -> dict[str, str]:
         if match:
             found[match[1].strip()[:80]] = match[2].strip()[:400]
         elif len(cells) >= 2:
-            found[cells[0].rstrip(":")[:80]] = " ".join(cells[1:])[:400]
+            found[_unmarked(cells[0]).rstrip(":")[:80]] = " ".join(cells[1:])[:400]
     return found
 
 
@@ -224,6 +264,8 @@ def rate_from(facts: dict[str, str], vocabulary: Vocabulary) -> tuple[float, str
             bare = tuple(w for w in words if w not in ("hz", "khz", "s", "ms", "sec", "us"))
             if not (vocabulary.has(section, words) or vocabulary.has(section, bare)):
                 continue
+            each = set(value.split())
+            value = each.pop() if len(each) == 1 else value  # 200 200 200: one for each channel
             match = re.match(r"\s*([+-]?\d+(?:[.,]\d*)?(?:[eE][+-]?\d{1,3})?)\s*([^\s,;]{0,12})", value)
             if match is None:
                 continue

@@ -20,28 +20,12 @@ _GROUPED_COMMA = re.compile(
     r"[+-]?[1-9]\d{0,2}(?:(?:\.\d{3})+|(?:'\d{3})+|(?:[ \u00a0\u202f]\d{3})+)(?:,\d*)?\Z", re.ASCII
 )
 _NO_NUMBER = {
-    "nan",
-    "-nan",
-    "+nan",
-    "1.#qnan",
-    "-1.#qnan",
-    "1.#ind",
-    "-1.#ind",
-    "1.#snan",
-    "n/a",
-    "#n/a",
-    "1.#nan",
-    "-nan(ind)",
-    "1,#qnan",
-    "-1,#ind",
-    "---",
-    "null",
-    "none",
-    "#nv",
-    "#wert!",
-    "#value!",
-    "n.def.",
-}
+    "nan", "-nan", "+nan", "1.#qnan", "-1.#qnan", "1.#ind", "-1.#ind", "1.#snan", "1.#nan", "-nan(ind)", "1,#qnan",
+    "-1,#ind", "n/a", "#n/a", "na", "nat", "<na>", "---", "--", "null", "none", "#nv", "#wert!", "#value!", "#num!",
+    "#div/0!", "#ref!", "n.def.", "overload", "overflow", "overrange", "over range", "ovrflw", "ovrng", "ovld", "ovl",
+    "+ovl", "-ovl", "over", "+over", "-over", "under", "underflow", "underrange", "saturated", "out of range", "open",
+    "error", "err", "invalid", "bad", "missing", "no data", "nodata", "*****", "********",
+}  # fmt: skip
 _INFINITE = {
     "inf": math.inf,
     "+inf": math.inf,

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ssmr_ident.readers.text.dialect import LONGEST_LINE, NUMBER, STAMP, TEXT, Layout, is_row, value_of
+from ssmr_ident.readers.text.dialect import LONGEST_LINE, NUMBER, STAMP, TEXT, Layout, filled_up, is_row, value_of
 from ssmr_ident.readers.text.encoding import Text
 from ssmr_ident.readers.text.numbers import Dialect
 from ssmr_ident.readers.text.stamps import seconds_of
@@ -79,7 +79,7 @@ def walk(
         line, following = _line_at(data, position)
         raw = text.decode(line)
         cells = layout.dialect.cells(raw)
-        if not cells or len(line) > LONGEST_LINE or not is_row(cells, layout):
+        if not cells or len(line) > LONGEST_LINE or not is_row(filled_up(cells, line, layout), layout):
             yield TextRow(line_number, cells, raw)
             position, line_number = following, line_number + 1
             continue
@@ -108,7 +108,7 @@ def _width(text: Text, layout: Layout, position: int, first: list[str]) -> int:
             break
         line, position = _line_at(text.data, position)
         cells = layout.dialect.cells(text.decode(line))
-        if line.count(sign.encode()) != written or not is_row(cells, layout):
+        if line.count(sign.encode()) != written or not is_row(filled_up(cells, line, layout), layout):
             break
         widest = max(widest, len(cells))
     return widest
