@@ -132,6 +132,16 @@ def as_strangers_write(folder: Path) -> None:
         "s.csv": "Datum;Kraft [kN];Text\n" + "".join(dates),
         "t.txt": "# fs = 200 Hz\n# ax [g], ay [g]\n" + "".join(f"{v:.4f} {v:.4f}\n" for _, _, v in rows),
         "u.csv": "time [s],ax [m/s^2],force [N]\n" + "".join(blanks),
+        "v.csv": "time_s,sensor,value\n" + "".join(f"{k / 200:.4f},force_N,{v:.4f}\n{k / 200:.4f},acc_g,{v:.5f}\n"
+                                                   for k, _, v in rows),
+        "w.txt": "".join(("" if k % 40 else "Page\nTime Load\n(s) (N)\n") + f"{k / 200:.4f} {v:.5f}\n"
+                         for k, _, v in rows),
+        "x.csv": "Time,Force\n" + "".join(f"{k / 200:.4f} sec,{v:.5f} N\n" for k, _, v in rows),
+        "y.csv": "hour,min,sec,ms,force_N\n" + "".join(f"12,{k // 100},{k % 100 // 2},{k % 2 * 500},{v:.4f}\n"
+                                                      for k, _, v in rows),
+        "z.txt": "".join(f"[{k / 200:.4f}, {v:.5f}, {v / 2:.5f}]\n" for k, _, v in rows),
+        "0.json": f'{{"force_N": {{{", ".join(f"{chr(34)}{k * 5}{chr(34)}: {v:.5f}" for k, _, v in rows)}}}}}',
+        "1.jsonl": "".join(f'{{"t0": {k / 20:.3f}, "force_N": {[round(v, 4)] * 10}}}\n' for k, _, v in rows),
     }  # fmt: skip
     for name, text in texts.items():
         (folder / name).write_text(text)

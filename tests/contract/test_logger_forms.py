@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from ssmr_ident.core.errors import InputError
-from ssmr_ident.readers import read, read_one
+from ssmr_ident.readers import ReadOptions, read, read_one
 
 COUNT, RATE = 80, 250.0
 G, POUND, INCH = 9.80665, 4.4482216152605, 0.0254
@@ -131,6 +131,42 @@ FORMS: dict[str, tuple[list[str], Row, str, str]] = {
     "words for no number": (
         ["time_s,force_N,other_N"], lambda k, t, a, f, x: f"{t:.4f},{f:.5f},{'OVERLOAD' if k % 7 == 3 else f'{f:.2f}'}",
         "force", "utf-8"),
+    "cells with their units": (
+        ["Time,Force,Accel"], lambda k, t, a, f, x: f'{t:.4f} sec,"{f:.5f} N",{a:.6f} m/s²', "force acceleration",
+        "utf-8"),
+    "names, numbers and units in a line": (
+        ["Sensor init"], lambda k, t, a, f, x: f"{stamp(k)} -> Acc: {a:.6f} m/s2, Force: {f:.5f} N",
+        "force acceleration", "utf-8"),
+    "a microcontroller's log": (
+        ["ESP-ROM"], lambda k, t, a, f, x: f"I ({4 * k}) imu: force_N={f:.5f} acc_g={a / G:.7f}",
+        "force acceleration", "utf-8"),
+    "timedeltas of pandas": (
+        [",force (N)"], lambda k, t, a, f, x: f"0 days 00:00:{t:09.6f},{f:.5f}", "force", "utf-8"),
+    "days of a spreadsheet": (
+        ["Date,Force (N)"], lambda k, t, a, f, x: f"{45810.4166 + t / 86400:.12f},{f:.5f}", "force", "utf-8"),
+    "hour, minute, second, millisecond": (
+        ["hour,minute,second,ms,force_N"],
+        lambda k, t, a, f, x: f"23,59,{59 if k < 40 else 0},{(4 * k + 840) % 1000},{f:.5f}"
+        if k < 40 else f"0,0,0,{(4 * k + 840) % 1000},{f:.5f}", "force", "utf-8"),
+    "milliseconds beside a stamp": (
+        ["Number,Date&Time,ms,CH1,CH2", "NO.,Time,ms,N,m/s2"],
+        lambda k, t, a, f, x: f"{k},2025-03-01 12:00:0{(900 + 4 * k) // 1000},{(900 + 4 * k) % 1000},{f:.5f},{a:.6f}",
+        "CH1:N=f CH2:m/s^2=a", "utf-8"),
+    "a counter that runs over": (
+        ["micros,force_N"], lambda k, t, a, f, x: f"{(2**32 - 100_000 + 4000 * k) % 2**32},{f:.5f}", "force", "utf-8"),
+    "symbols with units": (
+        ["t_s,F_N,x_g,T"], lambda k, t, a, f, x: f"{t:.4f},{f:.5f},{a / G:.7f},41", "force ax", "utf-8"),
+    "Portuguese": (
+        ["Tempo (s);Força (N);Aceleração (m/s²)"], lambda k, t, a, f, x: f"{comma(t)};{comma(f)};{comma(a)}",
+        "force acceleration", "latin-1"),
+    "Russian in its code page": (
+        ["Время, с;Сила, Н;Ускорение, м/с2"], lambda k, t, a, f, x: f"{comma(t)};{comma(f)};{comma(a)}",
+        "force acceleration", "cp1251"),
+    "Japanese in its code page": (
+        ["時間[s],荷重[N],加速度[m/s2]"], lambda k, t, a, f, x: f"{t:.4f},{f:.5f},{a:.6f}", "force acceleration",
+        "shift_jis"),
+    "sections with facts": (
+        ["[meta]", "fs = 250", "unit = N", "[data]"], lambda k, t, a, f, x: f"{f:.5f}", "column_1:N=f", "utf-8"),
     "a clock with colons throughout": (
         ["Time\tForce (N)"], lambda k, t, a, f, x: f"12:00:00:{4 * k:03d}\t{f:.5f}", "force", "utf-8"),
 }  # fmt: skip
@@ -149,10 +185,45 @@ def test_a_logger_s_form(tmp_path: Path, form: str) -> None:
     assert len(recording.time) == COUNT
     assert recording.sample_rate == pytest.approx(RATE, rel=1e-4)
     for wanted in quantities.split():
-        name, _, rest = wanted.partition(":")
+        name, _, rest = wanted.replace("_", " ").partition(":")
         unit, samples = (rest[:-2], LETTERS[rest[-1]]) if rest else TRUTH[name]
         assert recording.channel(name).unit == unit
         np.testing.assert_allclose(recording[name], samples, atol=2e-5 * np.ptp(samples) + 2e-5)
+
+
+def test_minus_9999_is_no_number(tmp_path: Path) -> None:
+    rows = "".join(
+        f"{t:.4f},{-9999 if k in (20, 21) else f}\n" for k, (t, f) in enumerate(zip(TIME, FORCE, strict=True))
+    )
+    (tmp_path / "log.csv").write_text("time_s,force_N\n" + rows)
+    recording = read_one(tmp_path / "log.csv")
+    assert np.flatnonzero(np.isnan(recording["force"])).tolist() == [20, 21]
+    assert any("2 value(s) of force_N are -9999" in note.text for note in recording.notes)
+    near = "".join(f"{t:.4f},{-999 if k == 20 else 40 * f}\n" for k, (t, f) in enumerate(zip(TIME, FORCE, strict=True)))
+    (tmp_path / "near.csv").write_text("time_s,force_N\n" + near)
+    assert read_one(tmp_path / "near.csv")["force"][20] == -999
+
+
+def test_a_rate_that_nothing_has_is_asked_about(tmp_path: Path) -> None:
+    rows = "".join(f"{3 + t * 1e-9:.15f},{f:.5f}\n" for t, f in zip(TIME, FORCE, strict=True))
+    (tmp_path / "log.csv").write_text("time,force_N\n" + rows)
+    with pytest.raises(InputError, match=r"would be 2\.5e\+11 Hz"):
+        read(tmp_path / "log.csv")
+
+
+def test_rows_in_brackets_are_no_text(tmp_path: Path) -> None:
+    rows = "".join(f"({t:.4f}, {f:.5f}, {a:.5f})\n" for t, f, a in zip(TIME, FORCE, ACCELERATION, strict=True))
+    (tmp_path / "log.txt").write_text(">>> import logger\n" + rows)
+    columns, units = {"time": 0, "force": 1, "acceleration": 2}, {"force": "N", "acceleration": "m/s^2"}
+    recording = read_one(tmp_path / "log.txt", ReadOptions(columns=columns, units=units))
+    np.testing.assert_allclose(recording["force"], FORCE, atol=1e-5)
+    np.testing.assert_allclose(recording["acceleration"], ACCELERATION, atol=1e-5)
+
+
+def test_a_minimum_beside_seconds_is_no_minute(tmp_path: Path) -> None:
+    rows = "".join(f"{t:.4f},{k % 7},{f:.5f}\n" for k, (t, f) in enumerate(zip(TIME, FORCE, strict=True)))
+    (tmp_path / "log.csv").write_text("sec,min,force_N\n" + rows)
+    assert read_one(tmp_path / "log.csv").sample_rate == pytest.approx(RATE)
 
 
 def test_headerless_counts_are_asked_for(tmp_path: Path) -> None:

@@ -359,3 +359,96 @@ def test_damage_is_a_word_and_no_traceback(tmp_path: Path) -> None:
         archive.writestr("time.npy", buffer.getvalue()[:200])
     with pytest.raises(InputError):
         read(tmp_path / "b.npz")
+
+
+def test_names_and_units_beside_the_numbers_of_a_struct(tmp_path: Path) -> None:
+    scipy_io = pytest.importorskip("scipy.io")
+    cells = np.zeros((1, 3), dtype=object)
+    cells[0, 0] = {"name": "acc", "unit": "g", "data": ACCEL[:, 0]}
+    cells[0, 1] = {"name": "force", "unit": "kN", "data": FORCE / 1e3}
+    cells[0, 2] = {"name": "note", "unit": "", "data": "x"}
+    scipy_io.savemat(tmp_path / "a.mat", {"fs": RATE, "channels": cells})
+    named = {"Channel_1_Data": FORCE[:, None], "Channel_1_Header": {"SignalName": "Force", "Unit": "N"}, "Ts": 1 / RATE}
+    scipy_io.savemat(tmp_path / "b.mat", named)
+    recording = read_one(tmp_path / "a.mat")
+    assert [(c.name, c.unit) for c in recording.channels] == [("acceleration", "m/s^2"), ("force", "N")]
+    same(recording["acceleration"], ACCEL[:, 0], 9.80665)
+    recording = read_one(tmp_path / "b.mat")
+    assert [(c.name, c.unit) for c in recording.channels] == [("force", "N")]
+    assert recording.sample_rate == pytest.approx(RATE)
+
+
+def test_runs_with_a_bare_t_are_recordings(tmp_path: Path) -> None:
+    scipy_io = pytest.importorskip("scipy.io")
+    scipy_io.savemat(tmp_path / "a.mat", {f"run{k}": {"t": TIME, "force_N": k * FORCE} for k in (1, 2)})
+    first, second = read(tmp_path / "a.mat")
+    same(second["force"], first["force"], 2.0)
+
+
+def test_hdf5_groups_with_rates_of_their_own_are_one_recording(tmp_path: Path) -> None:
+    h5py = pytest.importorskip("h5py")
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        for name, samples, unit, rate in (
+            ("fast/acc", ACCEL[:, 0], "g", RATE),
+            ("slow/force", FORCE[::5], "N", RATE / 5),
+        ):
+            file[name] = samples
+            file[name].attrs["units"] = unit
+            file[name.split("/")[0]].attrs["fs"] = rate
+    recording = read_one(tmp_path / "a.h5")
+    same(recording.series("force").samples, FORCE[::5])
+    assert recording.series("force").rate == pytest.approx(RATE / 5)
+    assert recording.series("acceleration").rate == pytest.approx(RATE)
+
+
+def test_factors_of_a_convention_are_applied_and_others_told(tmp_path: Path) -> None:
+    h5py = pytest.importorskip("h5py")
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file.attrs["fs"] = RATE
+        for name, keys in (("force", {"scale_factor": 0.5, "add_offset": 3.0}), ("load", {"gain": 0.1})):
+            file[name] = np.round(FORCE)
+            file[name].attrs.update({"units": "N", **keys})
+    recording = read_one(tmp_path / "a.h5")
+    same(recording["force"], 0.5 * np.round(FORCE) + 3.0)
+    same(recording["force_2"], np.round(FORCE))
+    assert any(n.level == "warning" and "gain = 0.1 stands beside" in n.text for n in recording.notes)
+
+
+def test_json_of_pandas_and_in_batches(tmp_path: Path) -> None:
+    pd = pytest.importorskip("pandas")
+    frame = pd.DataFrame({"time_s": TIME, "force_N": FORCE})
+    (tmp_path / "a.json").write_text(frame.to_json(double_precision=15))
+    np.testing.assert_allclose(read_one(tmp_path / "a.json")["force"], FORCE, atol=1e-12)
+    dated = pd.DataFrame({"force_N": FORCE}, index=pd.date_range("2025-03-01", periods=500, freq="4ms"))
+    epoch = json.dumps({"force_N": {str(1_740_787_200_000 + 4 * k): f for k, f in enumerate(FORCE)}})
+    for text in (epoch, dated.to_json(double_precision=15, date_unit="ms", date_format="iso")):
+        (tmp_path / "b.json").write_text(text)
+        assert read_one(tmp_path / "b.json").sample_rate == pytest.approx(RATE)
+    batches = [{"t0": TIME[k], "id": "x", "force_N": FORCE[k : k + 20].tolist()} for k in range(0, 500, 20)]
+    (tmp_path / "c.jsonl").write_text("".join(json.dumps(batch) + "\n" for batch in batches))
+    recording = read_one(tmp_path / "c.jsonl")
+    same(recording["force"], FORCE)
+    np.testing.assert_allclose(recording.time, TIME, atol=1e-9)
+    vectors = {"fs": RATE, "acc_g": (ACCEL / 9.80665).tolist()}
+    (tmp_path / "d.json").write_text(json.dumps(vectors))
+    assert {c.unit for c in read_one(tmp_path / "d.json").channels} == {"m/s^2"}
+
+
+def test_frames_with_an_index_of_dates_and_structs(tmp_path: Path) -> None:
+    pd = pytest.importorskip("pandas")
+    pytest.importorskip("pyarrow")
+    index = pd.date_range("2025-03-01", periods=500, freq="4ms", tz="Europe/Berlin")
+    acc = [{"ax_g": x, "ay_g": y} for x, y in ACCEL[:, :2] / 9.80665]
+    pd.DataFrame({"acc": acc}, index=index).to_parquet(tmp_path / "a.parquet")
+    recording = read_one(tmp_path / "a.parquet")
+    assert recording.names == ("ax", "ay")
+    assert recording.sample_rate == pytest.approx(RATE)
+    same(recording["ay"], ACCEL[:, 1])
+
+
+def test_documents_that_are_zips_are_called_by_their_names(tmp_path: Path) -> None:
+    for part, said in (("content.xml", "OpenDocument"), ("xl/workbook.bin", "xlsb"), ("Index/Document.iwa", "Numbers")):
+        with zipfile.ZipFile(tmp_path / "a", "w") as archive:
+            archive.writestr(part, "x")
+        with pytest.raises(InputError, match=said):
+            read(tmp_path / "a")

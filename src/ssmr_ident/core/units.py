@@ -81,6 +81,10 @@ _TABLE: dict[str, tuple[str, float]] = {
     "Nmm": ("N m", 1e-3),
     "mNm": ("N m", 1e-3), "in-lb": ("N m", INCH * POUND_FORCE), "in lbf": ("N m", INCH * POUND_FORCE),
     "lbf in": ("N m", INCH * POUND_FORCE), "ft-lb": ("N m", 12 * INCH * POUND_FORCE),
+    "in-lbf": ("N m", INCH * POUND_FORCE), "lbf-in": ("N m", INCH * POUND_FORCE), "lb-in": ("N m", INCH * POUND_FORCE),
+    "ft-lbf": ("N m", 12 * INCH * POUND_FORCE), "lbf-ft": ("N m", 12 * INCH * POUND_FORCE),
+    "lb-ft": ("N m", 12 * INCH * POUND_FORCE), "oz-in": ("N m", INCH * POUND_FORCE / 16),
+    "ozf-in": ("N m", INCH * POUND_FORCE / 16), "kgf m": ("N m", STANDARD_GRAVITY),
     "ft lbf": ("N m", 12 * INCH * POUND_FORCE), "lbf ft": ("N m", 12 * INCH * POUND_FORCE),
     # electrical and others that pass through
     "V": ("V", 1.0), "mV": ("V", 1e-3), "uV": ("V", 1e-6),
@@ -116,6 +120,9 @@ _PREFIXES = {"": "", "kilo": "k", "centi": "c", "milli": "m", "mili": "m", "micr
              "mega": "M", "giga": "G"}  # fmt: skip
 _WORDS = {"degrees": "deg", "degree": "deg", "grad": "deg", "millis": "ms", "micros": "us", "nanos": "ns",
           "micron": "um", "microns": "um", "feet": "ft", "pound": "lbf", "pounds": "lbf", "pounds-force": "lbf",
+          "с": "s", "сек": "s", "мс": "ms", "мкс": "us", "н": "N", "кн": "kN", "м": "m", "мм": "mm", "м/с2": "m/s^2",
+          "м/с^2": "m/s^2", "м/с": "m/s", "мм/с": "mm/s", "н*м": "N m", "град": "deg", "рад": "rad",
+          "秒": "s", "毫秒": "ms",
           "g's": "g", "gees": "g", "percent": "%"}  # fmt: skip
 _WORDS |= {
     prefix + name + plural: sign + symbol

@@ -39,7 +39,9 @@ def vocabulary_table() -> str:
     for quantity, words in known.languages.items():
         unit = SI_UNIT.get(quantity) or known.optional.get(quantity, "")
         cells = [", ".join(words.get(language, ())) for language in first]
-        others = ", ".join(name for language, names in words.items() if language not in first for name in names)
+        others = ", ".join(
+            dict.fromkeys(n for language, names in words.items() if language not in first for n in names)
+        )
         rows.append(f"| {quantity} | {unit} | {' | '.join(cells)} | {others} |")
     return "\n".join(rows)
 

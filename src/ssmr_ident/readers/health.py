@@ -16,6 +16,10 @@ VOLTS_LOW, VOLTS_HIGH = 0.1, 5.0
 RAIL_TOLERANCE = 1.25e-3  # V: the last code of a 12-bit card over 5 V stands 1.22 mV below them
 COARSEST = 0.02  # V, the step of an 8-bit card; values of a log that are farther apart tell no step
 _SATURATED = 50  # equal samples at the largest value, see ``saturated``
+_RUN = 3  # equal samples in a row, see ``cut_off``
+_PLACES = 3  # where they stand
+_RESTS = 0.02
+"""Choice: share of samples within the range that equal the one before, up to which a channel never rests."""
 _AMPLIFIED = ("N", "N m", "m/s^2", "Pa", "V")
 AXES = ("ax", "ay", "az")
 
@@ -124,7 +128,7 @@ def _channel_health(channel: Channel, logged: Series) -> ChannelHealth:
         float(finite.std()) if len(finite) else float("nan"),
         len(logged.samples) - len(finite),
         repeated,
-        at_rails(channel) or saturated(logged.samples),
+        at_rails(channel) or saturated(logged.samples) or cut_off(logged.samples),
         len(logged.samples),
         logged.rate,
         float(logged.time[0]),
@@ -190,6 +194,36 @@ def saturated(samples: np.ndarray) -> int:
     return longest if longest >= _SATURATED else 0
 
 
+def cut_off(samples: np.ndarray) -> int:
+    """Samples that stand, three and more in a row, at the largest or the smallest value of a channel that elsewhere
+    never rests: a signal that goes beyond its range again and again.
+
+    A converter's coarse steps make flat tops as well, but from those the signal falls by one step; from a range that
+    is exceeded it falls at the slope it came with.
+    """
+    finite = samples[np.isfinite(samples)] if len(samples) and not np.isfinite(np.ptp(samples)) else samples
+    if len(finite) < _SATURATED:
+        return 0
+    high, low = float(finite.max()), float(finite.min())
+    falls: list[float] = []
+    total, places, inside = 0, 0, np.ones(len(finite), dtype=bool)
+    for extreme in (high, low):
+        at = finite == extreme
+        edges = np.flatnonzero(np.diff(np.r_[False, at, False]))
+        begins, ends = edges[::2], edges[1::2]
+        long = ends - begins >= _RUN
+        total, places = total + int((ends - begins)[long].sum()), places + int(long.sum())
+        before, behind = begins[long] - 1, ends[long]
+        falls += np.abs(extreme - finite[before[before >= 0]]).tolist()
+        falls += np.abs(extreme - finite[behind[behind < len(finite)]]).tolist()
+        inside &= ~at
+    resting = np.mean(np.diff(finite[inside]) == 0) if inside.sum() > 1 else 1.0
+    if places < _PLACES or not falls or resting > _RESTS or high == low:
+        return 0
+    step = float(np.diff(np.unique(finite)).min())
+    return total if float(np.median(falls)) > _RUN * step else 0
+
+
 def warnings_of(channels: tuple[Channel, ...]) -> list[Note]:
     """Warnings about channels that are clipped, saturated, or stand still.
 
@@ -207,6 +241,12 @@ def warnings_of(channels: tuple[Channel, ...]) -> list[Note]:
             notes.append(
                 Note("warning", f"{name} clipped: {rails} sample(s) at the rails, ±1.7 g exceeded", channel.name)
             )
+        elif not flat and channel.unit in _AMPLIFIED and (cut := cut_off(channel.samples)):
+            low, high = float(np.nanmin(channel.samples)), float(np.nanmax(channel.samples))
+            text = (
+                f"{name} is cut off: {cut} samples stand at its ends ({low:.4g}, {high:.4g} {channel.unit}); clipped?"
+            )
+            notes.append(Note("warning", text, channel.name))
         elif flat:
             notes.append(
                 Note("warning", f"{name} stands at its largest value for {flat} samples: saturated?", channel.name)

@@ -142,7 +142,7 @@ def _kind(path: Path, data: bytes) -> str:
         raise InputError(where, "is Excel's lock file, not the workbook", "Name the file without '~$'.")
     head = data[:1024]
     if head.startswith(b"PK"):
-        return _kind_of_zip(data)
+        return _kind_of_zip(where, data)
     for mark, kind in _MARKS.items():
         if head.startswith(mark):
             return kind
@@ -175,12 +175,25 @@ def _kind(path: Path, data: bytes) -> str:
     return "text"
 
 
-def _kind_of_zip(data: bytes) -> str:
+_NO_LOGS = {
+    "content.xml": ("an OpenDocument file (.ods)", "Save it as .xlsx or .csv."),
+    "xl/workbook.bin": ("a binary workbook (.xlsb)", "Save it as .xlsx."),
+    "word/document.xml": ("a Word document", "Export the data itself, as text or .xlsx."),
+    "ppt/presentation.xml": ("a presentation", "Export the data itself, as text or .xlsx."),
+    "Index/Document.iwa": ("a document of Apple's Numbers or Pages", "Export it as .xlsx or .csv."),
+}
+"""Documents that are zips as workbooks are, by a part of theirs."""
+
+
+def _kind_of_zip(where: str, data: bytes) -> str:
     """A workbook has a part of that name; NumPy's archives hold arrays; what holds tables is a zip of logs."""
     try:
         names = zipfile.ZipFile(io.BytesIO(data)).namelist()
     except (zipfile.BadZipFile, ValueError, NotImplementedError, OverflowError, EOFError, OSError):
         return "workbook"  # damaged: what reads workbooks says so
+    for part, (what, mend) in _NO_LOGS.items():
+        if part in names:
+            raise InputError(where, f"is {what}, which is not read", mend)
     if any("workbook." in name or name.startswith("[Content_Types]") for name in names):
         return "workbook"
     if names and all(name.endswith(".npy") for name in names):

@@ -25,6 +25,19 @@ from ssmr_ident.readers.text.header_rows import rate_from
 MOST_BYTES = 400 * 2**20  # of all arrays of a file together, unpacked
 _WIDEST = 64  # columns that an array of two dimensions may have
 _UNIT_KEYS = ("units", "unit", "unit_string", "einheit", "einheiten")
+_OWN_NAME_KEYS = ("name", "signalname", "signal_name", "channelname", "channel_name", "label", "title")
+_FACTORS = ("scale_factor", "add_offset")  # of the conventions for climate and forecast data, which netCDF files follow
+_OTHER_FACTORS = (
+    "scale",
+    "gain",
+    "factor",
+    "sensitivity",
+    "slope",
+    "multiplier",
+    "calibration",
+    "conversion",
+    "offset",
+)
 _NAME_KEYS = ("columns", "names", "labels", "channels", "channel_names", "axes", "fields")
 _SEPARATORS = re.compile(r"[./]")
 
@@ -84,11 +97,12 @@ def recordings_of_arrays(
             "holds no arrays of numbers", f"Names in it: {', '.join(sign.join(a.path) for a in arrays[:8]) or 'none'}."
         )
     recordings: list[Recording] = []
-    roots = _roots([(group, made) for group, made, _ in columns], known)
+    roots = _roots([(group, made) for group, made, _ in columns], known, sign)
+    rates = _rates_of_groups(arrays, known)
     for root in roots:
         members = [(g, m, a) for g, m, a in columns if g[: len(root)] == root]
         part = sign.join(root) if len(roots) > 1 else ""
-        recordings += _of_group(source, reader, members, _facts(arrays, root, sign), part, options)
+        recordings += _of_group(source, reader, members, _facts(arrays, root, sign), part, options, rates)
     return recordings
 
 
@@ -104,16 +118,20 @@ def _columns(source: Source, array: NamedArray, arrays: list[NamedArray], sign: 
         values = values.T
     if values.ndim == 2 and values.shape[1] > _WIDEST:
         return []
-    clock = values.dtype.kind == "M"
+    clock = dated = values.dtype.kind == "M"
     if values.dtype.kind in "Mm":
         whole = values.astype("datetime64[ns]" if clock else "timedelta64[ns]").astype(np.int64)
         values = (whole - whole.ravel()[0] * clock) * 1e-9
-    label = sign.join(array.path)
+    label = _own_name(array, arrays) or sign.join(array.path)
+    values = _scaled(source, array, values, label)
     units = _texts(array.attributes, _UNIT_KEYS) or _sibling_units(array, arrays)
     if values.ndim == 1:
         unit = units[0] if units else None
-        return [Column(label, "s" if clock else unit or None, values.astype(float), quantity="time" if clock else None)]
+        clock = clock or (len(array.path) > 1 and array.path[-1] == "t" and unit is None)
+        kind = "time" if clock else None
+        return [Column(label, "s" if dated else unit or None, values.astype(float), quantity=kind)]
     count = values.shape[1]
+    units = units or [u for u in [heading_of(label, None, source.vocabulary).unit] if u]
     names = _texts(array.attributes, _NAME_KEYS) or _sibling_names(array, arrays, count)
     if len(names) != count:
         names = [f"{label} {k + 1}" if label else "" for k in range(count)]
@@ -122,6 +140,39 @@ def _columns(source: Source, array: NamedArray, arrays: list[NamedArray], sign: 
         Column(name, unit or None, np.ascontiguousarray(values[:, k], dtype=float))
         for k, (name, unit) in enumerate(zip(names, each, strict=True))
     ]
+
+
+def _scaled(source: Source, array: NamedArray, values: np.ndarray, label: str) -> np.ndarray:
+    """Values with the factor and offset that a convention defines; other words for factors are told, not applied."""
+    said = {str(k).lower(): np.asarray(v).ravel() for k, v in array.attributes.items()}
+    numbers = {k: float(v[0]) for k, v in said.items() if v.size == 1 and v.dtype.kind in "fiu"}
+    others = [f"{k} = {v:g}" for k, v in numbers.items() if k in _OTHER_FACTORS and v not in (0.0, 1.0)]
+    if others:
+        source.warn(
+            f"{label}: {', '.join(others)} stands beside the numbers and is not applied: scale them if it should be"
+        )
+    factor, offset = numbers.get(_FACTORS[0], 1.0), numbers.get(_FACTORS[1], 0.0)
+    if values.dtype.kind not in "fiu" or (factor == 1.0 and offset == 0.0):
+        return values
+    source.inform(f"{label}: × {factor:g} + {offset:g}, as its scale_factor and add_offset say")
+    scaled: np.ndarray = values * factor + offset
+    return scaled
+
+
+def _own_name(array: NamedArray, arrays: list[NamedArray]) -> str:
+    """The name that stands beside the only array of a struct, or in the header that belongs to it; empty for none."""
+    name = array.path[-1]
+    header = (*array.group, f"{name[:-5]}_Header") if name.endswith("_Data") else None  # as catman exports to MATLAB
+    alone = [o for o in arrays if o.group == array.group and _length(o) > 1 and not is_time_name(o.path[-1], shipped())]
+    if is_time_name(name, shipped()):
+        return ""
+    for one in arrays:
+        values = np.atleast_1d(np.asarray(one.values, dtype=object)).ravel()
+        if one.path[-1].lower() not in _OWN_NAME_KEYS or len(values) != 1 or not isinstance(values[0], (str, bytes)):
+            continue
+        if one.group == header or (len(alone) == 1 and array.group and one.group == array.group):
+            return _text(values[0])
+    return ""
 
 
 def _texts(attributes: Mapping[str, Any], keys: tuple[str, ...]) -> list[str]:
@@ -147,6 +198,10 @@ def _siblings(array: NamedArray, arrays: list[NamedArray], keys: tuple[str, ...]
 
 def _sibling_units(array: NamedArray, arrays: list[NamedArray]) -> list[str]:
     """The unit at this array's place among the arrays of its group."""
+    name = array.path[-1]
+    if name.endswith("_Data"):
+        header = NamedArray((*array.group, f"{name[:-5]}_Header", name), array.values)
+        return _siblings(header, arrays, _UNIT_KEYS)
     units = _siblings(array, arrays, _UNIT_KEYS)
     if len(units) == 1:  # one text for all: "N, m/s^2"
         units = [unit.strip() for unit in re.split(r"[,;|]", units[0])]
@@ -173,9 +228,13 @@ def _width(array: NamedArray) -> int:
     return min(values.shape) if values.ndim == 2 else 1
 
 
-def _roots(columns: list[tuple[tuple[str, ...], list[Column]]], known: Vocabulary) -> list[tuple[str, ...]]:
-    """Groups that are a recording each: those with a time of their own, or brothers that are built alike."""
-    timed = {group for group, made in columns for c in made if heading_of(c.label, c.unit, known).quantity == "time"}
+def _is_time(column: Column, known: Vocabulary) -> bool:
+    return (column.quantity or heading_of(column.label, column.unit, known).quantity) == "time"
+
+
+def _roots(columns: list[tuple[tuple[str, ...], list[Column]]], known: Vocabulary, sign: str) -> list[tuple[str, ...]]:
+    """Groups that are a recording each: those with a time of their own, or brothers with arrays of the same names."""
+    timed = {group for group, made in columns for c in made if _is_time(c, known)}
     if timed:
         # what has no time in its own group or above it belongs to the nearest group above that has one
         roots = {next((g[:k] for k in range(len(g), -1, -1) if g[:k] in timed), None) for g, _ in columns}
@@ -183,7 +242,10 @@ def _roots(columns: list[tuple[tuple[str, ...], list[Column]]], known: Vocabular
             return sorted(r for r in roots if r is not None)
         return sorted(timed) if len(timed) > 1 and () not in timed else [()]
     tops = {group[:1] for group, _ in columns}
-    shapes = {top: sorted(g[1:] for g, _ in columns if g[:1] == top) for top in tops}
+    shapes = {
+        top: sorted((g[1:], c.label.rsplit(sign, 1)[-1]) for g, made in columns for c in made if g[:1] == top)
+        for top in tops
+    }
     alike = len(tops) > 1 and () not in tops and len({str(shape) for shape in shapes.values()}) == 1
     return sorted(tops) if alike else [()]
 
@@ -207,12 +269,15 @@ def _of_group(
     found: dict[str, str],
     part: str,
     options: ReadOptions,
+    rates: Mapping[tuple[str, ...], float],
 ) -> list[Recording]:
     """One recording: arrays as long as the time, and arrays of other lengths that state a rate of their own."""
     known = source.vocabulary
-    told = {id(c): _rate(attributes, known) for _, made, attributes in members for c in made}
+    own = {g: next((rates[g[:k]] for k in range(len(g), -1, -1) if g[:k] in rates), 0.0) for g, _, _ in members}
+    several = len(set(own.values())) > 1
+    told = {id(c): _rate(a, known) or (own[g] if several else 0.0) for g, made, a in members for c in made}
     columns = [c for _, made, _ in members for c in made]
-    times = [c for c in columns if heading_of(c.label, c.unit, known).quantity == "time"]
+    times = [c for c in columns if _is_time(c, known)]
     lengths = [len(c.values) for c in times] or [len(c.values) for c in columns]
     length = max(set(lengths), key=lambda n: (lengths.count(n), n))
     kept, left = [], []
@@ -234,6 +299,17 @@ def _of_group(
     if left:
         table.inform(f"array(s) of another length than the time left out: {', '.join(left)}")
     return recordings_of(source, reader, table, options)
+
+
+def _rates_of_groups(arrays: list[NamedArray], known: Vocabulary) -> dict[tuple[str, ...], float]:
+    """Sampling rates that groups state [Hz]."""
+    found: dict[tuple[str, ...], float] = {}
+    for array in arrays:
+        values = np.asarray(array.values)
+        rate = rate_from({array.path[-1]: _text(values.ravel()[0])}, known) if values.size == 1 else None
+        if rate:
+            found.setdefault(array.group, rate[0])
+    return found
 
 
 def _rate(attributes: Mapping[str, Any], known: Vocabulary) -> float:

@@ -65,6 +65,8 @@ def _collect(arrays: list[NamedArray], path: tuple[str, ...], value: Any, depth:
             _collect(arrays, path, value.ravel()[0], depth + 1)
             return
         if not all(isinstance(v, str) for v in value.ravel()):
+            for k, one in enumerate(value.ravel()[:200]):  # a cell array: what its cells hold, by their numbers
+                _collect(arrays, (*path, str(k + 1)), one, depth + 1)
             return
     if isinstance(value, (np.ndarray, np.generic, str, int, float)):
         arrays.append(NamedArray(path, value))

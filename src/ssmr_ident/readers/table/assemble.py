@@ -16,6 +16,7 @@ from ssmr_ident.readers.table import time_axis
 from ssmr_ident.readers.table.channels import channels_of
 from ssmr_ident.readers.table.clock import Clocked, clocked
 from ssmr_ident.readers.table.columns import Column, Table, all_finite
+from ssmr_ident.readers.table.fill_values import without_fill_values
 from ssmr_ident.readers.table.naming import named_columns
 
 _BLANK = 0.9
@@ -33,6 +34,7 @@ def recordings_of(source: Source, reader: str, table: Table, options: ReadOption
         Time or a unit is missing, or time cannot be used.
     """
     columns = named_columns(source, table, options)
+    without_fill_values(columns, table)
     groups = clocked(source, columns, options, table)
     made = [_on_rows(source, group, table, options) for group in groups]
     longest = max(made, key=lambda m: len(m[0].time))[0]

@@ -10,7 +10,8 @@ from ssmr_ident.core.errors import InputError
 from ssmr_ident.readers.options import ReadOptions
 from ssmr_ident.readers.source import Source
 from ssmr_ident.readers.table.columns import Column, Table
-from ssmr_ident.readers.table.stamp_units import Clock, ask_for_whole_numbers, clock_of, in_two_columns
+from ssmr_ident.readers.table.stamp_parts import in_one_column
+from ssmr_ident.readers.table.stamp_units import Clock, ask_for_whole_numbers, clock_of
 from ssmr_ident.readers.table.vocabulary import words_of
 
 _FALLS = 0.1
@@ -49,8 +50,10 @@ def clocked(source: Source, columns: list[Column], options: ReadOptions, table: 
     InputError
         No time and no rate, or stamps that nobody can read.
     """
-    columns = in_two_columns(columns, table)
+    columns = in_one_column(columns, table)
     times = _ticking([c for c in columns if c.quantity in ("time", "date")])
+    if table.rate or len(times) > 1:
+        times = [c for c in times if c.given or np.isfinite(c.values).any()]
     data = [c for c in columns if c.quantity not in ("time", "date")]
     if not times and options.fs is None and not any(c.step for c in columns):
         times = [c for c in columns if not c.given and c.unit and _is_time_unit(source, c.unit)][:1]
@@ -90,11 +93,14 @@ def clocked(source: Source, columns: list[Column], options: ReadOptions, table: 
 
 
 def _ticking(times: list[Column]) -> list[Column]:
-    """Columns that are called a time; of several, what falls as it rises is none: an X_Value beside Y_Value."""
+    """Columns that are called a time; of several, what falls or stands still is none: an X_Value beside Y_Value."""
     if len(times) < 2:
         return times
     steps = [np.diff(c.values[np.isfinite(c.values)]) for c in times]
-    falls = [c for c, step in zip(times, steps, strict=True) if not c.given and (step < 0).sum() > _FALLS * len(step)]
+    falls = [
+        c for c, step in zip(times, steps, strict=True)
+        if not c.given and ((step < 0).sum() > _FALLS * len(step) or (len(step) > 1 and not step.any() and not c.clock))
+    ]  # fmt: skip
     if len(falls) == len(times):
         return times
     for column in falls:

@@ -70,8 +70,20 @@ def heading_of(header: str, unit: str | None = None, vocabulary: Vocabulary | No
             if convention.pattern.match(label.strip()[:LONGEST]):
                 unit, source = convention.unit, convention.source
                 break
-    quantity = quantity_of(label, unit, known)
+    quantity = quantity_of(label, unit, known) or _symbol_before_unit(label, unit, known)
     return Heading(label, unit, quantity, source, "" if quantity else _role(label, unit, known))
+
+
+def _symbol_before_unit(label: str, unit: str | None, known: Vocabulary) -> str | None:
+    """The quantity of ``F_N`` and ``x_g``: a symbol, or an axis, and its unit."""
+    name, _, tail = label.strip()[:LONGEST].rpartition(".")[2].partition("_")
+    if not tail or unit is None or len(name) != 1 or unit not in _as_units(tail.split("_")):
+        return None
+    conversion = known.unit(unit)
+    letter = {"m/s^2": "a", "rad/s": "w"}.get(conversion.unit) if conversion else None
+    if letter and name in "xyz":
+        return letter + name
+    return quantity_of(name, unit, known)
 
 
 def _role(label: str, unit: str | None, known: Vocabulary) -> str:
@@ -140,6 +152,8 @@ def _agrees(name: str, unit: str, known: Vocabulary) -> bool:
     conversion = known.unit(unit)
     if conversion is None or unit in ("1", "-"):
         return False
+    if re.split(r"[ .]", name)[-1] in ("x", "y", "z") and conversion.unit in ("m/s^2", "rad/s"):
+        return True
     quantity = _named(name, conversion, known) or _optional(name, known)
     return (SI_UNIT.get(quantity or "") or known.optional.get(quantity or "")) == conversion.unit
 

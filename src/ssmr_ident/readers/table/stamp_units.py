@@ -1,4 +1,4 @@
-"""From a column of stamps in any unit to seconds: units stated, or told by size and step; stamps in two columns."""
+"""From a column of stamps in any unit to seconds: units stated, or told by size and step."""
 
 from __future__ import annotations
 
@@ -11,7 +11,6 @@ import numpy as np
 from ssmr_ident.readers.options import ReadOptions
 from ssmr_ident.readers.source import Source
 from ssmr_ident.readers.table.columns import Column, Table, all_finite
-from ssmr_ident.readers.table.vocabulary import words_of
 
 DAY = 86400.0
 SECONDS_1904 = 2.0e9  # a LabVIEW stamp after 1967, counted from 1904; a count from 1970 comes there in 2033
@@ -20,12 +19,10 @@ LONGEST_STEP = 3600.0  # s; a log of this trade has more than a sample an hour
 FASTEST = 1e5  # Hz; no logger of this trade samples faster
 LARGEST = 1e20  # of a stamp as printed; nanoseconds since 1970 are 2e18, and what is larger is damage
 _SCALES = (("s", 1.0), ("ms", 1e-3), ("us", 1e-6), ("ns", 1e-9))
-_SECOND = {"sec", "secs", "s", "second", "seconds"}
-_BELOW = {
-    **dict.fromkeys(("nanosec", "nanosecs", "nsec", "nsecs", "ns", "nanoseconds", "nanosecond", "nanos"), 1e-9),
-    **dict.fromkeys(("usec", "usecs", "us", "microsec", "microseconds", "micros"), 1e-6),
-    **dict.fromkeys(("msec", "msecs", "ms", "millis", "millisec", "milliseconds"), 1e-3),
-}
+_DAYS = {"spreadsheets count from 1900": (36526.0, 73051.0), "MATLAB counts from year 0": (730486.0, 767011.0),
+         "days since 1970": (10957.0, 25568.0), "a Julian date": (2451545.0, 2488070.0)}  # fmt: skip
+"""Days of this century's first hundred years by who counts them, as the note says."""
+_WRAPS = (2.0**16, 2.0**32)  # counts of microcontrollers that begin again
 
 
 @dataclass
@@ -70,11 +67,26 @@ def clock_of(source: Source, column: Column, options: ReadOptions, table: Table)
     notes: list[str] = []
     if column.clock and options.time_unit is None:
         return _time_of_day(column, values, notes)
+    values = _unwrapped(values, notes)
     unit = options.time_unit or (column.unit and re.split(r"\ssince\s", column.unit)[0])  # CF: seconds since 2024-03-01
     if unit is None:
+        days = _days(finite)
+        if days:
+            whole = (values - np.floor(finite[0])) * DAY
+            notes.append(f"{column.shown}: days ({days}), as its size and its step say; × {DAY:g} = s")
+            since = (finite[0] - np.floor(finite[0])) * DAY
+            return Clock(column.shown, whole - since, float(np.floor(finite[0])) * DAY + since, notes, column)
         unit = _told_by_size(finite, notes, column.shown)
         if unit is None:
             ask_for_whole_numbers(source, column, finite, table)
+            step = float(np.median(np.diff(finite))) if len(finite) > 1 else 1.0
+            if 0 < step < 1 / (10 * FASTEST):
+                raise source.error(
+                    f"unit of time column {column.shown} unknown: in s its steps of {step:.4g} would be "
+                    f"{1 / step:.4g} Hz",
+                    "Give --time-unit s, min, h or ms, or --fs.",
+                    table.part,
+                )
             notes.append(f"time column {column.shown} states no unit; taken as s")
             unit = "s"
     conversion = source.vocabulary.unit(unit)
@@ -82,9 +94,36 @@ def clock_of(source: Source, column: Column, options: ReadOptions, table: Table)
         raise source.error(
             f"unit {unit!r} of time column {column.shown} is no time", "Give --time-unit s, ms or us.", table.part
         )
-    if conversion.changes and not notes:
+    if conversion.changes and not any("since 1970" in note for note in notes):
         notes.append(f"{column.shown}: {unit} × {conversion.factor:g} = s")
     return _from_zero(column, values, float(finite[0]), conversion.factor, notes)
+
+
+def _unwrapped(values: np.ndarray, notes: list[str]) -> np.ndarray:
+    """Counts that run over the end of their bits, carried on: millis() and micros() of microcontrollers."""
+    if len(values) < 4:
+        return values
+    steps = np.diff(values)
+    falls = np.flatnonzero(steps < 0)
+    if not len(falls) or len(falls) > 1000 or not all_finite(values):
+        return values
+    typical = float(np.median(steps))
+    for wrap in _WRAPS:
+        over = steps[falls] + wrap
+        if values.max() < wrap and values.min() >= 0 and typical > 0 and (np.abs(over - typical) <= 2 * typical).all():
+            carried = np.zeros(len(values))
+            carried[falls + 1] = wrap
+            notes.append(f"the count begins again after 2^{int(np.log2(wrap))} {len(falls)} time(s); carried on")
+            return values + np.cumsum(carried)
+    return values
+
+
+def _days(finite: np.ndarray) -> str:
+    """Who counts days like these, where their steps are far below a second's share of one; empty for other numbers."""
+    step = float(np.median(np.diff(finite))) if len(finite) > 1 else 0.0
+    if not 0 < step < 10.0 / DAY or bool((finite == np.round(finite)).all()):
+        return ""
+    return next((who for who, (first, last) in _DAYS.items() if first < finite[0] < last), "")
 
 
 def _from_zero(column: Column, values: np.ndarray, first: float, factor: float, notes: list[str]) -> Clock:
@@ -94,7 +133,7 @@ def _from_zero(column: Column, values: np.ndarray, first: float, factor: float, 
     seconds = (values - first) * factor if absolute else values * factor if factor != 1.0 else values
     if absolute:
         resolution = max(float(np.spacing(np.nanmax(np.abs(values)))) * factor, 1e-9)
-        origin = "LabVIEW counts from 1904" if begin > SECONDS_1904 else f"since 1970: {_date(begin)}"
+        origin = "LabVIEW counts from 1904" if begin > SECONDS_1904 else f"since 1970: {date_of(begin)}"
         notes.append(
             f"time: absolute seconds ({origin}) became seconds since the first sample "
             f"(resolution of the stamp {resolution:.1g} s)"
@@ -102,7 +141,7 @@ def _from_zero(column: Column, values: np.ndarray, first: float, factor: float, 
     return Clock(column.shown, seconds, begin if absolute else 0.0, notes, column)
 
 
-def _date(seconds: float) -> str:
+def date_of(seconds: float) -> str:
     return datetime.fromtimestamp(seconds, tz=UTC).strftime("%Y-%m-%d %H:%M:%S") if seconds < 4e9 else f"{seconds:g} s"
 
 
@@ -152,52 +191,3 @@ def ask_for_whole_numbers(source: Source, column: Column, finite: np.ndarray, ta
         "Give --time-unit s, ms or us, or --fs for a sample count.",
         table.part,
     )
-
-
-def in_two_columns(columns: list[Column], table: Table) -> list[Column]:
-    """Stamps of two columns put together: seconds and a part of a second, or a date and a time of day."""
-    made = list(columns)
-    for seconds in columns:
-        words = _with_unit(seconds)
-        if seconds.given or not words or words[-1] not in _SECOND:
-            continue
-        for below in columns:
-            parts = _with_unit(below)
-            if not parts or below is seconds or parts[-1] not in _BELOW or parts[:-1] != words[:-1]:
-                continue
-            factor = _BELOW[parts[-1]]
-            if not _whole(seconds.values) or not _whole(below.values) or np.nanmax(below.values) * factor >= 1.0:
-                continue
-            label = " ".join(words[:-1]) or "stamp"
-            first = float(np.nanmin(seconds.values))
-            together = (seconds.values - first) + below.values * factor
-            table.inform(f"time: {seconds.shown} + {factor:g} × {below.shown}, from {_date(first)} on")
-            stamp = Column(label, "s", together, quantity="time", number=seconds.number)
-            made = [stamp if c is seconds else c for c in made if c is not below]
-    dates = [c for c in made if c.clock and _is_date(c)]
-    clocks = [c for c in made if c.clock and not _is_date(c) and _within_a_day(c)]
-    if dates and clocks and not dates[0].given:
-        day, clock = dates[0], clocks[0]
-        stamp = Column(f"{day.label} {clock.label}", None, day.values + clock.values, True, "time", number=clock.number)
-        made = [stamp if c is clock else c for c in made if c is not day]
-    return made
-
-
-def _with_unit(column: Column) -> tuple[str, ...]:
-    """Words of a header with its unit: ``stamp/secs`` and ``stamp.sec`` alike."""
-    words = words_of(column.label)
-    return (*words, column.unit.lower()) if column.unit and column.unit.lower() not in words[-1:] else words
-
-
-def _is_date(column: Column) -> bool:
-    finite = column.values[np.isfinite(column.values)]
-    return len(finite) > 0 and bool((finite % DAY == 0).all()) and float(finite.max()) > DAY
-
-
-def _within_a_day(column: Column) -> bool:
-    finite = column.values[np.isfinite(column.values)]
-    return len(finite) > 0 and float(finite.max()) <= DAY + 1
-
-
-def _whole(values: np.ndarray) -> bool:
-    return bool(np.isfinite(values).all() and (values == np.round(values)).all() and values.min(initial=0) >= 0)

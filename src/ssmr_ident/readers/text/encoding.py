@@ -6,19 +6,11 @@ import codecs
 from dataclasses import dataclass
 
 from ssmr_ident.readers.source import Source
+from ssmr_ident.readers.table.vocabulary import words_of
 
-# Letters that only Central European logs hold at these bytes (cp1250): ą ś ź ł Ł ż ę ć ń
-_CENTRAL_EUROPEAN = (
-    "obciążenie",
-    "odkształcenie",
-    "siła",
-    "naprężenie",
-    "próbki",
-    "długość",
-    "prędkość",
-    "síla",
-    "čas",
-)
+_CODE_PAGES = ("cp1252", "cp1250", "cp1251", "shift_jis", "gb18030")
+"""Of Western, Central and Eastern Europe, Japan and China; the first where no word says which."""
+_HEAD = 16384  # bytes in which words are looked for
 
 
 @dataclass(frozen=True)
@@ -45,8 +37,8 @@ def text_of(source: Source) -> Text:
 
     Notes
     -----
-    UTF-8 with or without mark, then UTF-16 by its mark or its NULs, then the Windows code page: cp1250 when
-    words of a Central European language appear in it, cp1252 otherwise.
+    UTF-8 with or without mark, then UTF-16 by its mark or its NULs, then the code page in which most words of the
+    vocabulary appear, cp1252 where none does.
     """
     data = source.data
     encoding = "utf-8"
@@ -67,10 +59,20 @@ def text_of(source: Source) -> Text:
         try:
             data.decode("utf-8")
         except UnicodeDecodeError:
-            central = data[:65536].decode("cp1250", errors="replace").lower()
-            encoding = "cp1250" if any(word in central for word in _CENTRAL_EUROPEAN) else "cp1252"
+            encoding = max(_CODE_PAGES, key=lambda page: _words_known(source, data[:_HEAD], page))
             source.inform(f"text is not UTF-8; read as {encoding}")
+            if encoding in ("shift_jis", "gb18030"):  # a second byte may be a delimiter's
+                data, encoding = data.decode(encoding, errors="replace").encode(), "utf-8"
     return Text(data, encoding)
+
+
+def _words_known(source: Source, head: bytes, page: str) -> int:
+    """How many words beyond ASCII of a text in a code page the vocabulary has."""
+    words = {w for line in head.decode(page, errors="replace").split("\n")[:200] for w in words_of(line)}
+    known = {w for phrase in source.vocabulary.phrases for w in phrase} | {
+        w for (w, *_) in source.vocabulary.words["counters"]
+    }
+    return sum(not w.isascii() and (w in known or w.endswith(tuple(source.vocabulary.endings))) for w in words)
 
 
 def _looks_like_utf16(data: bytes) -> bool:

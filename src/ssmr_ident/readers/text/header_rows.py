@@ -66,10 +66,22 @@ def header_of(rows: list[TextRow], width: int, dialect: Dialect, vocabulary: Voc
             continue
         above = _fitting(left[-2].raw, width, dialect) if len(left) > 1 else None
         few = _padded(last.cells, width)
-        if units is None and few is not None and above is not None and _is_units(few, above, vocabulary):
+        section = width == 1 and few is not None and vocabulary.unit(bare_unit(few[0], vocabulary) or "") is None
+        if (
+            units is None
+            and few is not None
+            and above is not None
+            and not section
+            and _is_units(few, above, vocabulary)
+        ):
             units = few
             left.pop()
             continue
+        if width == 1 and len(left) > 1 and section and (re.match(r"\s*\[[^\]]+\]\s*\Z", last.raw[:_LONGEST])):
+            left.pop()  # the title of a section
+            continue
+        if width == 1 and cells and not _marked(last.raw) and re.match(r"[^=\[(]{1,60}=", cells[0]):
+            break  # a fact and no name
         numbers = [_is_number(cell) for cell in cells or ()]
         if cells is not None and not (all(numbers) if units else any(numbers)):  # above units, 1 and 2 are names
             if units is None and above and is_units_row(above, vocabulary) and not any(map(_is_number, above)):

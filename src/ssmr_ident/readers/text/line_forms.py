@@ -1,7 +1,8 @@
 """Lines that are a table in another form: a stamp and an arrow before each, or a name before every number.
 
 Serial monitors put ``12:31:05.124 -> `` or ``[12:31:05.124] `` before what a microcontroller prints, and sketches print
-``ax:1.52`` for a plotter. Both become plain rows here, line by line, so that line numbers stay those of the file.
+``ax:1.52`` for a plotter, scripts ``(0.005, 1.52)``. All become plain rows here, line by line, so that line numbers
+stay those of the file.
 """
 
 from __future__ import annotations
@@ -12,12 +13,18 @@ from collections import Counter
 from ssmr_ident.readers.source import Source
 from ssmr_ident.readers.text.encoding import Text
 from ssmr_ident.readers.text.stamps import is_stamp
+from ssmr_ident.readers.text.united_cells import without_units
 
 _LOOK = 200  # lines that say which form a log has
 _MOST = 0.6  # share of them that must have it
 _ARROW = re.compile(r"\[?([^\[\]>]{5,40}?)\]?[ \t]{0,3}(?:->|=>|→)[ \t]{0,3}|[\[(]([^\[\]()]{5,40})[\])][ \t:]{1,3}")
 _UPTIME = re.compile(r"\d{1,10}\.\d{2,9}\Z", re.ASCII)  # seconds since the start, as kernels print them
-_NAMED = re.compile(r"([^\W\d]\w{0,30})[ \t]?[:=][ \t]?([-+]?[\d.][\w.+-]{0,30})")
+_NAMED = re.compile(
+    r"([^\W\d]\w{0,30})[ \t]?[:=][ \t]{0,3}([-+]?[\d.][\w.+-]{0,30})"
+    r"(?:[ \t]([^\W\d][\w/^²·*]{0,9}|[°%]\w?)(?=[\s,;|]|\Z)(?![ \t]?[:=]))?"  # a unit, and not the next name
+)
+_ESP = re.compile(r"[IWEDV] \((\d{1,10})\) [\w./-]{1,40}:[ \t]")  # level, milliseconds since the start, tag
+_LISTED = re.compile(r"[\[({]([^\[\](){}]+)[\])}][,;]?\Z")
 _BETWEEN = re.compile(r"[\s,;|]*")
 
 
@@ -27,7 +34,19 @@ def plain_rows(source: Source, text: Text) -> Text:
     if _share(sample, _stamped) >= _MOST:
         text = _without_arrows(source, text, sample)
         sample = _sample(text)
-    return _without_names(source, text, sample)
+    text = _without_brackets(source, text, sample)
+    text = _without_names(source, text, _sample(text))
+    return without_units(source, text, _sample(text))
+
+
+def _without_brackets(source: Source, text: Text, sample: list[str]) -> Text:
+    """Rows that a script prints as lists or tuples, without the brackets around them."""
+    if _share(sample, lambda line: _LISTED.match(line.strip())) < _MOST:
+        return text
+    lines = [text.decode(line).strip() for line in text.data.split(b"\n")]
+    made = [match[1].strip() if (match := _LISTED.match(line)) else line for line in lines]
+    source.inform("every line is a list in brackets; they are left out")
+    return Text("\n".join(made).encode(), "utf-8")
 
 
 def _sample(text: Text) -> list[str]:
@@ -61,7 +80,7 @@ def _without_arrows(source: Source, text: Text, sample: list[str]) -> Text:
             made.append(line)
             continue
         behind = line[match.end() :]
-        numbers = sum(c.isdigit() for c in behind) > sum(c.isalpha() for c in behind) or _NAMED.match(behind)
+        numbers = sum(c.isdigit() for c in behind) > sum(c.isalpha() for c in behind) or _NAMED.match(behind.strip())
         made.append(f"{_stamp(match) if numbers else 'time'}{sign}{behind}")
     source.inform(
         "every line has a stamp with an arrow or in brackets before it, as serial monitors write: it is the time"
@@ -71,6 +90,9 @@ def _without_arrows(source: Source, text: Text, sample: list[str]) -> Text:
 
 def _cells(line: str) -> tuple[str, list[tuple[str, str]]] | None:
     """What stands before ``name:value`` cells, and the cells; None for a line that holds anything else."""
+    logged = _ESP.match(line)
+    if logged:
+        line = f"{logged[1]} {line[logged.end() :]}"
     first = _NAMED.search(line[:4000])
     if first is None:
         return None
@@ -86,7 +108,7 @@ def _cells(line: str) -> tuple[str, list[tuple[str, str]]] | None:
         match = _NAMED.match(line, position)
         if match is None:
             return None
-        cells.append((match[1], match[2]))
+        cells.append((f"{match[1]} [{match[3]}]" if match[3] else match[1], match[2]))
         following = _BETWEEN.match(line, match.end())
         assert following is not None
         if following.end() == match.end() < len(line):
@@ -104,7 +126,8 @@ def _without_names(source: Source, text: Text, sample: list[str]) -> Text:
     if count < _MOST * len(sample):
         return text
     stamped = any(head for head, _ in found)
-    header = "\t".join([*(["time"] if stamped else []), *names])
+    clock = "time [ms]" if _share(sample, _ESP.match) >= _MOST else "time"
+    header = "\t".join([*([clock] if stamped else []), *names])
     made: list[str] = []
     begun = False
     for raw in text.data.split(b"\n"):

@@ -18,6 +18,9 @@ _CLOCK = (
     r"(?P<hour>\d{1,2}):(?P<minute>\d{2})(?::(?P<second>\d{2})(?:[.,:](?P<fraction>\d{1,9}))?)?"
     r"(?:\s?(?P<half>[AaPp]\.?[Mm]\.?))?"
 )
+_SPAN = (
+    r"(?P<days>-?\d{1,5}) days?,? \+?(?P<hour>\d{1,2}):(?P<minute>\d{2}):(?P<second>\d{2})(?:\.(?P<fraction>\d{1,9}))?"
+)
 _MINUTES = r"(?P<minute>\d{1,3}):(?P<second>\d{2})[.,](?P<fraction>\d{1,9})"
 _NUMBERS = r"(?P<one>\d{1,4})(?P<mark>[-/.])(?P<two>\d{1,2})(?P=mark)(?P<three>\d{1,4})\.?"
 _NAMED = r"(?P<day>\d{1,2})[-\s./]?(?P<month>[A-Za-zäéû]{3,9})\.?[-\s./,]?(?P<year>\d{4}|\d{2})"
@@ -30,7 +33,7 @@ _ZONE = r"\s?(?:Z|(?:UTC|GMT)?[+-]\d{2}:?\d{2}|UTC|GMT)?"
 _FORMS = tuple(
     re.compile(form + r"\Z", re.ASCII if "ä" not in form else 0)
     for form in (
-        _CLOCK, _MINUTES, _NUMBERS,
+        _CLOCK, _MINUTES, _NUMBERS, _SPAN,
         *(f"{date}(?:[T_-]|,?\\s){_CLOCK}{_ZONE}" for date in (_NUMBERS, _NAMED, _AMERICAN)),
         rf"{_CLOCK}[\s,]{_NUMBERS}", _NAMED, f"{_COMPACT}{_ZONE}",
     )
@@ -159,6 +162,7 @@ def _together(parts: dict[str, np.ndarray], count: int) -> np.ndarray:
     hour = part("hour")
     if "half" in parts:
         hour = np.where(np.isfinite(parts["half"]), hour % 12 + part("half"), hour)
+    hour = hour + 24.0 * part("days")
     clock = hour * 3600.0 + part("minute") * 60.0 + (part("second") + part("fraction"))
     known = np.isfinite(parts.get("minute", np.full(count, np.nan)))
     days = _days(parts, count)
