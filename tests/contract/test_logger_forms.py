@@ -220,6 +220,17 @@ def test_rows_in_brackets_are_no_text(tmp_path: Path) -> None:
     np.testing.assert_allclose(recording["acceleration"], ACCELERATION, atol=1e-5)
 
 
+def test_words_and_empty_cells_at_the_end_of_a_row(tmp_path: Path) -> None:
+    """Rows of another width than the table's, with words where the table has words, are left out with their lines."""
+    rows = [f"{t:.4f},run,{f:.5f}," for t, f in zip(TIME, FORCE, strict=True)]
+    rows[1] = f"0.0040,run,{FORCE[1]:.5f},note"
+    rows[40] = "0.16,,"
+    (tmp_path / "log.csv").write_text("time_s,state,force_N,remark\n" + "\n".join(rows) + "\n")
+    recording = read_one(tmp_path / "log.csv")
+    assert recording.names == ("force",)
+    assert len(recording.time) == COUNT - 1
+
+
 def test_a_minimum_beside_seconds_is_no_minute(tmp_path: Path) -> None:
     rows = "".join(f"{t:.4f},{k % 7},{f:.5f}\n" for k, (t, f) in enumerate(zip(TIME, FORCE, strict=True)))
     (tmp_path / "log.csv").write_text("sec,min,force_N\n" + rows)

@@ -67,6 +67,16 @@ def test_logs_with_nothing_in_common_are_refused_with_what_was_looked_for() -> N
         align(first, second)
 
 
+@pytest.mark.parametrize("seed", range(3))
+def test_noise_is_no_event(seed: int) -> None:
+    """Between the samples of noise a spline reads less power: that is nothing which the other record explains."""
+    rng = np.random.default_rng(seed)
+    first = Clocked("a.csv", np.arange(1000) / 100, rng.standard_normal(1000))
+    second = Clocked("b.csv", np.arange(2000) / 200, rng.standard_normal(2000))
+    with pytest.raises(InputError, match="have nothing in common"):
+        align(first, second)
+
+
 def test_a_handful_of_samples_is_refused() -> None:
     short = Clocked("a.csv", np.arange(20) / 50, np.sin(np.arange(20.0)))
     with pytest.raises(InputError, match="too short"):

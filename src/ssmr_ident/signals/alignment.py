@@ -329,25 +329,30 @@ def _whitened(samples: Array) -> Array:
 
 def _scanned(pair: _Pair, centre: float, structure: Structure) -> _Found:
     """The best shift around a candidate."""
-    part = pair.shared(centre)
+    shifts = np.unique(np.clip(centre + _steps(pair), *pair.shifts)).tolist()
+    residuals = [_residual(pair, shift, structure) for shift in shifts]
+    shift, (y, with_it) = min(
+        zip(shifts, residuals, strict=True),
+        key=lambda one: np.mean(np.abs(one[1][1]) ** 2) / np.mean(np.abs(one[1][0]) ** 2),
+    )
+    s = _s(LOWEST + len(y) - 1)
+    # of the very same samples: what is read between samples, or from another stretch, has another power
+    alone = fitted_response(s, np.zeros_like(y), y, np.ones(len(y)), alone_of(structure)).residual
+    without = alone if np.mean(np.abs(alone) ** 2) < np.mean(np.abs(y) ** 2) else y
+    return _Found(shift, *_gain(without, with_it, len(structure.above)))
+
+
+def _residual(pair: _Pair, shift: float, structure: Structure) -> tuple[Array, Array]:
+    """Bins of the answer at a shift, and what a response to the other record leaves of them."""
+    part = pair.shared(shift)
     last = pair.highest(part)
-    (u, y), _ = pair.bins(part, np.array([centre, 0.0]), last)
-    alone = fitted_response(_s(last), np.zeros_like(u), y, np.ones(len(y)), alone_of(structure)).residual
-    shifts = np.unique(np.clip(centre + _steps(pair), *pair.shifts))
-    return max((_judged(pair, float(shift), alone, structure) for shift in shifts), key=lambda found: found.gain)
+    (u, y), _ = pair.bins(part, np.array([shift, 0.0]), last)
+    return y, fitted_response(_s(last), u, y, np.ones(len(y)), structure, rounds=2).residual
 
 
 def _steps(pair: _Pair) -> Array:
     """Of a search around a shift [s]."""
     return np.arange(-math.ceil(AROUND * FINENESS), math.ceil(AROUND * FINENESS) + 1) / (FINENESS * pair.middle)
-
-
-def _judged(pair: _Pair, shift: float, alone: Array, structure: Structure) -> _Found:
-    part = pair.shared(shift)
-    last = pair.highest(part)
-    (u, y), _ = pair.bins(part, np.array([shift, 0.0]), last)
-    with_it = fitted_response(_s(last), u, y, np.ones(len(y)), structure, rounds=2).residual
-    return _Found(shift, *_gain(alone, with_it, len(structure.above)))
 
 
 def _gain(without: Array, with_it: Array, more: int) -> tuple[float, float]:

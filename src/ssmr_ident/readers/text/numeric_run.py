@@ -79,7 +79,9 @@ def walk(
         line, following = _line_at(data, position)
         raw = text.decode(line)
         cells = layout.dialect.cells(raw)
-        if not cells or len(line) > LONGEST_LINE or not is_row(filled_up(cells, line, layout), layout):
+        if width is None:
+            cells = filled_up(cells, line, layout)
+        if not cells or len(line) > LONGEST_LINE or not is_row(cells, layout):
             yield TextRow(line_number, cells, raw)
             position, line_number = following, line_number + 1
             continue
