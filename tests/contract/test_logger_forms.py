@@ -167,6 +167,27 @@ FORMS: dict[str, tuple[list[str], Row, str, str]] = {
         "shift_jis"),
     "sections with facts": (
         ["[meta]", "fs = 250", "unit = N", "[data]"], lambda k, t, a, f, x: f"{f:.5f}", "column_1:N=f", "utf-8"),
+    "weekdays before dates": (
+        ["Timestamp,Force (N)"], lambda k, t, a, f, x: f'"Mon, 02 Jun 2025 {stamp(k)} GMT",{f:.5f}', "force", "utf-8"),
+    "stamps of C": (
+        ["Timestamp,Force (N)"], lambda k, t, a, f, x: f"Mon Jun  2 {stamp(k)} 2025,{f:.5f}", "force", "utf-8"),
+    "units before the names": (
+        ["[s] Time;[N] Force;[m/s²] Acc"], lambda k, t, a, f, x: f"{t:.4f};{f:.5f};{a:.6f}", "force acceleration",
+        "utf-8"),
+    "camel case": (
+        ["timeSec,accelXMps2,forceN"], lambda k, t, a, f, x: f"{t:.4f},{a:.6f},{f:.5f}", "ax force", "utf-8"),
+    "serial numbers behind the unit": (
+        ['"Plot Title: rig"', '"#","Date Time, GMT+01:00","X Accel, g (LGR S/N: 123, SEN S/N: 456)"'],
+        lambda k, t, a, f, x: f"{k + 1},06/02/25 11:00:{k / RATE:06.3f} AM,{a / G:.7f}", "ax", "utf-8"),
+    "channel numbers before the names": (
+        ["Scan,Time,101 <force> (N),Alarm 101"],
+        lambda k, t, a, f, x: f"{k},06/02/2025 11:00:00:{4 * k:03d},{f:.5f},0", "force", "utf-8"),
+    "decimal commas in quotes": (
+        ['"Zeit (s)","Kraft (N)"'], lambda k, t, a, f, x: f'"{comma(t)}","{comma(f)}"', "force", "utf-8"),
+    "cells as formulas": (
+        ["Time (s),Force (N)"], lambda k, t, a, f, x: f'="{t:.4f}",="{f:.5f}"', "force", "utf-8"),
+    "a typesetter's minus": (
+        ["Time (s),Force (N)"], lambda k, t, a, f, x: f"{t:.4f},{f:.5f}".replace("-", "\u2212"), "force", "utf-8"),
     "a clock with colons throughout": (
         ["Time\tForce (N)"], lambda k, t, a, f, x: f"12:00:00:{4 * k:03d}\t{f:.5f}", "force", "utf-8"),
 }  # fmt: skip
@@ -209,6 +230,16 @@ def test_a_rate_that_nothing_has_is_asked_about(tmp_path: Path) -> None:
     (tmp_path / "log.csv").write_text("time,force_N\n" + rows)
     with pytest.raises(InputError, match=r"would be 2\.5e\+11 Hz"):
         read(tmp_path / "log.csv")
+
+
+def test_a_name_that_stands_twice_is_asked_by_its_number(tmp_path: Path) -> None:
+    rows = "".join(f"{t:.4f},{f:.5f},{a:.5f}\n" for t, f, a in zip(TIME, FORCE, ACCELERATION, strict=True))
+    (tmp_path / "log.csv").write_text("Time (s),Acc,Acc\n" + rows)
+    with pytest.raises(InputError) as error:
+        read(tmp_path / "log.csv")
+    assert "--units 1=…,2=…" in error.value.mend
+    recording = read_one(tmp_path / "log.csv", ReadOptions(units={"1": "g", "2": "m/s^2"}))
+    np.testing.assert_allclose(recording["acceleration"], G * FORCE, atol=1e-4)
 
 
 def test_rows_in_brackets_are_no_text(tmp_path: Path) -> None:

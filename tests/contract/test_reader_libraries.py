@@ -401,6 +401,16 @@ def test_hdf5_groups_with_rates_of_their_own_are_one_recording(tmp_path: Path) -
     assert recording.series("acceleration").rate == pytest.approx(RATE)
 
 
+def test_hdf5_stamps_as_text(tmp_path: Path) -> None:
+    h5py = pytest.importorskip("h5py")
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file["when"] = np.array([f"2025-03-01T12:00:{t:09.6f}" for t in TIME], dtype="S26")
+        file["force_N"] = FORCE
+    recording = read_one(tmp_path / "a.h5")
+    assert recording.sample_rate == pytest.approx(RATE, rel=1e-5)
+    same(recording["force"], FORCE)
+
+
 def test_factors_of_a_convention_are_applied_and_others_told(tmp_path: Path) -> None:
     h5py = pytest.importorskip("h5py")
     with h5py.File(tmp_path / "a.h5", "w") as file:

@@ -87,7 +87,7 @@ _TABLE: dict[str, tuple[str, float]] = {
     "ozf-in": ("N m", INCH * POUND_FORCE / 16), "kgf m": ("N m", STANDARD_GRAVITY),
     "ft lbf": ("N m", 12 * INCH * POUND_FORCE), "lbf ft": ("N m", 12 * INCH * POUND_FORCE),
     # electrical and others that pass through
-    "V": ("V", 1.0), "mV": ("V", 1e-3), "uV": ("V", 1e-6),
+    "VDC": ("V", 1.0), "mVDC": ("V", 1e-3), "V": ("V", 1.0), "mV": ("V", 1e-3), "uV": ("V", 1e-6),
     "A": ("A", 1.0), "mA": ("A", 1e-3), "Hz": ("Hz", 1.0), "kHz": ("Hz", 1e3),
     "kg": ("kg", 1.0),
     "K": ("K", 1.0), "W": ("W", 1.0),

@@ -21,6 +21,7 @@ from ssmr_ident.readers.table.columns import Column, Table, facts
 from ssmr_ident.readers.table.headings import heading_of
 from ssmr_ident.readers.table.vocabulary import Vocabulary, shipped, words_of
 from ssmr_ident.readers.text.header_rows import rate_from
+from ssmr_ident.readers.text.stamps import is_stamp, seconds_of
 
 MOST_BYTES = 400 * 2**20  # of all arrays of a file together, unpacked
 _WIDEST = 64  # columns that an array of two dimensions may have
@@ -109,6 +110,9 @@ def recordings_of_arrays(
 def _columns(source: Source, array: NamedArray, arrays: list[NamedArray], sign: str) -> list[Column]:
     """Columns of an array: one, or as many as its second dimension has."""
     values = np.asarray(array.values)
+    if values.ndim == 1 and values.dtype.kind in "OSU" and len(values) > 1 and is_stamp(_text(values[0])):
+        seconds = seconds_of([_text(v).encode() for v in values.tolist()]).seconds
+        return [Column(sign.join(array.path), None, seconds, True, "time")]
     if values.ndim == 0 or values.dtype.kind in "OSUVc":
         return []
     values = values.squeeze() if values.ndim > 1 else values

@@ -52,7 +52,7 @@ def channels_of(source: Source, data: list[Column], table: Table, seen: str) -> 
     data = _without_empty(source, data, table)
     _name_by_unit(source, data)
     guess = _gravity(source, data)
-    volts = table.assumed_unit == "V" or _look_like_volts(data)
+    volts = table.assumed_unit == "V" or (not table.words and _look_like_volts(data))
     _ask_for_units(source, data, table, guess, volts and table.assumed_unit == "V", seen)
     channels: list[Channel] = []
     assumed: list[str] = []
@@ -167,7 +167,11 @@ def _ask_for_units(
     """Stop where a quantity is known and its unit is not, with the best guess and what else was understood."""
     vector, why = guess
     # no word in the file says what is in it, and nothing looks like something
-    nameless = not any(c.label or c.unit or c.given for c in data) and not daq and not _look_like_volts(data)
+    nameless = (
+        not any(c.label or c.unit or c.given for c in data)
+        and not daq
+        and (bool(table.words) or not _look_like_volts(data))
+    )
     asked = []
     for column in data:
         conversion = source.vocabulary.unit(column.unit) if column.unit else None
@@ -221,10 +225,13 @@ def _mend(columns: list[Column], such_as: str, units: list[str] | None = None, c
         named = dict(zip(names, columns, strict=False))
         numbers = {**({} if clock is None else {"time": clock}), **{name: c.number for name, c in named.items()}}
         pairs = ",".join(f"{name}={number}" for name, number in numbers.items())
-        said = "" if len(columns) == 3 else f" What they are only you know: {' and '.join(named)} are examples."
+        examples = "is an example" if len(named) == 1 else "are examples"
+        said = "" if len(columns) == 3 else f" What they are only you know: {' and '.join(named)} {examples}."
         return f"Give --columns {pairs} --units {','.join(map('='.join, zip(named, units, strict=False)))}{such}.{said}"
-    pairs = ",".join(f"{c.shown}={unit}" for c, unit in zip(columns, units, strict=True))
-    keys = ", ".join(f"{c.shown}: {unit}" for c, unit in zip(columns, units, strict=True))
+    labels = [c.label for c in columns]
+    names = [str(c.number) if labels.count(c.label) > 1 else c.shown for c in columns]  # a name that stands twice
+    pairs = ",".join(map("=".join, zip(names, units, strict=True)))
+    keys = ", ".join(map(": ".join, zip(names, units, strict=True)))
     return f"Give --units {pairs}{such}; in session.yaml, units: {{{keys}}} beside the file."
 
 

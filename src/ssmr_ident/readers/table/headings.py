@@ -16,6 +16,7 @@ SI_UNIT |= {"ax": "m/s^2", "ay": "m/s^2", "az": "m/s^2", "wx": "rad/s", "wy": "r
 SI_UNIT |= {"acceleration_2": "m/s^2", "position_reference": "m", "base_acceleration": "m/s^2"}
 _CLOSING = {")": "(", "]": "[", "}": "{", ">": "<"}
 _WITHIN = re.compile(r"([^()\[\]]+)[(\[]([^()\[\]]+)[)\]][\s_:-]+([^()\[\]]+)\Z")
+_BEFORE = re.compile(r"[(\[]([^()\[\]]+)[)\]][\s_:-]*([^()\[\]]+)\Z")
 _MOST_TOKENS = 3  # of a unit behind an underscore: m_s_2
 _SPELT = re.compile(r"(?:[mu]s|[mun]?secs?|\w{3,}s)\Z", re.IGNORECASE)  # ms, Seconds, millis; not second or min
 
@@ -108,6 +109,10 @@ def split_header(header: str, vocabulary: Vocabulary | None = None) -> tuple[str
     if len(header) > 4 * LONGEST:
         return header, None
     bracketed = _bracketed(header)
+    if bracketed is not None and known.unit(bracketed[1]) is None:  # Accel, g (S/N: 123)
+        left, found, right = bracketed[0].rpartition(", ")
+        if found and left.strip() and known.unit(right) is not None:
+            return left.strip(), right.strip()
     if bracketed is not None:
         label, inside = bracketed
         if not inside or inside.isdigit():  # time[0], a count and no unit
@@ -115,6 +120,9 @@ def split_header(header: str, vocabulary: Vocabulary | None = None) -> tuple[str
         if label.endswith("/"):  # Acc/(m/s^2)
             label = label[:-1].rstrip()
         return label, inside
+    before = _BEFORE.match(header)
+    if before and known.unit(before[1]) is not None:  # [N] Force
+        return before[2].strip(), before[1].strip()
     within = _WITHIN.match(header)
     if within and known.unit(within[2]) is not None:  # Force (N) Run #1
         return f"{within[1].strip()} {within[3]}", within[2].strip()
@@ -174,7 +182,9 @@ def unit_in_name(label: str, vocabulary: Vocabulary | None = None) -> str | None
     label = label.strip()[:LONGEST]
     parts = re.split(r"[_ .]", label)
     if len(parts) == 1:
-        hump = re.match(r"(.*[a-zà-ÿ0-9])([A-Z]{1,2}[a-z]{0,2})\Z", label)
+        hump = re.match(r"(.*[a-zà-ÿ0-9A-Z])([A-Z][a-z]{1,3}\d?)\Z", label) or re.match(
+            r"(.*[a-zà-ÿ0-9])([A-Z]{1,2}[a-z]{0,2})\Z", label
+        )
         return hump[2] if hump and _agrees(hump[1], hump[2], known) else None
     for count in range(min(_MOST_TOKENS, len(parts) - 1), 0, -1):
         name, tail = " ".join(parts[:-count]), parts[-count:]

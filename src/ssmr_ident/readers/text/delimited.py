@@ -76,7 +76,7 @@ def recordings_of_text(
         text = without_cut_line(source, text, layout.dialect.delimiter)
     items = list(walk(text, layout))
     blocks = _data_blocks(source, blocks_of(source, items, layout))
-    _refuse_split_decimals(source, items, blocks)
+    _refuse_split_decimals(source, items, blocks, layout)
     recordings: list[Recording] = []
     for number, block in enumerate(blocks, start=1):
         refuse_many_broken(source, block, options.on_bad)
@@ -110,7 +110,9 @@ def _data_blocks(source: Source, blocks: list[Block]) -> list[Block]:
     return kept
 
 
-def _refuse_split_decimals(source: Source, items: list[NumberRun | TextRow], blocks: list[Block]) -> None:
+def _refuse_split_decimals(
+    source: Source, items: list[NumberRun | TextRow], blocks: list[Block], layout: Layout
+) -> None:
     """``1,5,2,5`` below two names is two numbers with decimal commas; one number below four names is no channel."""
     for block in blocks:
         if block.named:
@@ -123,10 +125,13 @@ def _refuse_split_decimals(source: Source, items: list[NumberRun | TextRow], blo
                 "Log again with the sensors switched on, or export the columns too.",
                 f"line {block.lines[0]}",
             )
+        if layout.dialect.delimiter != ",":
+            continue
         above = [item for item in items if isinstance(item, TextRow) and item.line < block.lines[0] and item.cells]
-        if above and len(above[-1].cells) * 2 == width and not any(v.isdigit() for v in above[-1].cells):
+        names = above[-1].cells if above else []
+        if names and len(names) * 2 == width and all(v[:1].isalpha() or v[:1] == '"' for v in names):
             raise source.error(
-                f"rows have {width} cells below {len(above[-1].cells)} names: comma as separator and as decimal sign?",
+                f"rows have {width} cells below {len(names)} names: comma as separator and as decimal sign?",
                 "Export with ; or tab as the separator.",
                 f"line {block.lines[0]}",
             )

@@ -16,8 +16,8 @@ from ssmr_ident.readers.text.stamps import is_date, is_stamp
 # In the order of preference among equals: a tab or a semicolon is never part of a number
 _CANDIDATES = [
     Dialect(d, m)
-    for d, m in (("\t", "."), ("\t", ","), (";", "."), (";", ","), (",", "."), ("|", "."), ("|", ","), (" ", "."),
-                 (" ", ","))
+    for d, m in (("\t", "."), ("\t", ","), (";", "."), (";", ","), (",", "."), (",", ","), ("|", "."), ("|", ","),
+                 (" ", "."), (" ", ","))
 ]  # fmt: skip
 LONGEST_LINE = 20_000  # bytes; no log has such rows, so a longer line is taken as text
 _HEAD_LINES = (120, 5000)  # first look, second look when the first found hardly any numbers
@@ -94,6 +94,8 @@ def sniff(source: Source, text: Text, options: ReadOptions, *, delimiters: str =
         best, most, rows = None, 0.0, []
         whole = 0
         for dialect in _CANDIDATES:
+            if dialect.delimiter == dialect.decimal and not any('"' in line for line in lines):
+                continue  # a comma between numbers and within them needs quotes around them
             if dialect.delimiter not in delimiters or (options.decimal or dialect.decimal) != dialect.decimal:
                 continue
             run, worth = _longest_run(lines, dialect)

@@ -10,6 +10,7 @@ from ssmr_ident.readers.table.vocabulary import words_of
 
 _CODE_PAGES = ("cp1252", "cp1250", "cp1251", "shift_jis", "gb18030")
 """Of Western, Central and Eastern Europe, Japan and China; the first where no word says which."""
+_MINUS = "\u2212".encode()  # as typesetters print it
 _HEAD = 16384  # bytes in which words are looked for
 
 
@@ -63,6 +64,8 @@ def text_of(source: Source) -> Text:
             source.inform(f"text is not UTF-8; read as {encoding}")
             if encoding in ("shift_jis", "gb18030"):  # a second byte may be a delimiter's
                 data, encoding = data.decode(encoding, errors="replace").encode(), "utf-8"
+    if encoding == "utf-8" and _MINUS in data:
+        data = data.replace(_MINUS, b"-")
     return Text(data, encoding)
 
 

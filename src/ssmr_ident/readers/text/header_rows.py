@@ -9,6 +9,7 @@ from ssmr_ident.readers.table.headings import Heading, bare_unit, heading_of, is
 from ssmr_ident.readers.table.vocabulary import Vocabulary, words_of
 from ssmr_ident.readers.text.numbers import Dialect
 from ssmr_ident.readers.text.numeric_run import TextRow
+from ssmr_ident.readers.text.stamps import is_stamp
 
 _RULE = re.compile(r"[-=_+|*#~:. \t]{3,}\Z")
 _MARKS = "#%!;*/"
@@ -218,7 +219,12 @@ def _bare(units: list[str] | None, width: int, vocabulary: Vocabulary) -> list[s
 
 
 def _is_number(cell: str) -> bool:
-    """True for what begins like a number, even a spoilt one: such a row is damaged data, no header."""
+    """True for what begins like a number, even a spoilt one: such a row is damaged data, no header.
+
+    A number before words, ``101 <acc> (VDC)``, is a channel's.
+    """
+    if re.match(r"\d{1,4}[ _]\W?[^\W\d]{3}", cell) and not is_stamp(cell):
+        return False
     return bool(re.match(r"[+-]?[.,]?\d", cell))
 
 

@@ -31,6 +31,9 @@ _BETWEEN = re.compile(r"[\s,;|]*")
 def plain_rows(source: Source, text: Text) -> Text:
     """The text with every line as a row of cells, and a header where the lines themselves say the names."""
     sample = _sample(text)
+    if _share(sample, lambda line: '="' in line) >= _MOST:  # a spreadsheet keeps it as text, or as it is printed
+        text = Text(text.data.replace(b'="', b'"'), text.encoding)
+        sample = _sample(text)
     if _share(sample, _stamped) >= _MOST:
         text = _without_arrows(source, text, sample)
         sample = _sample(text)

@@ -133,7 +133,8 @@ class _Run:
     def fill(self, position: int, line_number: int) -> tuple[int, int]:
         """Read rows from a byte on; the byte and the line number behind them."""
         data, end = self.text.data, len(self.text.data)
-        compiled = end - position > LONG
+        signs = self.layout.dialect
+        compiled = end - position > LONG and signs.delimiter != signs.decimal
         patience = 50  # rows through Python before the compiled loop is tried again
         while position < end:
             if compiled and patience >= 50:

@@ -24,6 +24,11 @@ _SPAN = (
 _MINUTES = r"(?P<minute>\d{1,3}):(?P<second>\d{2})[.,](?P<fraction>\d{1,9})"
 _NUMBERS = r"(?P<one>\d{1,4})(?P<mark>[-/.])(?P<two>\d{1,2})(?P=mark)(?P<three>\d{1,4})\.?"
 _NAMED = r"(?P<day>\d{1,2})[-\s./]?(?P<month>[A-Za-zäéû]{3,9})\.?[-\s./,]?(?P<year>\d{4}|\d{2})"
+_WEEKDAY = r"(?:[A-Za-zé]{2,9}\.?,? )?"  # Mon, Monday, Mo.
+_CTIME = (
+    r"(?P<month>[A-Za-z]{3,9}) {1,2}(?P<day>\d{1,2}) (?P<hour>\d{1,2}):(?P<minute>\d{2}):(?P<second>\d{2})"
+    r"(?:[.,](?P<fraction>\d{1,9}))?(?: [A-Z]{3,4})? (?P<year>\d{4})"
+)
 _AMERICAN = r"(?P<month>[A-Za-z]{3,9})\.? (?P<day>\d{1,2}), ?(?P<year>\d{4})"
 _COMPACT = (
     r"(?P<one>\d{4})(?P<two>\d{2})(?P<three>\d{2})[T_ -](?P<hour>\d{2}):?(?P<minute>\d{2}):?(?P<second>\d{2})"
@@ -34,7 +39,8 @@ _FORMS = tuple(
     re.compile(form + r"\Z", re.ASCII if "ä" not in form else 0)
     for form in (
         _CLOCK, _MINUTES, _NUMBERS, _SPAN,
-        *(f"{date}(?:[T_-]|,?\\s){_CLOCK}{_ZONE}" for date in (_NUMBERS, _NAMED, _AMERICAN)),
+        *(f"{date}(?:[T_-]|,?\\s){_CLOCK}{_ZONE}" for date in (_NUMBERS, _WEEKDAY + _NAMED, _WEEKDAY + _AMERICAN)),
+        _WEEKDAY + _CTIME,
         rf"{_CLOCK}[\s,]{_NUMBERS}", _NAMED, f"{_COMPACT}{_ZONE}",
     )
 )  # fmt: skip
