@@ -181,7 +181,7 @@ FORMS: dict[str, tuple[list[str], Row, str, str]] = {
         lambda k, t, a, f, x: f"{k + 1},06/02/25 11:00:{k / RATE:06.3f} AM,{a / G:.7f}", "ax", "utf-8"),
     "channel numbers before the names": (
         ["Scan,Time,101 <force> (N),Alarm 101"],
-        lambda k, t, a, f, x: f"{k},06/02/2025 11:00:00:{4 * k:03d},{f:.5f},0", "force", "utf-8"),
+        lambda k, t, a, f, x: f"{k},06/02/2025 11:00:00:{4 * k:03d},{f:.5f},0", "101_<force>:N=f", "utf-8"),
     "decimal commas in quotes": (
         ['"Zeit (s)","Kraft (N)"'], lambda k, t, a, f, x: f'"{comma(t)}","{comma(f)}"', "force", "utf-8"),
     "cells as formulas": (

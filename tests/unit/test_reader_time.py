@@ -216,3 +216,9 @@ def test_friction_originals_agree_with_the_clean_files(shared: Path) -> None:
         np.testing.assert_allclose(original.time[:count], clean.time, atol=1e-6)
         np.testing.assert_allclose(original["force"][:count], clean["force"], rtol=1e-5, atol=1e-6)
         np.testing.assert_allclose(original["position"][:count], clean["position"], atol=2e-7)
+
+
+def test_two_rows_at_one_time_are_refused(tmp_path: Path) -> None:
+    (tmp_path / "log.csv").write_text("time_s,force_N\n1.0,1\n1.0,2\n1.0,3\n")
+    with pytest.raises(InputError, match="time stands still"):
+        read(tmp_path / "log.csv")

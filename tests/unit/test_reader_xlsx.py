@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import zipfile
 from datetime import datetime, timedelta
 from pathlib import Path
 
@@ -123,3 +124,18 @@ def test_booleans_are_no_volts(tmp_path: Path) -> None:
     rows["S2"][7][1] = True
     with pytest.raises(InputError, match=r"S2:B8: text 'True' inside the data"):
         read(save(tmp_path / "a.xlsx", rows))
+
+
+def test_a_far_cell_behind_damage_is_refused_before_it_is_laid_out(tmp_path: Path) -> None:
+    """One parser stops at the damage, another reads over it: what is laid out is bounded for both."""
+    path = save(tmp_path / "a.xlsx", {name: columns(k) for k, name in enumerate("zyx")})
+    with zipfile.ZipFile(path) as archive:
+        parts = {name: archive.read(name) for name in archive.namelist()}
+    name = next(name for name in parts if name.endswith("sheet1.xml"))
+    body = parts[name].rpartition(b"?>")[2].replace(b'r="A3"', b'r="A1999999999991"')
+    parts[name] = b'<?xml version="1. " encoding="UTF-8"?>' + body
+    with zipfile.ZipFile(path, "w") as archive:
+        for part, data in parts.items():
+            archive.writestr(part, data)
+    with pytest.raises(InputError, match=r"reaches to row 1999999999991"):
+        read(path)

@@ -63,7 +63,8 @@ def _seen(source: Source, axis: time_axis.TimeAxis) -> str:
         return f"{count} rows"
     parts = f", {len(axis.restarts) + 1} parts" if axis.restarts else ""
     end = axis.restarts[0] if axis.restarts else count
-    rate = (end - 1) / float(axis.time[end - 1] - axis.time[0]) if end > 1 else 0.0
+    lasting = float(axis.time[end - 1] - axis.time[0])
+    rate = (end - 1) / lasting if lasting > 0 else 0.0
     doubts = [note for note in source.notes if note.level == "warning"] + axis.notes
     notes = "; ".join(note.text.split(";")[0] for note in doubts[:2])
     return f"{count} rows{parts} at {rate:.6g} Hz{'; ' + notes if notes else ''}"

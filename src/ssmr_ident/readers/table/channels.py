@@ -229,9 +229,9 @@ def _mend(columns: list[Column], such_as: str, units: list[str] | None = None, c
         said = "" if len(columns) == 3 else f" What they are only you know: {' and '.join(named)} {examples}."
         return f"Give --columns {pairs} --units {','.join(map('='.join, zip(named, units, strict=False)))}{such}.{said}"
     labels = [c.label for c in columns]
-    names = [str(c.number) if labels.count(c.label) > 1 else c.shown for c in columns]  # a name that stands twice
-    pairs = ",".join(map("=".join, zip(names, units, strict=True)))
-    keys = ", ".join(map(": ".join, zip(names, units, strict=True)))
+    shown = [str(c.number) if labels.count(c.label) > 1 else c.shown for c in columns]  # a name that stands twice
+    pairs = ",".join(map("=".join, zip(shown, units, strict=True)))
+    keys = ", ".join(map(": ".join, zip(shown, units, strict=True)))
     return f"Give --units {pairs}{such}; in session.yaml, units: {{{keys}}} beside the file."
 
 

@@ -191,6 +191,8 @@ def _part(
             stamps, rows = stamps[keep], rows[keep]
             steps = np.diff(stamps)
     if len(stamps) < 3:
+        if len(stamps) == 2 and stamps[1] <= stamps[0]:
+            raise TimeProblem(int(rows[1]), f"time stands still at {stamps[1]:.6g} s", "Give --fs.")
         return stamps, rows
     if 0 < (steps == 0).sum() <= max(1, _RARE * len(stamps)) and stamps_are != "even":
         stamps = _between(stamps, np.flatnonzero(steps == 0) + 1, rows, place, notes)

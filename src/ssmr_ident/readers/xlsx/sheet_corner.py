@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import contextlib
 import re
 from xml.parsers import expat
 
 import numpy as np
 
 LONG = 200_000  # bytes from which on compiling pays
+_ANYWHERE = re.compile(rb"""\br\s{0,9}=\s{0,9}["']([A-Za-z]{0,3})(\d{1,18})""")
 _REFERENCE = re.compile(r"([A-Za-z]{1,3})(\d{1,9})")
 
 
@@ -46,17 +46,25 @@ def _parse(data: bytes) -> tuple[int, int]:
         elif local == "c":
             match = _REFERENCE.fullmatch(attributes.get("r", ""))
             if match:
-                column = 0
-                for letter in match[1].upper():
-                    column = column * 26 + ord(letter) - 64
-                row = int(match[2])
+                column, row = _column(match[1]), int(match[2])
             else:
                 column += 1
             rows, columns = max(rows, row), max(columns, column)
 
     parser = expat.ParserCreate()
     parser.StartElementHandler = start
-    # a damaged sheet is reported with its name by whoever parses it; the corner so far bounds what is laid out
-    with contextlib.suppress(expat.ExpatError):
+    try:
         parser.Parse(data, True)
+    except (
+        expat.ExpatError
+    ):  # reported with its name by whoever parses it, or read over: whatever looks like a place counts
+        for letters, digits in _ANYWHERE.findall(data):
+            rows, columns = max(rows, int(digits)), max(columns, _column(letters.decode()))
     return rows, columns
+
+
+def _column(letters: str) -> int:
+    number = 0
+    for letter in letters.upper():
+        number = number * 26 + ord(letter) - 64
+    return number
