@@ -225,6 +225,14 @@ def test_minus_9999_is_no_number(tmp_path: Path) -> None:
     assert read_one(tmp_path / "near.csv")["force"][20] == -999
 
 
+def test_infinite_is_no_number(tmp_path: Path) -> None:
+    rows = "".join(f"{t:.4f},{'-Inf' if k == 9 else f}\n" for k, (t, f) in enumerate(zip(TIME, FORCE, strict=True)))
+    (tmp_path / "log.csv").write_text("time_s,force_N\n" + rows)
+    recording = read_one(tmp_path / "log.csv")
+    assert np.flatnonzero(np.isnan(recording["force"])).tolist() == [9]
+    assert any("1 value(s) of force_N are no number, kept as NaN" in note.text for note in recording.notes)
+
+
 def test_a_rate_that_nothing_has_is_asked_about(tmp_path: Path) -> None:
     rows = "".join(f"{3 + t * 1e-9:.15f},{f:.5f}\n" for t, f in zip(TIME, FORCE, strict=True))
     (tmp_path / "log.csv").write_text("time,force_N\n" + rows)

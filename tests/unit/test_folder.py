@@ -13,10 +13,11 @@ def test_a_json_of_samples_is_a_log_and_one_of_settings_or_results_is_not(tmp_pa
     for name, content in {
         "rows.json": rows,
         "arrays.json": {"fs": 100, "force_N": [float(k) for k in range(20)]},
+        "columns.json": {"force_N": {str(k): float(k) for k in range(20)}},
         "settings.json": {"device": "phone", "sensors": [{"name": "acc"}], "range": [0, 16]},
         "result.json": {"schema": "x/1", "points": [float(k) for k in range(20)]},
     }.items():
         (tmp_path / name).write_text(json.dumps(content))
     files, errors = logs_in([tmp_path])
-    assert [file.name for file in files] == ["arrays.json", "rows.json"]
+    assert [file.name for file in files] == ["arrays.json", "columns.json", "rows.json"]
     assert not errors

@@ -16,7 +16,7 @@ LOG_EXTENSIONS = frozenset(
     }
 )
 _HEAD = 65536  # bytes of a .json that are looked at
-_ARRAY = re.compile(rb"\[(?:\s*-?\d[\d.eE+-]{0,30}\s*,){8}")  # so many numbers in a row are samples
+_ARRAY = re.compile(rb"""(?:\[|\{)(?:\s*(?:"[\d.]{1,25}"\s*:\s*)?-?\d[\d.eE+-]{0,30}\s*,){8}""")  # so many are samples
 
 
 def logs_in(paths: Iterable[Path], *, below: bool = False) -> tuple[list[Path], list[InputError]]:

@@ -18,8 +18,8 @@ COARSEST = 0.02  # V, the step of an 8-bit card; values of a log that are farthe
 _SATURATED = 50  # equal samples at the largest value, see ``saturated``
 _RUN = 3  # equal samples in a row, see ``cut_off``
 _PLACES = 3  # where they stand
-_RESTS = 0.02
-"""Choice: share of samples within the range that equal the one before, up to which a channel never rests."""
+_RESTS = 0.3
+"""Choice: share of samples within the range that equal the one before, up to which a channel does not rest."""
 _AMPLIFIED = ("N", "N m", "m/s^2", "Pa", "V")
 AXES = ("ax", "ay", "az")
 
@@ -196,7 +196,7 @@ def saturated(samples: np.ndarray) -> int:
 
 def cut_off(samples: np.ndarray) -> int:
     """Samples that stand, three and more in a row, at the largest or the smallest value of a channel that elsewhere
-    never rests: a signal that goes beyond its range again and again.
+    moves: a signal that goes beyond its range again and again.
 
     A converter's coarse steps make flat tops as well, but from those the signal falls by one step; from a range that
     is exceeded it falls at the slope it came with.

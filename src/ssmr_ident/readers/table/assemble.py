@@ -172,7 +172,7 @@ def _part(
                 place(int(missing[0])),
             )
         )
-        kept.append(channel)
+        kept.append(replace(channel, samples=np.where(np.isfinite(channel.samples), channel.samples, np.nan)))
     if not kept:
         raise source.error("has no channel with numbers", "Export it again.", part)
     return _recording(source, reader, table, part, time, kept, notes)
