@@ -74,6 +74,18 @@ IN_SESSION = {
         7,
         "a number of 6021 digits",
     ),
+    "digits for a word": (
+        "    experiment",
+        f"    decimal: 0x{'f' * 5000}\n    experiment",
+        7,
+        "decimal: is a number of 6021 digits",
+    ),
+    "digits for a key": (
+        "    experiment",
+        f"    ? 0x{'f' * 5000}\n    : 1\n    experiment",
+        7,
+        "a key must be a plain word",
+    ),
     "a date as number": ("    experiment", "    speed_mm_s: 2012-05-01\n    experiment", 7, "is 2012-05-01"),
     "a channel in a list": ("force: F", "force: [F]", 8, "channels.force: is ['F']"),
 }

@@ -123,7 +123,8 @@ class Choice(Domain):
         if isinstance(value, bool) or not isinstance(value, str | int | float) or value not in self.known:
             if len(self.known) == 1:
                 raise place.error(f"is {shown(value)}, expected {self.known[0]!r}")
-            raise place.error(f"is {shown(value)}", did_you_mean(str(value)[:60], map(str, self.known)))
+            told = value[:60] if isinstance(value, str) else shown(value)
+            raise place.error(f"is {shown(value)}", did_you_mean(told, map(str, self.known)))
         return value
 
     def schema(self) -> Schema:

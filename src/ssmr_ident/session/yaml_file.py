@@ -12,6 +12,7 @@ import yaml
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.place import Place, Way, shown
 
+_LARGEST_KEY = 10**18  # of a whole number; one of thousands of digits cannot be printed in an error
 _SIZE_LIMIT = 4_000_000  # bytes; a hand-written file is a thousand times smaller
 
 
@@ -31,7 +32,7 @@ class _Loader(yaml.SafeLoader):
         seen: set[Any] = set()
         for key_node, _ in node.value:
             key = self.construct_object(key_node, deep=True)
-            if not isinstance(key, str | int | float | bool):
+            if not isinstance(key, str | int | float | bool) or (isinstance(key, int) and abs(key) > _LARGEST_KEY):
                 raise yaml.MarkedYAMLError(problem="a key must be a plain word", problem_mark=key_node.start_mark)
             if key in seen:
                 raise yaml.MarkedYAMLError(problem=f"key {key!r} stands twice", problem_mark=key_node.start_mark)
