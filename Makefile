@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 # small matrices: threads of the linear algebra only get into each other's way
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: demo test static test-all check docs bench bench-doctor data clean
+.PHONY: demo test static test-all check docs bench bench-doctor bench-sessions data clean
 
 demo: $(VENV)/.runtime
 	$(BIN)/ident demo -o out
@@ -42,6 +42,10 @@ bench: $(VENV)/.test
 bench-doctor: $(VENV)/.test
 	$(BIN)/python benchmarks/bench_doctor.py $(if $(N),-n $(N)) $(if $(FAMILIES),--families $(FAMILIES)) \
 	  $(if $(START),--start $(START)) $(if $(ENGINE),--engine $(ENGINE))
+
+# made-up and drawn sessions with what the first doctor must say of each
+bench-sessions: $(VENV)/.test
+	$(BIN)/pytest -n 2 --dist worksteal benchmarks/sessions
 
 data: $(VENV)/.runtime
 	$(BIN)/python data/make_raw.py

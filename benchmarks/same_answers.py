@@ -68,12 +68,12 @@ def commands(verbs: list[str], out: Path) -> Iterator[tuple[str, list[str]]]:
             yield f"{verb}/{name}", [verb, str(folder), *more, "--json"]
 
 
-def record(out: Path, source: Path, verbs: list[str], limit: float) -> None:
+def record(out: Path, source: Path, verbs: list[str], only: str, limit: float) -> None:
     """Run what has no result in ``out`` yet, by the package below ``source``."""
     environment = {**os.environ, "PYTHONPATH": str(source.resolve()), "OPENBLAS_NUM_THREADS": "1"}
     for key, words in commands(verbs, out):
         answer = out / f"{key}.json"
-        if answer.exists():
+        if answer.exists() or not re.search(only, key):
             continue
         answer.parent.mkdir(parents=True, exist_ok=True)
         command = [sys.executable, "-m", "ssmr_ident", *words]
@@ -152,6 +152,7 @@ def main() -> None:
     recorded.add_argument("out", type=Path)
     recorded.add_argument("--source", type=Path, default=ROOT / "src", help="the checkout's src")
     recorded.add_argument("--verbs", default=",".join(VERBS), help="comma-separated")
+    recorded.add_argument("--only", default="", help="regular expression that a result's name holds: practice-(14|20)")
     recorded.add_argument("--limit", type=float, default=1800.0, help="seconds that a command may take")
     held = does.add_parser("hold", help="lay two folders of results side by side")
     held.add_argument("one", type=Path)
@@ -160,7 +161,7 @@ def main() -> None:
     held.add_argument("--most", type=int, default=5, help="differences printed of each file")
     asked = parser.parse_args()
     if asked.what == "record":
-        record(asked.out.resolve(), asked.source, asked.verbs.split(","), asked.limit)
+        record(asked.out.resolve(), asked.source, asked.verbs.split(","), asked.only, asked.limit)
     elif hold(asked.one, asked.other, asked.within, asked.most):
         sys.exit(1)
 

@@ -14,7 +14,6 @@ from ssmr_ident.diagnose.setup import set_up
 from ssmr_ident.diagnose.sizes import limits_of, sizes_of
 from ssmr_ident.identify.fitting.joint import JointFit, differentiate, evaluate
 from ssmr_ident.physics.effects import CATALOGUE
-from ssmr_ident.workflows.diagnose import diagnose
 
 pytestmark = pytest.mark.slow
 
@@ -57,14 +56,6 @@ def test_a_spring_that_would_soften_to_nothing_is_tried_at_a_tenth(
     assert suspect.at["k3_N_m3"] == pytest.approx(K3, rel=0.6)
 
 
-def test_tires_that_soften_are_named_under_noise() -> None:
-    found = diagnose(mixed(SEED, tuple(FAMILIES)).campaign)
-    assert [effect.id for effect in found.effects] == ["nonlinear_stiffness"]
-    assert found.effects[0].parameters["k3_N_m3"].value == pytest.approx(K3, rel=0.1)
-    assert found.heldout.after < 0.75 * found.heldout.before
-    assert np.isfinite(found.heldout.after)
-
-
 @pytest.mark.parametrize("scale", [Scale(0.064, 0.4), Scale(15.6, 2.5)])
 def test_a_search_begins_alike_on_robots_of_all_sizes(scale: Scale) -> None:
     """Units grow with the robot, and with them where effects are looked for and how far they may go."""
@@ -101,16 +92,3 @@ def test_a_cable_stretches_by_no_more_than_the_head_goes() -> None:
     rises = [np.ptp(t.target) / t.facts["travel_m"] for t in fit.trials if not t.experiment.vertical]
     assert low == pytest.approx(0.8 * max(rises))
     assert low < drawn.truth.effects["cable_compliance"]["K_cable_N_m"] < high == np.inf
-
-
-def test_a_mast_on_a_robot_of_two_kilograms_is_named() -> None:
-    """Its numbers are those of the mast on the robot of thirty, by similarity."""
-    small = Scale(0.064, 0.4)
-    drawn = draw_decays("one", 502, "flexible_mast", 0.6, True, small)
-    found = diagnose(drawn.campaign)
-    assert [effect.id for effect in found.effects] == ["flexible_mast"]
-    assert found.heldout.after < 0.3 * found.heldout.before
-    values, truth = found.effects[0].parameters, drawn.truth.effects["flexible_mast"]
-    assert values["f_mast_Hz"].value == pytest.approx(truth["f_mast_Hz"] * small.factor("Hz"), rel=0.03)
-    assert values["mass_kg"].value == pytest.approx(truth["mass_kg"] * small.factor("kg"), rel=0.15)
-    assert values["height_above_com_m"].value == pytest.approx(truth["height_above_com_m"] * small.length, rel=0.15)

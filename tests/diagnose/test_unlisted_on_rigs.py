@@ -1,4 +1,4 @@
-"""What no list holds on a rig: found at the frequency that it has, and named with its law."""
+"""What no list holds on a rig: found at the frequency that it has, and begun in the place that it may have."""
 
 from __future__ import annotations
 
@@ -14,7 +14,6 @@ from ssmr_ident.diagnose.scan import PLACES, both_ways, scan
 from ssmr_ident.diagnose.sizes import sizes_of
 from ssmr_ident.identify.fitting.descent import LOUD
 from ssmr_ident.physics.effects import CATALOGUE
-from ssmr_ident.workflows.diagnose import diagnose
 
 pytestmark = pytest.mark.slow
 
@@ -31,34 +30,6 @@ def test_a_straight_line_points_to_the_frequency(law: dict[str, float], frequenc
     places = [suspect for suspect in group if frequency in suspect.at]
     assert len(places) == PLACES
     assert min(abs(math.log(s.at[frequency] / law[frequency])) for s in places) < 0.12
-
-
-@pytest.mark.parametrize("law", [RIDER, PULSE, {"c_ts_N_m_s": 300.0}], ids=["mass", "pulse", "drift"])
-def test_it_is_named_with_its_sizes(law: dict[str, float]) -> None:
-    found = diagnose(campaign({"unlisted": law}, RUNS, seed=3, duration=6.0))
-    (effect,) = found.effects
-    assert effect.id == "unlisted"
-    assert not effect.indistinguishable_from
-    assert {name: estimate.value for name, estimate in effect.parameters.items()} == pytest.approx(law, rel=0.05)
-    heldout = found.heldout
-    assert heldout.after < 1.1 * heldout.noise_floor < 0.5 * heldout.before
-
-
-@pytest.mark.parametrize(("side", "known"), [(1.0, 3.87e-4), (-1.0, 3.04e-4)])
-def test_a_spring_that_touches_on_one_side_is_named_with_its_place(side: float, known: float) -> None:
-    # each recording's zero of the force moves the place as well, and how far zeros may be off is all that tells it: a
-    # place held this far from the best, all else led to its best beside it, costs one more, however long recordings are
-    law = {**STOP, "place_m": side * 9e-4}
-    diagnosed = diagnose(campaign({"unlisted": law}, RUNS, seed=3, duration=6.0))
-    (effect,) = diagnosed.effects
-    assert effect.id == "unlisted"
-    assert not effect.indistinguishable_from
-    found = effect.parameters["place_m"]
-    assert effect.parameters["c_abs_s_N_m"].value == pytest.approx(STOP["c_abs_s_N_m"], rel=0.01)
-    assert found.std is not None
-    assert abs(found.value - law["place_m"]) < 3.0 * found.std
-    assert found.std == pytest.approx(known, rel=0.1)
-    assert diagnosed.heldout.after < 1.05 * diagnosed.heldout.noise_floor < 0.2 * diagnosed.heldout.before
 
 
 def test_a_bend_is_begun_in_the_middle_and_free_to_leave_it() -> None:

@@ -3,57 +3,22 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
+from simulated_swivels import campaign, known, run
 
-from ssmr_ident.compare import compare
 from ssmr_ident.core.errors import InputError
-from ssmr_ident.core.parameter import Estimate
-from ssmr_ident.core.recording import Channel, Provenance, Recording
 from ssmr_ident.diagnose.turning import diagnose_turning
 from ssmr_ident.diagnose.turning.bench import STEP, Bench, measure
 from ssmr_ident.diagnose.turning.conditions import conditions_of, held_back
 from ssmr_ident.diagnose.turning.spectral_distance import channel_logs, distance_db
-from ssmr_ident.experiments.campaign import Campaign, Measurement
 from ssmr_ident.experiments.swivel import swivel
 from ssmr_ident.physics.motor import wheel_rates
 from ssmr_ident.physics.robot import robot_from_parameters
-from ssmr_ident.session import Entry, Session, read_parameters
 from ssmr_ident.simulate.simulation import simulate
 
 pytestmark = pytest.mark.slow
-
-JOINTS = {"ground_joints": {"pitch_m": 0.03, "depth_m": 6e-4, "width_m": 6e-3}}
-
-
-def known():
-    changes = {"tire.sliding_speed_m_s": Estimate(0.35, 0.1, "m/s"), "floor.height_m": Estimate(3e-5, 1e-5, "m")}
-    return read_parameters("p3at-extended").updated(changes)
-
-
-def run(speed, role, effects, seed, seconds=14.0):
-    """One recording, in SI, with noise; its floor is its own."""
-    parameters = known()
-    robot = robot_from_parameters(parameters)
-    grain = {"height_m": 3e-5, "length_m": 6e-3, "seed": 1e5 + seed}
-    scenario = swivel(wheel_rates(robot, 0.0, np.deg2rad(speed)), seconds + 3.0)
-    simulation = simulate(robot, scenario, 500.0, 2.5e-4, {"ground_roughness": grain, **effects})
-    part = slice(1500, None)
-    random = np.random.default_rng(seed)
-    time = simulation.time[part] - simulation.time[1500]
-    channels = tuple(
-        Channel(name, simulation[name][part] + 0.04 * random.standard_normal(len(time)), "m/s^2") for name in
-        ("ax", "ay", "az")
-    )  # fmt: skip
-    entry = Entry(f"{role}-{speed}-{seed}.csv", "swivel", role=role, yaw_rate_deg_s=float(speed))
-    return Measurement(entry, Recording(time, channels, Provenance("drawn", "", "simulator")))
-
-
-def campaign(*measurements):
-    session = Session("drawn", Path(), "p3at-extended", "rigid6", tuple(m.entry for m in measurements))
-    return Campaign(session, known(), measurements)
 
 
 def test_nothing_is_missing_where_targets_repeat_the_calibration():
@@ -68,24 +33,6 @@ def test_nothing_is_missing_where_targets_repeat_the_calibration():
     assert "lambda_max" in " ".join(found.notes)
     assert all(done <= total for _, done, total in stages)
     assert {stage for stage, done, total in stages if done == total} == {stage for stage, _, _ in stages}
-
-
-def test_joints_are_named_and_their_distance_found():
-    found = diagnose_turning(
-        campaign(
-            run(40, "calibration", {}, 1), run(40, "target", JOINTS, 2), run(28, "heldout", JOINTS, 3),
-        )
-    )  # fmt: skip
-    assert found.verdict == "missing_physics"
-    assert "ground_joints" in (found.effects[0].id, *found.effects[0].indistinguishable_from)
-    assert found.heldout.recordings == ("heldout-28-3.csv",)
-    assert found.heldout.after < 2.0 / 3.0 * found.heldout.before
-    assert found.located[0].recording == "target-40-2.csv"
-    assert found.evidence.speeds[0].recorded.shape == (2, 50)
-    yaml = found.as_dict()
-    assert set(yaml["fit"]) == {"metric", "training", "heldout"}
-    again = compare(campaign(run(28, "heldout", JOINTS, 3)), found.after)
-    assert again.overall["log_psd_db"] == pytest.approx(found.heldout.after, abs=1.5)
 
 
 def test_without_held_out_recordings_some_are_kept_back():

@@ -15,8 +15,6 @@ from ssmr_ident.diagnose.explore import Search
 from ssmr_ident.diagnose.setup import Setup, set_up
 from ssmr_ident.identify.fitting.joint import JointFit
 
-pytestmark = pytest.mark.slow
-
 
 def _drawn(seed: int) -> tuple[Setup, JointFit, tuple[float, ...]]:
     drawn = draw("decays", "none", seed, short=True)

@@ -19,8 +19,6 @@ from ssmr_ident.identify.fitting.descent import descend
 from ssmr_ident.identify.fitting.joint import JointFit
 from ssmr_ident.physics.effects import CATALOGUE
 
-pytestmark = pytest.mark.slow
-
 
 def test_a_belt_that_no_straight_line_promises_is_tried_beside_it(monkeypatch: pytest.MonkeyPatch) -> None:
     drawn = draw("decays", "one", 2, "motor_belt", 0.8, short=True)

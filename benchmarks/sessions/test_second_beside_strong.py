@@ -9,8 +9,6 @@ from ssmr_ident.diagnose import engine
 from ssmr_ident.diagnose.accept import FORMULA, left_over
 from ssmr_ident.workflows.diagnose import diagnose
 
-pytestmark = pytest.mark.slow
-
 BOTH = {"nonlinear_stiffness": {"k3_N_m3": 1e8}, "quadratic_damping": {"d2_N_s2_m2": 20.0}}
 RUNS = [Run(force=60.0), Run(force=90.0)]
 

@@ -10,8 +10,6 @@ from ssmr_ident.diagnose.accept import better
 from ssmr_ident.diagnose.weigh import Explanation
 from ssmr_ident.workflows.diagnose import diagnose
 
-pytestmark = pytest.mark.slow
-
 BOTH = {"nonlinear_stiffness": {"k3_N_m3": 2e6}, "dry_friction": {"F_c_N": 3.0, "element_stiffness_N_m": 2e5}}
 RUNS = [Run(force=60.0), Run(force=30.0), Run(force=90.0)]
 

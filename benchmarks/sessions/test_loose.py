@@ -14,8 +14,6 @@ from ssmr_ident.diagnose.setup import set_up
 from ssmr_ident.identify.fitting.joint import JointFit
 from ssmr_ident.physics.effects import CATALOGUE
 
-pytestmark = pytest.mark.slow
-
 SOME = tuple(CATALOGUE[name] for name in ("free_play", "nonlinear_stiffness"))
 
 

@@ -9,8 +9,6 @@ from ssmr_ident.diagnose import explore
 from ssmr_ident.physics.effects import CATALOGUE
 from ssmr_ident.workflows.diagnose import diagnose
 
-pytestmark = pytest.mark.slow
-
 SEED, BOTH = 6375, ("viscoelastic_relaxation", "nonlinear_stiffness")
 
 

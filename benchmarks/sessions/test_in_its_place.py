@@ -10,8 +10,6 @@ from ssmr_ident.diagnose.baseline import bent, best_baseline
 from ssmr_ident.diagnose.setup import set_up
 from ssmr_ident.physics.effects import CATALOGUE
 
-pytestmark = pytest.mark.slow
-
 SEED = 6262
 
 

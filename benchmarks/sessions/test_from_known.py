@@ -17,8 +17,6 @@ from ssmr_ident.diagnose.setup import Setup, set_up
 from ssmr_ident.identify.fitting.joint import JointFit, evaluate
 from ssmr_ident.physics.effects import CATALOGUE
 
-pytestmark = pytest.mark.slow
-
 
 def _left(fit: JointFit) -> np.ndarray:
     return np.array(fit.parts / [t.size for t in fit.trials])
