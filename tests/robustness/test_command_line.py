@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from typed_command import typed
 
 SESSION = """\
 schema: ssmr-ident/session/1
@@ -16,11 +15,6 @@ recordings:
   - {file: log.csv, experiment: free_response, motion: roll}
 """
 LOG = "time [s],ax [m/s^2],ay [m/s^2]\n" + "".join(f"{i / 1000},{0.0},{1.0 / (i + 1)}\n" for i in range(600))
-
-
-def _ident(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
-    call = [sys.executable, "-m", "ssmr_ident", *arguments]
-    return subprocess.run(call, capture_output=True, text=True, cwd=cwd, timeout=120, check=False)
 
 
 @pytest.fixture
@@ -36,7 +30,6 @@ def _replace(path: Path, old: str, new: str) -> None:
     path.write_text(text.replace(old, new))
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("change", "call", "told"),
     [
@@ -58,7 +51,7 @@ def test_one_clear_line_and_status_2(folder: Path, change: tuple | None, call: t
     if change:
         _replace(folder / change[0], change[1], change[2])
     before = sorted(path.name for path in folder.iterdir())
-    done = _ident(*call, cwd=folder)
+    done = typed(*call, cwd=folder)
     assert done.returncode == 2, done.stderr
     assert told in done.stderr
     assert "Traceback" not in done.stderr
@@ -66,21 +59,20 @@ def test_one_clear_line_and_status_2(folder: Path, change: tuple | None, call: t
     assert sorted(path.name for path in folder.iterdir()) == before
 
 
-@pytest.mark.slow
 def test_a_missing_parameter_and_a_wrong_unit_are_named(folder: Path) -> None:
     (folder / "robot.yaml").write_text("schema: ssmr-ident/parameters/1\nmass_kg: {value: 30, unit: kg}\n")
     _replace(folder / "session.yaml", "p3at-extended", "robot.yaml")
-    done = _ident("compare", ".", cwd=folder)
+    done = typed("compare", ".", cwd=folder)
     assert done.returncode == 2
     assert "contact_points_m: is missing" in done.stderr
     (folder / "robot.yaml").write_text("schema: ssmr-ident/parameters/1\nmass_kg: {value: 30, unit: lb}\n")
-    done = _ident("compare", ".", cwd=folder)
+    done = typed("compare", ".", cwd=folder)
     assert done.returncode == 2
     assert "expected 'kg'" in done.stderr
 
 
 def test_help_starts_fast_and_lists_every_verb(tmp_path: Path) -> None:
-    done = _ident("--help", cwd=tmp_path)
+    done = typed("--help", cwd=tmp_path)
     assert done.returncode == 0
     for verb in ("inspect", "spectrum", "fit", "simulate", "compare", "effects", "demo"):
         assert verb in done.stdout
@@ -88,11 +80,11 @@ def test_help_starts_fast_and_lists_every_verb(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_a_simulated_log_reads_back_like_a_real_one(tmp_path: Path) -> None:
-    made = _ident(
+    made = typed(
         "simulate", "p3at-extended", "-e", "free_response", "--duration-s", "1", "-o", "roll.lvm", cwd=tmp_path
     )
     assert made.returncode == 0, made.stderr
-    seen = _ident("inspect", "roll.lvm", "--json", cwd=tmp_path)
+    seen = typed("inspect", "roll.lvm", "--json", cwd=tmp_path)
     assert seen.returncode == 0, seen.stderr
     assert '"lvm"' in seen.stdout
 
@@ -106,7 +98,7 @@ def test_an_effect_is_simulated_by_name(tmp_path: Path) -> None:
         "given": ("--effect", "dry_friction:F_c_N=2,element_stiffness_N_m=50000"),
     }.items():
         call = ("simulate", "p3at-extended", "-e", "free_response", "--duration-s", "0.2", *extra, "-o", f"{name}.csv")
-        done = _ident(*call, cwd=tmp_path)
+        done = typed(*call, cwd=tmp_path)
         assert done.returncode == 0, done.stderr
         logs[name] = (tmp_path / f"{name}.csv").read_text()
     assert len(set(logs.values())) == 3
@@ -115,6 +107,6 @@ def test_an_effect_is_simulated_by_name(tmp_path: Path) -> None:
         ("dry_friction:Fc=2", "F_c_N"),
         ("dry_friction:2", "KEY=VALUE"),
     ):
-        done = _ident("simulate", "p3at-extended", "-e", "free_response", "--effect", wrong, cwd=tmp_path)
+        done = typed("simulate", "p3at-extended", "-e", "free_response", "--effect", wrong, cwd=tmp_path)
         assert done.returncode == 2
         assert told in done.stderr

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 import typer
+from typed_command import typed
 
 from ssmr_ident import cli
 
@@ -68,12 +69,11 @@ def test_every_verb_has_examples_that_parse(verb: str, tmp_path: Path, monkeypat
         assert (program, name) == ("ident", verb)
         with GROUP.commands[verb].make_context(verb, arguments):
             pass
-    shown = _ident(verb, "--help").stdout
+    shown = typed(verb, "--help").stdout
     assert "Examples:" in shown
     assert all(word in shown for word in shlex.split(examples[0]))
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("call", "told"),
     [
@@ -91,7 +91,7 @@ def test_every_verb_has_examples_that_parse(verb: str, tmp_path: Path, monkeypat
     ],
 )
 def test_a_wrong_call_gets_one_line_and_the_nearest_name(call: list[str], told: str) -> None:
-    done = _ident(*call)
+    done = typed(*call)
     assert done.returncode == 2
     assert told in done.stderr
     assert done.stderr.startswith("ident: ")
@@ -99,9 +99,8 @@ def test_a_wrong_call_gets_one_line_and_the_nearest_name(call: list[str], told: 
     assert not done.stdout
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
-    ("typed", "offered"),
+    ("line", "offered"),
     [
         ("ident comp", "compare"),
         ("ident effects dry", "dry_friction"),
@@ -110,16 +109,16 @@ def test_a_wrong_call_gets_one_line_and_the_nearest_name(call: list[str], told: 
         ("ident new logs --robot p3at-e", "p3at-extended"),
     ],
 )
-def test_the_tab_key(typed: str, offered: str) -> None:
-    words = typed.split()
-    done = _ident(_IDENT_COMPLETE="complete_bash", COMP_WORDS=typed, COMP_CWORD=str(len(words) - 1))
+def test_the_tab_key(line: str, offered: str) -> None:
+    words = line.split()
+    done = typed(_IDENT_COMPLETE="complete_bash", COMP_WORDS=line, COMP_CWORD=str(len(words) - 1))
     assert offered in done.stdout.split()
 
 
 @pytest.mark.slow
 def test_completion_scripts_are_shown_without_being_installed() -> None:
     for shell in ("bash", "zsh", "fish"):
-        done = _ident(_IDENT_COMPLETE=f"source_{shell}")
+        done = typed(_IDENT_COMPLETE=f"source_{shell}")
         assert "_IDENT_COMPLETE" in done.stdout
 
 
@@ -133,8 +132,13 @@ def test_colour_for_people_who_want_it() -> None:
 
 @pytest.mark.slow
 def test_progress_on_a_terminal_and_silence_in_a_pipe(root: Path, tmp_path: Path) -> None:
-    session = root / "data" / "raw" / "pulls" / "carpet.yaml"
-    call = ("fit", str(session), "-o", str(tmp_path / "p.yaml"))
+    log = root / "data" / "raw" / "pulls" / "carpet-lateral-steel-3.txt"
+    (tmp_path / log.name).write_bytes(log.read_bytes())
+    (tmp_path / "session.yaml").write_text(
+        "schema: ssmr-ident/session/1\nname: pull\nrobot: p3at-extended\nrecordings:\n"
+        f"  - {{file: {log.name}, experiment: pull, direction: lateral, speed_mm_s: 2.0, height_m: 0.05, cable: steel}}\n"
+    )
+    call = ("fit", str(tmp_path), "-o", str(tmp_path / "p.yaml"))
     shown = _on_a_terminal(*call)
     assert "reading logs" in shown
     assert "all recordings together" in shown

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 import yaml
+from typed_command import typed
 from typer.testing import CliRunner
 
 from ssmr_ident.cli import app
@@ -119,28 +118,19 @@ def test_a_folder_without_logs_stands_for_those_below_it(tmp_path: Path) -> None
     assert text.splitlines()[2].startswith("in common of 2 recordings: reader csv; 1000 Hz; ")
 
 
-@pytest.mark.slow
 def test_one_bad_log_does_not_hide_the_others(tmp_path: Path) -> None:
     for name in ("a.csv", "c.csv"):
         (tmp_path / name).write_text("no numbers here\n")
     write_csv(tmp_path / "b.csv", recording())
-    result = subprocess.run(
-        [sys.executable, "-m", "ssmr_ident", "inspect", str(tmp_path)], capture_output=True, text=True, check=False
-    )
+    result = typed("inspect", str(tmp_path))
     assert result.returncode == 2
     assert "reader csv, 4000 samples" in result.stdout
     assert result.stderr.count("holds no rows of numbers") == 2
     assert "Traceback" not in result.stderr
 
 
-@pytest.mark.slow
 def test_error_is_one_line_and_status_2(tmp_path: Path) -> None:
-    result = subprocess.run(
-        [sys.executable, "-m", "ssmr_ident", "inspect", str(tmp_path / "none.csv")],
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    result = typed("inspect", str(tmp_path / "none.csv"))
     assert result.returncode == 2
     assert result.stdout == ""
     assert result.stderr.startswith(f"ident: {tmp_path / 'none.csv'}: cannot be read (No such file or directory)")
