@@ -136,7 +136,7 @@ def test_progress_on_a_terminal_and_silence_in_a_pipe(root: Path, tmp_path: Path
     (tmp_path / log.name).write_bytes(log.read_bytes())
     (tmp_path / "session.yaml").write_text(
         "schema: ssmr-ident/session/1\nname: pull\nrobot: p3at-extended\nrecordings:\n"
-        f"  - {{file: {log.name}, experiment: pull, direction: lateral, speed_mm_s: 2.0, height_m: 0.05, cable: steel}}\n"
+        f"  - {{file: {log.name}, experiment: pull, direction: lateral, speed_mm_s: 2.0, height_m: 0.05}}\n"
     )
     call = ("fit", str(tmp_path), "-o", str(tmp_path / "p.yaml"))
     shown = _on_a_terminal(*call)

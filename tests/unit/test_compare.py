@@ -14,9 +14,12 @@ from ssmr_ident.compare import Prediction, compare
 from ssmr_ident.compare.comparison import measure
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import Estimate
-from ssmr_ident.experiments import FORCED, PULL
+from ssmr_ident.experiments import FORCED
 from ssmr_ident.experiments.campaign import load
+from ssmr_ident.experiments.pull import pull
+from ssmr_ident.physics.robot import robot_from_parameters
 from ssmr_ident.session import read_parameters, write_parameters
+from ssmr_ident.simulate.many import simulate_pulls
 from ssmr_ident.workflows.compare import compare_session
 from ssmr_ident.workflows.simulate import Request, simulate_to_file
 
@@ -110,13 +113,14 @@ def test_a_decay_is_explained_by_its_own_parameters_whatever_its_start(root: Pat
 
 @pytest.mark.compiles
 def test_a_pull_finds_slack_and_zero(tmp_path: Path) -> None:
-    simulate_to_file("p3at-extended", Request(PULL, duration_s=3.0), tmp_path / "pull.csv")
-    rows = np.loadtxt(tmp_path / "pull.csv", delimiter=",", skiprows=1)
+    robot = robot_from_parameters(read_parameters("p3at-extended"))
+    (pulled,) = simulate_pulls([(robot, {}, pull(duration=3.0))], 100.0, 1e-4, ("force",))[:, :, 0]
     slack, zero = 40, 2.5  # samples at 1 mm/s and 100 Hz: 0.4 mm
-    force = np.concatenate([np.zeros(slack), rows[:-slack, 2]]) + zero
+    force = np.concatenate([np.zeros(slack), pulled[:-slack]]) + zero
+    time = np.arange(len(force)) / 100.0
     np.savetxt(
         tmp_path / "log.csv",
-        np.column_stack([rows[:, :2], force]),
+        np.column_stack([time, 1e-3 * time, force]),
         delimiter=",",
         header="time [s],position [m],force [N]",
         comments="",
