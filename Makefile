@@ -5,13 +5,16 @@ VENV := .venv
 BIN := $(VENV)/bin
 # small matrices: threads of the linear algebra only get into each other's way
 export OPENBLAS_NUM_THREADS ?= 1
+# where this is set, every process of a run would read all its sources and rewrite all asserts anew
+unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: demo test static test-all check docs bench bench-doctor bench-sessions data clean
 
 demo: $(VENV)/.runtime
 	$(BIN)/ident demo -o out
 
-# types and examples, while loops are compiled that the tests need; then the tests
+# types and examples, while loops are compiled that the tests need; then the tests. Each of the two that compile begins
+# with the loop that the other asks for last, and so finds it compiled
 test: $(VENV)/.test
 	$(MAKE) --no-print-directory -j3 static compiled-contract compiled-unit
 	$(BIN)/pytest -n 2 --dist worksteal -m "not slow and not compiles" tests
@@ -23,7 +26,7 @@ static: $(VENV)/.test
 	$(BIN)/pytest src
 
 compiled-%: $(VENV)/.test
-	$(BIN)/pytest -m "compiles and not slow" $$(grep -rl --include="*.py" mark.compiles tests/$*)
+	$(BIN)/pytest -m "compiles and not slow" $$(grep -rl --include="*.py" mark.compiles tests/$* | sort)
 
 test-all: test
 	$(BIN)/pytest -n 3 --dist worksteal -m slow tests

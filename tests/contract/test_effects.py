@@ -65,26 +65,12 @@ def test_the_declaration_is_complete(effect: Effect) -> None:
 
 @pytest.mark.compiles
 @EACH
-def test_every_parameter_reaches_the_code(effect: Effect) -> None:
-    names = [parameter.name for parameter in effect.parameters]
-    if effect.id == "unlisted":
-        sizes = {"deflection": 5e-3, "speed": 0.2, "force": 20.0, "stiffness": 4e3, "time": 0.02, "duration": 1.0}
-        probes = [*effect.probes, effect.rig_probes[5], effect.rig_probes[-12], effect.rig_probes[-1]]
-        assert {name for probe in probes for name in probe} == set(names)
-        motions = [promises.rig_motion({})]
-        for probe in probes:
-            values = {name: at if isinstance(at, float) else at.value(sizes) for name, at in probe.items()}
-            motions.append(promises.rig_motion({effect.id: values}))
-        for one, other in itertools.combinations(motions, 2):
-            assert np.abs(one - other)[:, 2].max() > promises.QUANTUM, "two terms do the same"
+def test_nominal_leaves_a_trace_that_an_instrument_shows(effect: Effect, robot: Robot) -> None:
+    if effect.id == "translation_coupling":
+        coupled, pure = (predicted_modes(robot, decoupled)["roll"][0] for decoupled in (False, True))
+        assert coupled < 0.8 * pure
         return
-    if not effect.acts.keys().isdisjoint(FREE_SITES):
-        _kept(promises.named_in_the_law(effect))
-        return
-    held = {slot.split(".")[1] for slot in slots.SLOTS if slot.startswith(f"{effect.id}.")}
-    without = {key.split(".")[1] for key in NO_SLOT if key.startswith(f"{effect.id}.")}
-    assert held | without == set(names)
-    assert not held & without
+    _kept(promises.shows(effect, promises.traces(effect, robot, SHOWN.get(effect.id))))
 
 
 def test_slots_and_their_indices_agree() -> None:
@@ -108,12 +94,26 @@ def test_off_changes_nothing_to_the_last_bit(effect: Effect, robot: Robot) -> No
 
 @pytest.mark.compiles
 @EACH
-def test_nominal_leaves_a_trace_that_an_instrument_shows(effect: Effect, robot: Robot) -> None:
-    if effect.id == "translation_coupling":
-        coupled, pure = (predicted_modes(robot, decoupled)["roll"][0] for decoupled in (False, True))
-        assert coupled < 0.8 * pure
+def test_every_parameter_reaches_the_code(effect: Effect) -> None:
+    names = [parameter.name for parameter in effect.parameters]
+    if effect.id == "unlisted":
+        sizes = {"deflection": 5e-3, "speed": 0.2, "force": 20.0, "stiffness": 4e3, "time": 0.02, "duration": 1.0}
+        probes = [*effect.probes, effect.rig_probes[5], effect.rig_probes[-12], effect.rig_probes[-1]]
+        assert {name for probe in probes for name in probe} == set(names)
+        motions = [promises.rig_motion({})]
+        for probe in probes:
+            values = {name: at if isinstance(at, float) else at.value(sizes) for name, at in probe.items()}
+            motions.append(promises.rig_motion({effect.id: values}))
+        for one, other in itertools.combinations(motions, 2):
+            assert np.abs(one - other)[:, 2].max() > promises.QUANTUM, "two terms do the same"
         return
-    _kept(promises.shows(effect, promises.traces(effect, robot, SHOWN.get(effect.id))))
+    if not effect.acts.keys().isdisjoint(FREE_SITES):
+        _kept(promises.named_in_the_law(effect))
+        return
+    held = {slot.split(".")[1] for slot in slots.SLOTS if slot.startswith(f"{effect.id}.")}
+    without = {key.split(".")[1] for key in NO_SLOT if key.startswith(f"{effect.id}.")}
+    assert held | without == set(names)
+    assert not held & without
 
 
 @EACH

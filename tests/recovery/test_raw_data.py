@@ -133,6 +133,7 @@ def test_natural_frequency_and_damping_come_back(decays: Campaign, robot: Robot,
     assert mode.xi_std < 1e-2 * xi
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("motion", WHERE)
 def test_truth_leaves_noise_and_mains_and_nothing_else(raw: Path, decays: Campaign, motion: str) -> None:
     truth = read_parameters(raw / "free_response" / "truth.yaml")
@@ -165,6 +166,7 @@ def test_the_generator_still_makes_these_files(raw: Path, monkeypatch: pytest.Mo
             assert np.mean(kept[name] != made[name]) < 1e-3
 
 
+@pytest.mark.slow
 def test_table_5_2_by_its_own_method_lies_within_its_grid(decays: Campaign, robot: Robot) -> None:
     for motion, (channel, place) in WHERE.items():
         omega_n, xi = linear_robot(robot).modes()[place, :2]
@@ -224,6 +226,7 @@ def test_lateral_tire_stiffness_comes_back_from_one_wheel(pulls: Campaign, robot
         assert agrees(1 / (1 / tire - fixture), spread, truth), measurement.name
 
 
+@pytest.mark.slow
 def test_vertical_tire_stiffness_comes_back_from_compression(pulls: Campaign, robot: Robot) -> None:
     for measurement in named(pulls, "concrete-wheel-compression"):
         curve = load_curve(measurement.recording["position"], measurement.recording["force"])
@@ -246,6 +249,7 @@ def test_ident_fit_gives_stiffness_and_friction_back(raw: Path, floor: str) -> N
         assert estimate.std < (0.01 if "stiffness" in key else 0.1) * exact, f"{key}: {estimate}"
 
 
+@pytest.mark.slow
 def test_static_friction_comes_back_from_a_single_wheel(pulls: Campaign, robot: Robot) -> None:
     load_on_wheel = robot.mass * GRAVITY / 4
     for measurement in named(pulls, "concrete-wheel-drag-free"):
@@ -255,6 +259,7 @@ def test_static_friction_comes_back_from_a_single_wheel(pulls: Campaign, robot: 
         assert friction.mu_static_std < 0.01
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("floor", ["concrete", "carpet"])
 def test_four_wheels_never_pull_more_than_friction_allows_and_come_near(raw: Path, pulls: Campaign, floor: str) -> None:
     truth = robot_from_parameters(read_parameters(raw / "pulls" / f"truth-{floor}.yaml"))

@@ -30,6 +30,7 @@ def trial() -> Trial:
     return found.with_lines(found.target - clean)
 
 
+@pytest.mark.compiles
 @pytest.mark.parametrize(("hz", "counts"), [(60.01, False), (180.03, False), (4.0, True), (45.0, True)])
 def test_harmonics_of_the_mains_do_not_count(trial: Trial, hz: float, counts: bool) -> None:
     wave = np.sin(2.0 * np.pi * hz * (trial.times - trial.times[0]) + 1.0)[:, None]
