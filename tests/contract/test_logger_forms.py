@@ -188,6 +188,14 @@ FORMS: dict[str, tuple[list[str], Row, str, str]] = {
         ["Time (s),Force (N)"], lambda k, t, a, f, x: f'="{t:.4f}",="{f:.5f}"', "force", "utf-8"),
     "a typesetter's minus": (
         ["Time (s),Force (N)"], lambda k, t, a, f, x: f"{t:.4f},{f:.5f}".replace("-", "\u2212"), "force", "utf-8"),
+    "units in capitals": (
+        ["TIME [S],LOAD [KN],ACC [M/S2]"], lambda k, t, a, f, x: f"{t:.4f},{f / 1e3:.8f},{a:.6f}", "force acceleration",
+        "utf-8"),
+    "kilosamples": (
+        ["Sample rate: 0.25 kS/s", "Force [N]"], lambda k, t, a, f, x: f"{f:.5f}", "force", "utf-8"),
+    "numbers as text in JSON, the rate before": (
+        ['{"type": "meta", "fs": 250}'], lambda k, t, a, f, x: f'{{"type": "s", "force_N": "{f:.5f}"}}', "force",
+        "utf-8"),
     "a clock with colons throughout": (
         ["Time\tForce (N)"], lambda k, t, a, f, x: f"12:00:00:{4 * k:03d}\t{f:.5f}", "force", "utf-8"),
 }  # fmt: skip

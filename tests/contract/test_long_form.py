@@ -59,7 +59,16 @@ def parquet(path: Path) -> None:
     frame.to_parquet(path)
 
 
-WRITERS = (in_turn, one_behind_the_other, with_a_column_of_units, by_topics, objects_a_line, parquet)
+def of_a_database(path: Path) -> None:
+    head = ["#datatype,string,long,dateTime:RFC3339,double,string,string", "#group,false,false,false,false,true,true"]
+    rows = [",result,table,_time,_value,_field,_measurement"]
+    for table, (name, samples, of) in enumerate((("force_N", FORCE, "cell"), ("accel_g", ACCELERATION / G, "imu"))):
+        pairs = zip(TIME, samples, strict=True)
+        rows += [f",,{table},2025-03-01T12:00:{t:09.6f}Z,{v:.7f},{name},{of}" for t, v in pairs]
+    path.write_text("\n".join([*head, *rows]) + "\n")
+
+
+WRITERS = (of_a_database, in_turn, one_behind_the_other, with_a_column_of_units, by_topics, objects_a_line, parquet)
 
 
 @pytest.mark.parametrize("write", WRITERS, ids=lambda w: w.__name__)
@@ -73,6 +82,22 @@ def test_every_sensor_becomes_a_channel(tmp_path: Path, write: Callable[[Path], 
         assert series.rate == pytest.approx(RATE, rel=1e-3)
         np.testing.assert_allclose(series.samples, samples, atol=2e-5)
     assert any("every row is a sample of the sensor" in note.text for note in recording.notes)
+
+
+def test_devices_with_the_same_sensors_and_numbered_channels(tmp_path: Path) -> None:
+    devices, numbered = [], []
+    for t, a, f in zip(TIME, ACCELERATION / G, FORCE, strict=True):
+        devices += [f"{t:.5f},A,acc_g,{a:.7f}", f"{t:.5f},B,acc_g,{2 * a:.7f}", f"{t:.5f},A,force_N,{f:.6f}"]
+        numbered += [f"{1000 * t:.3f},1,{a:.7f}", f"{1000 * t:.3f},2,{f:.7f}"]
+    (tmp_path / "a.csv").write_text("\n".join(["time_s,device,metric,val", *devices]) + "\n")
+    recording = read_one(tmp_path / "a.csv")
+    assert {c.label for c in recording.channels} == {"A.acc_g", "B.acc_g", "A.force_N"}
+    by_label = {c.label: c.samples for c in recording.channels}
+    np.testing.assert_allclose(by_label["B.acc_g"], 2 * ACCELERATION, atol=2e-5)
+    (tmp_path / "b.csv").write_text("\n".join(["time_ms,channel,value_g", *numbered]) + "\n")
+    recording = read_one(tmp_path / "b.csv")
+    assert [(c.label, c.unit) for c in recording.channels] == [("channel 1", "m/s^2"), ("channel 2", "m/s^2")]
+    np.testing.assert_allclose(recording.channels[1].samples, G * FORCE, atol=1e-5)
 
 
 def test_sensors_keep_their_own_rates(tmp_path: Path) -> None:

@@ -89,6 +89,8 @@ _TABLE: dict[str, tuple[str, float]] = {
     # electrical and others that pass through
     "VDC": ("V", 1.0), "mVDC": ("V", 1e-3), "V": ("V", 1.0), "mV": ("V", 1e-3), "uV": ("V", 1e-6),
     "A": ("A", 1.0), "mA": ("A", 1e-3), "Hz": ("Hz", 1.0), "kHz": ("Hz", 1e3),
+    "S/s": ("Hz", 1.0), "Sa/s": ("Hz", 1.0), "sps": ("Hz", 1.0), "kS/s": ("Hz", 1e3), "ksps": ("Hz", 1e3),
+    "kSa/s": ("Hz", 1e3), "MS/s": ("Hz", 1e6),
     "kg": ("kg", 1.0),
     "K": ("K", 1.0), "W": ("W", 1.0),
 }  # fmt: skip
@@ -123,7 +125,7 @@ _WORDS = {"degrees": "deg", "degree": "deg", "grad": "deg", "millis": "ms", "mic
           "с": "s", "сек": "s", "мс": "ms", "мкс": "us", "н": "N", "кн": "kN", "м": "m", "мм": "mm", "м/с2": "m/s^2",
           "м/с^2": "m/s^2", "м/с": "m/s", "мм/с": "mm/s", "н*м": "N m", "град": "deg", "рад": "rad",
           "秒": "s", "毫秒": "ms",
-          "g's": "g", "gees": "g", "percent": "%"}  # fmt: skip
+          "milli g": "mg", "g's": "g", "gees": "g", "percent": "%"}  # fmt: skip
 _WORDS |= {
     prefix + name + plural: sign + symbol
     for prefix, sign in _PREFIXES.items()
@@ -190,7 +192,8 @@ def find_unit(unit: str) -> Conversion | None:
     for name in (plain, _WORDS.get(plain.lower(), plain), plain.replace("*", " ")):
         if name in _EXACT:
             return _EXACT[name]
-    return _composed(plain) or _FOLDED.get(plain.lower())
+    loud = _composed(plain.lower()) if plain.isupper() and "S" in plain else None  # M/S2, MM/S; never MN or PA
+    return _composed(plain) or _FOLDED.get(plain.lower()) or loud
 
 
 def to_si(unit: str) -> Conversion:

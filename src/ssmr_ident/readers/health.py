@@ -205,6 +205,8 @@ def cut_off(samples: np.ndarray) -> int:
     if len(finite) < _SATURATED:
         return 0
     high, low = float(finite.max()), float(finite.min())
+    if np.count_nonzero(finite == high) < _RUN * _PLACES and np.count_nonzero(finite == low) < _RUN * _PLACES:
+        return 0
     falls: list[float] = []
     total, places, inside = 0, 0, np.ones(len(finite), dtype=bool)
     for extreme in (high, low):

@@ -20,10 +20,12 @@ from ssmr_ident.readers.table.long_form import Words, in_own_columns
 from ssmr_ident.readers.table.vocabulary import words_of
 from ssmr_ident.readers.text.encoding import text_of
 from ssmr_ident.readers.text.header_rows import rate_from
+from ssmr_ident.readers.text.numbers import number
 from ssmr_ident.readers.text.stamps import is_stamp, seconds_of
 
 NAMES = ("json",)
 _DEEPEST = 8
+_EVENTS = 100  # objects among which those that are no samples may state a rate
 _BATCH = 5  # samples in a list; three or four are a vector or a quaternion
 _LONGEST_LINE = 100_000  # bytes of an object
 
@@ -131,18 +133,21 @@ def _of_objects(source: Source, objects: list[tuple[int, Any]], what: str, optio
     rows = [(k, row) for k, row in flat if any(_is_number(row.get(name)) for name in wanted)]
     if len(rows) < len(flat):
         source.inform(f"{len(flat) - len(rows)} object(s) that are no samples left out")
+        sampled = {k for k, _ in rows}
+        facts = {n: str(v) for k, row in flat[:_EVENTS] if k not in sampled for n, v in row.items()}
+        rate = rate or rate_from(facts, source.vocabulary)
     names = list(dict.fromkeys(name for _, row in rows for name in row))
     columns: list[Column] = []
     words: dict[str, Words] = {}
-    for number, name in enumerate(names):
+    for column, name in enumerate(names):
         cells = [row.get(name) for _, row in rows]
         texts = [c.encode()[:64] if isinstance(c, str) else b"" for c in cells]
         if any(isinstance(c, str) and is_stamp(c) for c in cells[:50]):
-            columns.append(Column(name, None, seconds_of(texts).seconds, True, "time", number=number))
+            columns.append(Column(name, None, seconds_of(texts).seconds, True, "time", number=column))
         elif any(_is_number(c) for c in cells):
             heading = heading_of(name, None, source.vocabulary)
             values = np.array([_number(c) for c in cells])
-            columns.append(Column(heading.label, heading.unit, values, source=heading.source, number=number))
+            columns.append(Column(heading.label, heading.unit, values, source=heading.source, number=column))
         else:
             words[name] = partial(_texts, cells)
     places = [k for k, _ in rows]
@@ -202,8 +207,18 @@ def _flat(value: Any, prefix: str = "", depth: int = 0) -> dict[str, Any]:
         if isinstance(one, (dict, list)) and depth < _DEEPEST:
             found |= _flat(one, key, depth + 1)
         else:
-            found[key] = one
+            found[key] = _as_number(one)
     return found
+
+
+def _as_number(value: Any) -> Any:
+    """A number that is kept as text, as a number; whatever else as it is."""
+    if not isinstance(value, str) or not value[:1].isascii() or not value.lstrip("+-.")[:1].isdigit():
+        return value
+    try:
+        return number(value)
+    except ValueError:
+        return value
 
 
 def _is_number(value: Any) -> bool:

@@ -42,9 +42,10 @@ def in_own_columns(source: Source, columns: list[Column], words: dict[str, Words
     if not times or len(times) == len(columns) or count < 2 * _FEWEST:
         return columns
     numbered = {c.label: _numbers(c) for c in columns if _called(c.label, known) and _counts_few(c)}
+    if not words and not numbered:
+        return columns
     mixed, even = _mixed(times), _even(times)
-    chosen: list[np.ndarray] = []
-    names: list[str] = []
+    candidates: dict[str, np.ndarray] = {}
     for name, cells in {**words, **numbered}.items():
         if heading_of(name, None, known).quantity or _says_unit(name, known):
             continue
@@ -53,18 +54,18 @@ def in_own_columns(source: Source, columns: list[Column], words: dict[str, Words
         if not told and not mixed and (even or not _alternate(cells(slice(begin, begin + _LOOK)))):
             continue
         all_cells = np.array(cells(slice(0, count)), dtype=object)
-        distinct = list(dict.fromkeys(all_cells.tolist()))
-        if 1 < len(distinct) <= MOST_NAMES and all(_ticks(times, all_cells == one) for one in distinct):
-            chosen.append(all_cells)
-            names.append(name)
-    if not chosen:
+        if 1 < len(set(all_cells.tolist())) <= MOST_NAMES:
+            candidates[name] = all_cells
+    names = _telling(candidates, times, known)
+    if not names:
         return columns
-    keys = chosen[0] if len(chosen) == 1 else np.array([".".join(map(str, k)) for k in zip(*chosen, strict=True)])
-    values = [c for c in columns if not any(c is t for t in times) and c.label not in names]
+    keys = _together([candidates[name] for name in names])
+    rest = [c for c in columns if not any(c is t for t in times) and c.label not in candidates]
+    values = [c for c in rest if not heading_of(c.label, c.unit, known).role] or rest
     made = _split(source, values, keys, words, known)
     if not made:
         return columns
-    table.words[:] = [w for w in table.words if w not in names and not (_says_unit(w, known) and w in words)]
+    table.words[:] = [w for w in table.words if w not in candidates and not (_says_unit(w, known) and w in words)]
     sensors = list(dict.fromkeys(keys.tolist()))
     table.inform(
         f"every row is a sample of the sensor that {' and '.join(names)} names: channels of their own for "
@@ -74,6 +75,39 @@ def in_own_columns(source: Source, columns: list[Column], words: dict[str, Words
     for number, column in enumerate(whole):
         column.number = number
     return whole
+
+
+def _telling(candidates: dict[str, np.ndarray], times: list[Column], known: Vocabulary) -> list[str]:
+    """The fewest columns of words by which every sensor's stamps rise; empty when all together do not.
+
+    Of two that say the same, the one whose words name quantities stays.
+    """
+
+    def enough(names: list[str]) -> bool:
+        if not names:
+            return False
+        keys = _together([candidates[name] for name in names])
+        distinct = set(keys.tolist())
+        return 1 < len(distinct) <= MOST_NAMES and all(_ticks(times, keys == one) for one in distinct)
+
+    def named(name: str) -> int:
+        return sum(heading_of(str(one), None, known).quantity is not None for one in set(candidates[name].tolist()))
+
+    kept = list(candidates)
+    if not enough(kept):
+        return []
+    for name in sorted(candidates, key=named):
+        fewer = [one for one in kept if one != name]
+        if enough(fewer):
+            kept = fewer
+    return kept
+
+
+def _together(columns: list[np.ndarray]) -> np.ndarray:
+    """Words of several columns as one, (n,) object."""
+    if len(columns) == 1:
+        return columns[0]
+    return np.array([".".join(map(str, row)) for row in zip(*columns, strict=True)], dtype=object)
 
 
 def _split(
@@ -94,9 +128,15 @@ def _split(
             else:
                 name = str(sensor) if len(mine) == 1 else f"{sensor}.{column.shown}"
                 heading = heading_of(name, None, known)
-                label, unit = heading.label, column.unit or heading.unit
+                label, unit = heading.label, column.unit or _unit_of_values(column.label, known) or heading.unit
             made.append(replace(column, label=label, unit=next(iter(said), unit), rows=rows))
     return made
+
+
+def _unit_of_values(label: str, known: Vocabulary) -> str | None:
+    """The unit behind ``value_g``, a name that says nothing else."""
+    word, _, unit = label.partition("_")
+    return unit if known.has("modifiers", words_of(word)) and known.unit(unit) is not None else None
 
 
 def _called(name: str, known: Vocabulary) -> bool:

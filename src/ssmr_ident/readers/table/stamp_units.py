@@ -101,7 +101,7 @@ def clock_of(source: Source, column: Column, options: ReadOptions, table: Table)
 
 def _unwrapped(values: np.ndarray, notes: list[str]) -> np.ndarray:
     """Counts that run over the end of their bits, carried on: millis() and micros() of microcontrollers."""
-    if len(values) < 4:
+    if len(values) < 4 or not bool((values[1:] < values[:-1]).any()):
         return values
     steps = np.diff(values)
     falls = np.flatnonzero(steps < 0)

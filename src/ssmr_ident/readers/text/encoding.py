@@ -64,8 +64,8 @@ def text_of(source: Source) -> Text:
             source.inform(f"text is not UTF-8; read as {encoding}")
             if encoding in ("shift_jis", "gb18030"):  # a second byte may be a delimiter's
                 data, encoding = data.decode(encoding, errors="replace").encode(), "utf-8"
-    if encoding == "utf-8" and _MINUS in data:
-        data = data.replace(_MINUS, b"-")
+        if encoding == "utf-8":
+            data = data.replace(_MINUS, b"-")
     return Text(data, encoding)
 
 
