@@ -278,6 +278,21 @@ def test_words_and_empty_cells_at_the_end_of_a_row(tmp_path: Path) -> None:
     assert len(recording.time) == COUNT - 1
 
 
+def test_a_state_that_begins_with_a_word_for_no_number(tmp_path: Path) -> None:
+    many = np.linspace(0.0, 4.0, 1000)
+    rows = "".join(f"{t:.4f},{'OPEN' if t < 2 else 'CLOSED'},{np.sin(9 * t):.5f}\n" for t in many)
+    (tmp_path / "log.csv").write_text("time_s,valve,force_N\n" + rows)
+    recording = read_one(tmp_path / "log.csv")
+    assert recording.names == ("force",)
+    assert len(recording.time) == 1000
+
+
+def test_seconds_since_a_start_long_ago_are_no_days(tmp_path: Path) -> None:
+    rows = "".join(f"{45000 + k * 5e-5:.6f},{f:.5f}\n" for k, f in enumerate(FORCE))
+    (tmp_path / "log.csv").write_text("uptime,force_N\n" + rows)
+    assert read_one(tmp_path / "log.csv").sample_rate == pytest.approx(20_000, rel=1e-4)
+
+
 def test_a_minimum_beside_seconds_is_no_minute(tmp_path: Path) -> None:
     rows = "".join(f"{t:.4f},{k % 7},{f:.5f}\n" for k, (t, f) in enumerate(zip(TIME, FORCE, strict=True)))
     (tmp_path / "log.csv").write_text("sec,min,force_N\n" + rows)

@@ -119,9 +119,9 @@ def _unwrapped(values: np.ndarray, notes: list[str]) -> np.ndarray:
 
 
 def _days(finite: np.ndarray) -> str:
-    """Who counts days like these, where their steps are far below a second's share of one; empty for other numbers."""
+    """Who counts days like these, where steps in seconds would be of no logger; empty for other numbers."""
     step = float(np.median(np.diff(finite))) if len(finite) > 1 else 0.0
-    if not 0 < step < 10.0 / DAY or bool((finite == np.round(finite)).all()):
+    if not 0 < step < 1 / FASTEST or bool((finite == np.round(finite)).all()):
         return ""
     return next((who for who, (first, last) in _DAYS.items() if first < finite[0] < last), "")
 

@@ -22,6 +22,7 @@ _CANDIDATES = [
 LONGEST_LINE = 20_000  # bytes; no log has such rows, so a longer line is taken as text
 _HEAD_LINES = (120, 5000)  # first look, second look when the first found hardly any numbers
 _ELSEWHERE = 60  # lines from the middle and from the end that say what a column holds
+_HEADER_ROWS = 3  # rows of words that a header may have
 NUMBER, TEXT, STAMP = 0, 1, 2
 
 
@@ -180,7 +181,10 @@ def _kinds(rows: list[list[str]], more: list[list[str]], dialect: Dialect) -> tu
         cells = [row[k] for row in rows if k < len(row) and row[k]]
         stamps = sum(is_stamp(cell) or is_date(cell) for cell in cells)
         later = [_sure(row[k], dialect.decimal) for row in more if k < len(row)]
-        if any(_sure(cell, dialect.decimal) == TEXT for cell in cells) or later.count(TEXT) > len(later) / 2:
+        sure = [_sure(cell, dialect.decimal) for cell in cells]
+        # words for 'no number' alone are a state's as well, if other words follow and never a number
+        state = bool(sure) and NUMBER not in sure + later and later.count(TEXT) > _HEADER_ROWS
+        if TEXT in sure or state or later.count(TEXT) > len(later) / 2:
             kinds.append(TEXT)
         else:
             kinds.append(STAMP if 2 * stamps > len(cells) else NUMBER)

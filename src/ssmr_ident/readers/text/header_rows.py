@@ -17,7 +17,7 @@ _KEY = re.compile(r"([^=:]{1,60})(?:=|:(?!\d\d)|(?<=[^\d\s]):)(.+)\Z", re.DOTALL
 _LISTS = re.compile(r"(?:columns?|channels?|fields|header|names|variables|spalten|kanäle)\s?[:=]\s?", re.IGNORECASE)
 _LIST_WORD = re.compile(
     r"(?:columns?|channels?|fields|headers?|variables|labels?|spalten|kanäle|"
-    r"(?:channel|column|trace|signal|variable|field)?[\s_]?names?)\s?[:=]?\Z", re.IGNORECASE
+    r"names|(?:channel|column|trace|signal|variable|field)[\s_]?names?)\s?[:=]?\Z", re.IGNORECASE
 )  # fmt: skip
 _NO_UNITS = {"ts", "rn", "none", "n/a", "-", "index"}
 _PROCESSES = {"smp", "avg", "max", "min", "std", "tot", "med", "sample", "average"}
