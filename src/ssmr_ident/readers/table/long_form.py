@@ -68,7 +68,7 @@ def in_own_columns(source: Source, columns: list[Column], words: dict[str, Words
     table.words[:] = [w for w in table.words if w not in candidates and not (_says_unit(w, known) and w in words)]
     sensors = list(dict.fromkeys(keys.tolist()))
     table.inform(
-        f"every row is a sample of the sensor that {' and '.join(names)} names: channels of their own for "
+        f"every row is a sample of the sensor that column {' and '.join(names)} names: channels of their own for "
         f"{', '.join(map(str, sensors[:8]))}{f' and {len(sensors) - 8} more' if len(sensors) > 8 else ''}"
     )
     whole = [*times, *made]
