@@ -8,7 +8,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.ndimage import median_filter
 
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.recording import Recording
@@ -36,6 +35,9 @@ told the two apart."""
 
 RAISED = 3.0
 """Largest factor by which a known low-pass is undone: beyond it the log holds noise."""
+
+AROUND, WILD = 25, 8.0
+"""Samples on each side, and how many times what they leave a single one is off, to be taken for wild."""
 
 QUIET = 0.1
 """Share of the loudest stretch below which a stretch is at rest."""
@@ -133,8 +135,9 @@ def pieces_of(measurement: Measurement, index: int, frequency: float, bandwidth_
     found = []
     for first, after in stretches(y, rate, frequency) if not drive_name else [(0, len(y))]:
         part, force, block = y[first:after], drive[first:after], max(1, int(rate / (FINEST * frequency)))
-        counts = ~np.column_stack([_single(column) for column in part.T])
-        part = np.where(counts, part, np.column_stack([median_filter(column, 5) for column in part.T]))
+        judged = [_single(column) for column in part.T]
+        counts = ~np.column_stack([wild for wild, _ in judged])
+        part = np.where(counts, part, np.column_stack([smooth for _, smooth in judged]))
         least = np.array([rounding(column) for column in part.T]) / math.sqrt(block)
         if math.isfinite(bandwidth_hz):
             slow = [c for c, name in enumerate(channels) if ORDER[name] == 2]
@@ -244,12 +247,26 @@ def stretches(y: Array, rate: float, frequency: float) -> list[tuple[int, int]]:
     return [(a, b) for a, b in itertools.pairwise(edges) if b - a > 4 * width]
 
 
-def _single(samples: Array) -> Array:
-    """(n,) bool: samples far off both neighbours, which the motion is too slow for."""
-    rest = samples - median_filter(samples, 5)
-    size = median_std(rest) + 1e-3 * samples.std()
-    wild = np.abs(rest) > 8.0 * size
-    return wild & (np.convolve(wild, np.ones(3), "same") <= 1.0)
+def _single(samples: Array) -> tuple[Array, Array]:
+    """(n,) bool, (n,) float: single samples off the cubic through two neighbours on each side by far more than others
+    around are, and that cubic in their place. A single one leaves -2/3 of itself at both neighbours; a jump does not."""
+    off, smooth = np.zeros(len(samples)), samples.copy()
+    wild = np.zeros(len(samples), dtype=bool)
+    if len(samples) <= 2 * AROUND:
+        return wild, smooth
+    near = samples[1:-3] + samples[3:-1]
+    smooth[2:-2] = (4.0 * near - samples[:-4] - samples[4:]) / 6.0
+    off = samples - smooth
+    sums, at = np.concatenate([[0.0], np.cumsum(off**2)]), np.arange(len(samples))
+    low, high = np.maximum(at - AROUND, 0), np.minimum(at + AROUND + 1, len(samples))
+    inner_low, inner_high = np.maximum(at - 2, 0), np.minimum(at + 3, len(samples))
+    count = high - low - (inner_high - inner_low)
+    around = (sums[high] - sums[low] - (sums[inner_high] - sums[inner_low])) / count
+    wild = np.abs(off) > WILD * np.sqrt(np.maximum(around, median_std(off) ** 2))
+    size = np.where(off == 0.0, 1.0, off)
+    for side in (np.roll(off, 1), np.roll(off, -1)):
+        wild &= np.abs(side / size + 2.0 / 3.0) < 0.25
+    return wild, smooth
 
 
 def largest(pieces: Sequence[Piece]) -> float:
