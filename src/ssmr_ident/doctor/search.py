@@ -17,12 +17,12 @@ from ssmr_ident.estimate.exact import polish
 from ssmr_ident.estimate.generic import branch, by_recording, changing, clip, delay, lag, memory, rider, static
 from ssmr_ident.estimate.motion import motion
 from ssmr_ident.estimate.node import Member, Node
+from ssmr_ident.estimate.noise import left_white, own_noise
 from ssmr_ident.estimate.regression import regressed
 from ssmr_ident.estimate.shooting import shot
 from ssmr_ident.estimate.smoother import smoothed
 from ssmr_ident.estimate.values import Fit, Problem, Start, with_noises
 from ssmr_ident.physics.effects import CATALOGUE
-from ssmr_ident.signals.noise import AutoregressiveNoise, fit_noise, third_difference_std
 
 Array = np.ndarray
 Progress = Callable[[str, int, int], None]
@@ -32,9 +32,6 @@ TRIED_LAWS, FULL_LAWS = 7, 3
 
 LOST = 3
 """Of these, the most promising that are begun by multiple shooting where a short fit ends above the baseline."""
-
-LARGEST_ORDER = 12
-"""Of the autoregressive noise."""
 
 BEGUN, SHORT, FULL = 2, 6, 25
 """Gauss-Newton steps: the fewest move the states at the begin, in which all is linear."""
@@ -248,41 +245,12 @@ def _varied(offers: Sequence[Proposal]) -> list[Proposal]:
     return chosen
 
 
-def own_noise(problem: Problem, fit: Fit) -> tuple[tuple[AutoregressiveNoise, ...], ...]:
-    """What a fit leaves, recording by recording and channel by channel, as autoregressive noise."""
-    found: dict[int, tuple[AutoregressiveNoise, ...]] = {}
-    recordings = {p.recording for p in problem.pieces}
-    for recording in recordings:
-        own = [k for k, p in enumerate(problem.pieces) if p.recording == recording]
-        spent = round(fit.dof / len(recordings)) + 2 * len(own)
-        counts = np.vstack([problem.pieces[k].counts for k in own])
-        rest = np.vstack([fit.residuals[k] - fit.residuals[k].mean(axis=0) for k in own])
-        columns = np.where(counts, rest, 0.0).T
-        found[recording] = tuple(fit_noise(column, LARGEST_ORDER, spent) for column in columns)
-    return tuple(found[p.recording] for p in problem.pieces)
-
-
 def _with_white(search: Search) -> Search:
     """Everything again under the white noise that the best fit leaves."""
     best = search.rows()[0].fit
     assert best is not None
     problem = left_white(search.problem, best)
     return replace(search, problem=problem, fits=[_again(problem, f, SHORT) for f in search.fits])
-
-
-def left_white(problem: Problem, fit: Fit) -> Problem:
-    """White noise from what a fit leaves, whose differences the motion itself is not in."""
-    together: dict[int, list[Array]] = {}
-    for piece, rest in zip(problem.pieces, fit.residuals, strict=True):
-        together.setdefault(piece.recording, []).append(rest)
-    pieces, noises = [], []
-    for piece in problem.pieces:
-        least = 1e-2 * piece.white  # a log has no more digits than its converter
-        left = np.vstack(together[piece.recording])
-        white = np.maximum([third_difference_std(column) for column in left.T], least)
-        pieces.append(replace(piece, white=white))
-        noises.append(tuple(AutoregressiveNoise(np.ones(1), float(w)) for w in white))
-    return replace(problem, pieces=tuple(pieces), noises=tuple(noises))
 
 
 def _again(problem: Problem, fit: Fit, steps: int) -> Fit:

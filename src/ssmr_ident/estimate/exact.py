@@ -6,7 +6,6 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.signal import lfilter
 
 from ssmr_ident.estimate.node import Node
 from ssmr_ident.estimate.regression import starts_of
@@ -29,8 +28,7 @@ def _whitened(problem: Problem, index: int, columns: Array) -> Array:
     piece = problem.pieces[index]
     out = np.where(piece.counts.reshape(*piece.counts.shape, *[1] * (columns.ndim - 2)), columns, 0.0)
     for c, noise in enumerate(problem.noises[index]):
-        own = out[:, c] if noise.order == 0 else lfilter(noise.filter, [1.0], out[:, c], axis=0)
-        out[:, c] = own / noise.std
+        out[:, c] = noise.filtered(out[:, c])
     return out
 
 

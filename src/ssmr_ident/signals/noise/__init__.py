@@ -20,6 +20,7 @@ from ssmr_ident.signals.noise.mains import (
     rest_after,
     without_mains,
 )
+from ssmr_ident.signals.noise.process import process_noise
 from ssmr_ident.signals.noise.white import (
     force_noise,
     median_std,
@@ -44,6 +45,7 @@ __all__ = [
     "mains_lines",
     "median_std",
     "nuisance_columns",
+    "process_noise",
     "quiet_noise",
     "quietest_density",
     "rest_after",

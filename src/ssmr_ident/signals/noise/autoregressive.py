@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.signal import lfilter
@@ -20,7 +20,7 @@ SHORTEST_QUIET = 400
 
 @dataclass(frozen=True)
 class AutoregressiveNoise:
-    """Noise e with Σ a_k e(t−k) = w(t), w white.
+    """Noise e with Σ a_k e(t−k) = Σ b_k w(t−k), w white.
 
     Parameters
     ----------
@@ -30,11 +30,14 @@ class AutoregressiveNoise:
         Standard deviation of w, in the signal's unit.
     least : float
         What it is at the least, whatever a record shows: what its converter rounds away.
+    moving_average : (q + 1,) float
+        b, first coefficient 1; all that there is where the noise is autoregressive.
     """
 
     filter: Array
     std: float
     least: float = 0.0
+    moving_average: Array = field(default_factory=lambda: WHITE)
 
     @property
     def order(self) -> int:
@@ -45,9 +48,13 @@ class AutoregressiveNoise:
 
         The first p samples, which the filter's start-up would spoil, are left out.
         """
+        return self.filtered(samples)[self.order :]
+
+    def filtered(self, samples: Array) -> Array:
+        """All samples through the whitening filter, which begins at rest, in units of its standard deviation."""
         if not self.order:
             return samples / self.std
-        result: Array = lfilter(self.filter, [1.0], samples, axis=0)[self.order :] / self.std
+        result: Array = lfilter(self.filter, self.moving_average, samples, axis=0) / self.std
         return result
 
     def louder(self, factor: float) -> AutoregressiveNoise:
@@ -62,8 +69,11 @@ class AutoregressiveNoise:
         poles : (k,) complex [1/s]
         step : float [s]
         """
-        lags = np.arange(len(self.filter))
-        result: Array = np.exp(-np.outer(np.asarray(poles), lags) * step) @ self.filter
+        whiten, back = (
+            np.exp(-np.outer(np.asarray(poles), np.arange(len(c))) * step) @ c
+            for c in (self.filter, self.moving_average)
+        )
+        result: Array = whiten / back
         return result
 
     def density(self, frequency: Array, step: float) -> Array:

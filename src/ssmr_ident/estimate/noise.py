@@ -1,0 +1,65 @@
+"""Noise of a rig's channels, from what a fit leaves."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from scipy.signal import ss2tf
+
+from ssmr_ident.estimate.node import Node, stepped
+from ssmr_ident.estimate.pieces import Piece
+from ssmr_ident.estimate.values import Fit, Problem
+from ssmr_ident.signals.noise import AutoregressiveNoise, process_noise, third_difference_std
+
+Array = np.ndarray
+
+LARGEST_ORDER = 12
+"""Of the autoregressive noise."""
+
+
+def own_noise(problem: Problem, fit: Fit) -> tuple[tuple[AutoregressiveNoise, ...], ...]:
+    """What a fit leaves, recording by recording and channel by channel, as noise: its own, and what comes
+    through the rig from a force that was measured with noise, or not at all."""
+    found: dict[int, tuple[AutoregressiveNoise, ...]] = {}
+    recordings = {p.recording for p in problem.pieces}
+    for recording in recordings:
+        own = [k for k, p in enumerate(problem.pieces) if p.recording == recording]
+        spent = round(fit.dof / len(recordings)) + 2 * len(own)
+        counts = np.vstack([problem.pieces[k].counts for k in own])
+        rest = np.vstack([fit.residuals[k] - fit.residuals[k].mean(axis=0) for k in own])
+        columns = np.where(counts, rest, 0.0).T
+        systems = from_force(problem.pieces[own[0]], fit)
+        found[recording] = tuple(
+            process_noise(column, *system, LARGEST_ORDER, spent)
+            for column, system in zip(columns, systems, strict=True)
+        )
+    return tuple(found[p.recording] for p in problem.pieces)
+
+
+def from_force(piece: Piece, fit: Fit) -> list[tuple[Array, Array]]:
+    """Numerator and denominator from what drives a piece, or a force where nothing does, to each channel, in falling
+    powers of z, by a fit's mass, damping and stiffness alone."""
+    (transition, now, later, _), (rows, by_drive, _) = stepped(
+        Node(fit.node.baseline), fit.node.values(fit.point)[:3], piece.orders, piece.based, 1.0 / piece.rate
+    )
+    # a drive in straight lines enters with its next value: that part belongs to the output
+    entering = (now + transition @ later)[:, None]
+    through = (rows @ later + by_drive)[:, None]
+    numerators, denominator = ss2tf(transition, entering, rows, through)
+    return [(numerator, denominator) for numerator in numerators]
+
+
+def left_white(problem: Problem, fit: Fit) -> Problem:
+    """White noise from what a fit leaves, whose differences the motion itself is not in."""
+    together: dict[int, list[Array]] = {}
+    for piece, rest in zip(problem.pieces, fit.residuals, strict=True):
+        together.setdefault(piece.recording, []).append(rest)
+    pieces, noises = [], []
+    for piece in problem.pieces:
+        least = 1e-2 * piece.white  # a log has no more digits than its converter
+        left = np.vstack(together[piece.recording])
+        white = np.maximum([third_difference_std(column) for column in left.T], least)
+        pieces.append(replace(piece, white=white))
+        noises.append(tuple(AutoregressiveNoise(np.ones(1), float(w)) for w in white))
+    return replace(problem, pieces=tuple(pieces), noises=tuple(noises))

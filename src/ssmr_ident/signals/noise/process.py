@@ -1,0 +1,75 @@
+"""Process noise: a white disturbance that reaches a channel through the system itself, beside the channel's own."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from scipy.optimize import minimize_scalar
+from scipy.signal import lfilter, periodogram
+
+from ssmr_ident.signals.noise.autoregressive import AutoregressiveNoise, fit_noise
+
+Array = np.ndarray
+
+RATIOS = (-9.0, 14.0)
+"""Limits of the logarithm of disturbance over the channel's own noise, at the frequency where it is largest."""
+
+
+def process_noise(
+    samples: Array, numerator: Array, denominator: Array, largest_order: int = 24, spent: int = 0
+) -> AutoregressiveNoise:
+    """Noise of a channel of which a part comes through a linear system.
+
+    A force that is measured with noise, or a shaking floor, moves a mass on a spring most at its resonance: a line in
+    what a fit leaves, far narrower than an autoregressive model of low order can draw.
+
+    Parameters
+    ----------
+    samples : (n,) float
+        What a fit leaves; its mean is taken as zero.
+    numerator, denominator : (k + 1,) float
+        Of the system from disturbance to channel, in falling powers of z; the denominator's first is 1.
+    largest_order : int
+        Of the autoregressive part.
+    spent : int
+        Degrees of freedom that a fit took out of the samples.
+
+    Returns
+    -------
+    AutoregressiveNoise
+        With a moving average where Schwarz's criterion prefers it.
+
+    Notes
+    -----
+    The ratio of the two densities by Whittle's likelihood, the minimum-phase factor of their sum, and an autoregressive
+    model of what that leaves. Source: Priestley, Spectral Analysis and Time Series (1981), sections 6.1.5 and 10.1.
+    """
+    plain = fit_noise(samples, largest_order, spent)
+    frequency, power = periodogram(samples, detrend=False)
+    z = np.exp(2j * math.pi * frequency[1:])
+    shape = np.abs(np.polyval(numerator, z) / np.polyval(denominator, z)) ** 2
+    peak, power = float(shape.max()), power[1:]
+    if not power.any():
+        return plain
+
+    def deviance(log_ratio: float) -> float:
+        density = 1.0 + math.exp(log_ratio) / peak * shape
+        return float(np.sum(np.log(density)) + len(power) * math.log(np.mean(power / density)))
+
+    ratio = math.exp(minimize_scalar(deviance, bounds=RATIOS, method="bounded").x) / peak
+    moving = minimum_phase(denominator, numerator, ratio)
+    rest = fit_noise(lfilter(denominator, moving, samples), largest_order, spent + 1)
+    count = len(samples)
+    gained = 2.0 * count * math.log(plain.std / rest.std) + (plain.order - rest.order - 1) * math.log(count)
+    if not gained > 0.0:
+        return plain
+    return AutoregressiveNoise(np.convolve(rest.filter, denominator), rest.std, rest.least, moving)
+
+
+def minimum_phase(first: Array, second: Array, ratio: float) -> Array:
+    """c with c(z) c(1/z) proportional to a(z) a(1/z) + ratio b(z) b(1/z), zeros within the unit circle, c_0 = 1."""
+    both = np.convolve(first, first[::-1]) + ratio * np.convolve(second, second[::-1])
+    zeros = np.roots(both)
+    inner = zeros[np.argsort(np.abs(zeros))][: len(first) - 1]
+    return np.real(np.poly(inner))
