@@ -11,8 +11,10 @@ from ssmr_ident.doctor.table import Row
 SAMPLES = 5000.0
 
 
-def row(ids: str, kinds: str, evidence: float, chi2: float, over: float = 1.0, generic: bool = False) -> Row:
-    return Row(tuple(ids.split()), tuple(kinds.split()), ids or "baseline", generic, evidence, chi2, SAMPLES, over)
+def row(ids: str, kinds: str, evidence: float, chi2: float, over: float = 1.0, generic: bool = False,
+        variables: tuple[str, ...] = ()) -> Row:  # fmt: skip
+    return Row(tuple(ids.split()), tuple(kinds.split()), ids or "baseline", generic, evidence, chi2, SAMPLES, over,
+               variables=variables)  # fmt: skip
 
 
 BASE = row("", "", 0.0, 50_000.0, 3.0)
@@ -104,3 +106,16 @@ def test_a_shape_between_those_of_a_grid_is_found() -> None:
 
     found = best_shape(along, [{"gap_m": 0.1}, {"gap_m": 0.2}, {"gap_m": 0.9}])
     assert abs(math.log(found[1]["gap_m"] / 0.37)) < 0.13
+
+
+def test_two_static_forces_are_two_where_no_shape_over_the_first_ones_variable_is_enough() -> None:
+    law = row("nonlinear_stiffness", "static_force", 20_000.0, 9000.0, 1.34, variables=("x",))
+    shape = row("unlisted", "static_force", 22_300.0, 5100.0, 1.02, generic=True, variables=("",))
+    pair = row("nonlinear_stiffness quadratic_damping", "static_force static_force", 22_400.0, 5000.0, 1.0,
+               variables=("x", "v"))  # fmt: skip
+    over_x = row("nonlinear_stiffness unlisted", "static_force static_force", 20_100.0, 8800.0, 1.33, generic=True,
+                 variables=("x", "x"))  # fmt: skip
+    assert decide([BASE, law, shape, pair, over_x]).chosen is pair
+    enough = row("nonlinear_stiffness unlisted", "static_force static_force", 22_395.0, 5000.0, 1.0, generic=True,
+                 variables=("x", "x"))  # fmt: skip
+    assert decide([BASE, law, shape, pair, enough]).chosen is not pair

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from ssmr_ident.doctor.rules import CERTAIN, FORMULA, HALVED, OVER_NOISE, SECOND, TIE
+from ssmr_ident.doctor.rules import CERTAIN, FOLLOWS, FORMULA, HALVED, OVER_NOISE, SECOND, TIE
 from ssmr_ident.doctor.table import Row
 
 MISSING, NOTHING, UNDETERMINED = "missing_physics", "nothing_missing", "undetermined"
@@ -64,7 +64,8 @@ def decide(rows: Sequence[Row]) -> Decision:
     rows = [r for r in rows if stands(r, rows)]
     best = max(rows, key=lambda r: r.log_evidence)
     if best.log_evidence - base.log_evidence < CERTAIN:
-        return Decision(NOTHING) if base.over < OVER_NOISE else Decision(UNDETERMINED, kinds=kind_shares(rows, base))
+        noise = base.over < OVER_NOISE or base.follows < FOLLOWS
+        return Decision(NOTHING) if noise else Decision(UNDETERMINED, kinds=kind_shares(rows, base))
     shares = kind_shares(rows, base)
     named = [r for r in rows if r.ids and not r.generic and r.log_evidence > base.log_evidence + CERTAIN]
     top = max(named, key=lambda r: r.log_evidence, default=None)
@@ -91,11 +92,21 @@ def needed(law: Row, left: float, rows: Sequence[Row]) -> bool:
 
 
 def stands(row: Row, rows: Sequence[Row]) -> bool:
-    """Whether a second effect beats the first one in any shape, and halves what that leaves beyond noise."""
+    """Whether a second effect beats the first one in any shape, and halves what that leaves beyond noise.
+
+    Any shape is that of the first one's kind; beside a second of the same kind, of the first one's own variable.
+    """
     if len(row.ids) < 2:
         return True
     kind, law = row.kinds[0], row.ids[0]
-    first = [r for r in rows if r is not row and r.ids and set(r.kinds) == {kind} and (r.generic or r.ids[0] == law)]
+    alike = row.kinds[1] == kind and not row.generic
+    own = row.variables[0] if alike and row.variables else ""
+
+    def first_alone(r: Row) -> bool:
+        shapes = [v for i, v in zip(r.ids, r.variables, strict=False) if i != law]
+        return (r.generic or r.ids[0] == law) and (not alike or all(v == own != "" for v in shapes))
+
+    first = [r for r in rows if r is not row and r.ids and set(r.kinds) == {kind} and first_alone(r)]
     if not first:
         return False
     best = max(first, key=lambda r: r.log_evidence)

@@ -21,6 +21,9 @@ Array = np.ndarray
 
 FINER = (0.5, 0.25, 0.12)
 """Steps, in logarithms, by which the best shape of a grid is made better along the path."""
+VARIABLES = {"nonlinear_stiffness": "x", "free_play": "x", "quadratic_damping": "v", "dry_friction": "v"}
+"""Static forces of the catalogue by the one variable that they are a function of."""
+
 Shape = Mapping[str, float]
 _OnPath = tuple[float, Shape, float, float, Shape]
 
@@ -217,7 +220,8 @@ def member_of(form: Form, values: Shape, reach: float, fastest: float, force: fl
             low, high = max(low, 1e-3 * scale), min(high, 1e3 * scale)
         coordinates.append(Coordinate(name, scale, log, low, high, 0.0, 3.0 if log else np.inf, p.unit))
     held = {name: value for name, value in values.items() if name not in form.moved}
-    return Member(form.effect, form.kind, form.name, tuple(coordinates), law=held)
+    variable = VARIABLES.get(form.effect, "") if form.kind == STATIC else ""
+    return Member(form.effect, form.kind, form.name, tuple(coordinates), law=held, variable=variable)
 
 
 def _begun(node: Node, found: Fit, given: Sequence[float], member: Member, values: Shape) -> Array:

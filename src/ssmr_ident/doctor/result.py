@@ -77,12 +77,13 @@ def answer(found: Examined) -> Diagnosis:
     after_file = exported(chosen.fit, found.known) if named else before_file
     effects = named_effects(decision, chosen, after_file) if named else ()
     conflicts = conflicting(base.fit)
-    tried = tuple(Tried("+".join(r.ids) or "baseline", r.heldout, r.log_evidence) for r in found.rows)
+    rows = (*found.rows, *found.search.far)
+    tried = tuple(Tried("+".join(r.ids) or "baseline", r.heldout, r.log_evidence) for r in rows)
     shown = training if math.isnan(heldout.before) else heldout
     if named:
         summary = missing(effects, shown, METRIC, conflicts)
     elif decision.verdict == NOTHING:
-        summary = nothing(shown, METRIC, len(found.rows) - 1)
+        summary = nothing(shown, METRIC, len(rows) - 1)
     else:
         summary = undetermined(shown, METRIC, [r.name for r in found.rows if r.ids])
     if shown is training:

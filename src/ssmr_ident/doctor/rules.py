@@ -23,4 +23,8 @@ FORMULA = 0.02
 law: a seventh in size. Set by judgement, like ``HALVED``; not yet calibrated."""
 
 OVER_NOISE = 1.6
-"""Ratio of what is left to white noise from which something is missing even if nothing names it."""
+"""Ratio of what is left to white noise from which it is asked whether it follows the motion."""
+
+FOLLOWS = 4.0
+"""Standard deviations of the rank correlation of what is left with the motion from which something is missing even if
+nothing names it: one in thirty thousand under noise that knows nothing of the motion."""

@@ -15,6 +15,7 @@ from ssmr_ident.diagnose.diagnosis import Diagnosis
 from ssmr_ident.diagnose.setup import keep_back
 from ssmr_ident.doctor.decide import decide
 from ssmr_ident.doctor.held import held_fit, interleaved
+from ssmr_ident.doctor.left import follows_motion
 from ssmr_ident.doctor.result import Examined, answer, errors, predictions
 from ssmr_ident.doctor.search import searched
 from ssmr_ident.doctor.table import Row
@@ -84,8 +85,10 @@ def examined(campaign: Campaign, known: ParameterSet, progress: Progress | None,
             notes.append(f"{targets[0].name} is the only recording: {spans} were kept back, with starts of their own")
     search = searched(fitted, budget, progress)
     rows = search.rows()
-    base = next(r for r in rows if not r.ids)
-    assert base.fit is not None
+    first = next(r for r in rows if not r.ids)
+    assert first.fit is not None
+    base = replace(first, follows=follows_motion(search.problem, first.fit))
+    rows = tuple(base if r is first else r for r in rows)
     decision = decide(rows)
     if kept is not None:
         wanted = {id(r): r for r in (*rows[:SHOWN], base, *([decision.chosen] if decision.chosen else []))}

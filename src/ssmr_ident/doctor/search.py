@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ssmr_ident.doctor.laws import Proposal, proposals
-from ssmr_ident.doctor.rules import SECOND, UNIT
+from ssmr_ident.doctor.rules import SECOND, TIE, UNIT
 from ssmr_ident.doctor.table import Row, row_of
 from ssmr_ident.estimate.coarser import coarser
 from ssmr_ident.estimate.exact import polish
@@ -45,6 +45,9 @@ OVER_NOISE_SECOND = 1.25
 FULL_KINDS = 4
 """Members that get a full fit, those that a short one has brought farthest."""
 
+FIRSTS = 2
+"""Named effects, the best ones, beside which a second is looked for."""
+
 MOSTLY = 0.3
 """Share of its base's cost below which a fit from nearby is on its way, and needs no other start."""
 
@@ -57,12 +60,13 @@ NEAR_NOISE = 1.5
 
 @dataclass(eq=False)
 class Search:
-    """What has been fitted, and under which noise."""
+    """What has been fitted, and under which noise; ``far`` is what was left behind on fewer samples."""
 
     problem: Problem
     until: float = math.inf
     fits: list[Fit] = field(default_factory=list)
     untried: list[str] = field(default_factory=list)
+    far: list[Row] = field(default_factory=list)
 
     @property
     def late(self) -> bool:
@@ -274,54 +278,73 @@ def _with_own_noise(search: Search) -> Search:
 
 
 def _in_full(search: Search, whole: Problem, say: Progress) -> Search:
-    """The table again on every sample: what comes near the best is fitted on, all else only begun."""
-    best = search.rows()[0].fit
+    """The table again on every sample: what comes near the best, and of each kind the best single member."""
+    rows = search.rows()
+    best = rows[0].fit
     assert best is not None
+    near = [r for r in rows if r.fit is not None and r.fit.cost < FAR_OFF * best.cost]
+    kept = near + [r for r in rows if r not in near and _judges(r, rows, near)]
     found = _again(whole, best, SHORT)
     problem = left_white(whole, found)
     problem = with_noises(problem, own_noise(problem, found))
-    new = replace(search, problem=problem, fits=[])
-    fits = [f for f in search.fits if math.isfinite(f.cost)]
-    for index, fit in enumerate(fits):
-        say("every sample", index, len(fits))
-        near = fit.cost < FAR_OFF * best.cost or not fit.node.members
-        new.add(_again(problem, found if fit is best else fit, SHORT if near else BEGUN))
-    _offered_back(new)
+    new = replace(search, problem=problem, fits=[], far=[r for r in rows if r not in kept])
+    for index, row in enumerate(kept):
+        say("every sample", index, len(kept))
+        assert row.fit is not None
+        steps = SHORT if row in near or not row.ids else BEGUN
+        new.add(_again(problem, found if row.fit is best else row.fit, steps))
     return new
 
 
+def _judges(row: Row, rows: Sequence[Row], near: Sequence[Row]) -> bool:
+    """Whether others are held against a row: the baseline, the best single member of its kind, and what a second effect
+    has to beat."""
+    if len(row.ids) < 2 and row is next((r for r in rows if r.kinds == row.kinds), None):
+        return True
+    pairs = [r for r in near if len(r.ids) == 2 and row.ids and r.ids[0] == row.ids[0]]
+    return any(set(row.kinds) == {pair.kinds[0]} for pair in pairs)
+
+
 def _second(search: Search, say: Progress) -> None:
-    """A second effect, where the first one leaves more than noise in any shape."""
+    """A second effect beside the best named ones, where something in any shape is certainly better than these."""
     rows = search.rows()
     named = [r for r in rows if len(r.ids) == 1 and not r.generic]
     if not named or rows[0].log_evidence < SECOND:
         return
-    first = named[0].fit
-    assert first is not None
-    paths = motion(search.problem, first)
-    offers = kinds(search.problem, paths)
-    own = [m for m in offers if m.tables and m.kind == first.node.members[0].kind]
-    shaped = [search.add(_near(search.problem, first, m, FULL)) for m in own]
-    least = min([r.over for r in rows if r.ids] + [row_of(f, search.problem).over for f in shaped])
-    if least < OVER_NOISE_SECOND:
+    firsts = {r.ids: r for r in reversed(named)}  # of each effect its best formula
+    for row in sorted(firsts.values(), key=lambda r: -r.log_evidence)[:FIRSTS]:
+        assert row.fit is not None
+        _beside(search, say, row.fit)
+        if not search.rows()[0].generic:
+            return
+
+
+def _beside(search: Search, say: Progress, first: Fit) -> None:
+    """Every kind in any shape beside a named effect, and named ones along the best of these."""
+    law, problem = first.node.members[0], search.problem
+    offers = kinds(problem, motion(problem, first))
+    own = [m for m in offers if m.tables and m.kind == law.kind]
+    own += [static(problem, motion(problem, first), law.variable)] if law.variable else []
+    shaped = [search.add(_near(problem, first, m, FULL)) for m in own]
+    alone = row_of(first, problem)
+    best = max(row_of(f, problem).log_evidence for f in search.fits)
+    if alone.over < OVER_NOISE_SECOND or alone.log_evidence > best - TIE:
         return
+    explained = min((row_of(f, problem).over for f in shaped), default=math.inf) < OVER_NOISE_SECOND
     short = []
-    others = [m for m in offers if m.kind != first.node.members[0].kind]
+    others = [] if explained else [m for m in offers if m.kind != law.kind]
     for index, member in enumerate(others):
         say("second effects", index, len(others))
         if search.late:
             search.untried.append(f"{first.node.name} + {member.name}")
             continue
-        short.append(_near(search.problem, first, member, SHORT))
+        short.append(_near(problem, first, member, SHORT))
     for fit in sorted(short, key=lambda f: f.cost)[:2]:
-        full = search.add(polish(search.problem, fit.node, Start(fit.point, fit.nuisances), FULL))
-        if (
-            fit.node.generic
-            and row_of(full, search.problem).log_evidence > row_of(first, search.problem).log_evidence + SECOND
-        ):
-            _named(search, say, full, [first.node.members[0]])
+        full = search.add(polish(problem, fit.node, Start(fit.point, fit.nuisances), FULL))
+        if fit.node.generic and row_of(full, problem).log_evidence > alone.log_evidence + SECOND:
+            _named(search, say, full, [law])
     if not search.late:
-        _named(search, say, min((*short, *shaped, first), key=lambda f: f.cost), [first.node.members[0]])
+        _named(search, say, min((*short, *shaped, first), key=lambda f: f.cost), [law])
 
 
 def _near(problem: Problem, fit: Fit, member: Member, steps: int) -> Fit:

@@ -31,9 +31,13 @@ class Row:
         Number of them.
     over : float
         RMS of the residuals in sizes of the channels' white noise.
+    follows : float
+        Standard deviations by which what is left goes with the size of the motion; of the baseline alone.
     heldout : float
         Error on what was kept back, in the metric; nan where nothing was, or it was not asked for.
     fit : Fit or None
+    variables : tuple of str
+        Of which alone each member is a function; empty where it is of several, or is no static force.
     """
 
     ids: tuple[str, ...]
@@ -44,8 +48,10 @@ class Row:
     chi2: float
     samples: float
     over: float = 1.0
+    follows: float = math.inf
     heldout: float = math.nan
     fit: Fit | None = None
+    variables: tuple[str, ...] = ()
 
 
 def log_evidence(fit: Fit, samples: float) -> float:
@@ -58,6 +64,7 @@ def row_of(fit: Fit, problem: Problem, zero: float = 0.0) -> Row:
     return Row(
         tuple(m.id for m in members), tuple(m.kind for m in members), fit.node.name, fit.node.generic,
         log_evidence(fit, problem.samples) - zero, fit.chi2, problem.samples, over_noise(problem, fit), fit=fit,
+        variables=tuple(m.variable for m in members),
     )  # fmt: skip
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 from scipy.interpolate import BSpline
@@ -35,7 +36,7 @@ LOOSE = 3.0
 """Prior standard deviation of a coefficient, in the forces that the linear rig shows."""
 
 
-def static(problem: Problem, paths: Sequence[Array]) -> Member:
+def static(problem: Problem, paths: Sequence[Array], variable: str = "") -> Member:
     """f(x) + g(v) + h(x) v, x and v that the linear rig has left out.
 
     Parameters
@@ -43,6 +44,8 @@ def static(problem: Problem, paths: Sequence[Array]) -> Member:
     problem : Problem
     paths : sequence of (n, 3) float
         Position, velocity, acceleration per piece; they say where the tables are.
+    variable : str
+        ``x`` for f alone, ``v`` for g.
     """
     x, v = np.concatenate([p[:, 0] for p in paths]), np.concatenate([p[:, 1] for p in paths])
     reach, fastest = 1.1 * float(np.abs(x).max()), float(np.abs(v).max())
@@ -54,8 +57,10 @@ def static(problem: Problem, paths: Sequence[Array]) -> Member:
     by_v = np.column_stack([*(np.tanh(u / width) for width in STEEP), u * np.abs(u), u**3, np.abs(u), u**2])
     by_v = _without(by_v, np.column_stack([u]), np.interp(np.arcsinh(v / low) / top, grid, np.arange(CELLS + 1.0)))
     both = np.column_stack([grid, np.abs(grid), grid**2]) / fastest
-    tables = Tables(by_x, by_v, both, reach, low, top)
-    return _member("unlisted", STATIC, tables, problem)
+    parts = {"x": Tables(by_position=by_x), "v": Tables(by_velocity=by_v), "": Tables(by_x, by_v, both)}
+    tables = replace(parts[variable], reach=reach, low=low, top=top)
+    member = _member("unlisted", STATIC, tables, problem)
+    return replace(member, form=f"{ANY} over {variable}", variable=variable) if variable else member
 
 
 def memory(problem: Problem, paths: Sequence[Array]) -> Member:

@@ -148,6 +148,8 @@ class Member:
         ``clip`` or ``delay``: what is done to the channel, or to the drive.
     channel : str
         Which channel that is.
+    variable : str
+        ``x`` or ``v``, of which alone a static force is a function; empty for both, and for other kinds.
     """
 
     id: str
@@ -159,6 +161,7 @@ class Member:
     law: Mapping[str, float] | None = None
     after: str = ""
     channel: str = ""
+    variable: str = ""
 
     @property
     def name(self) -> str:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -16,6 +18,27 @@ Array = np.ndarray
 
 LARGEST_ORDER = 12
 """Of the autoregressive noise."""
+
+
+FAST = 0.02
+"""Share of a channel's size, in its loudest recording, beyond which differences are taken to see the motion as well as
+noise, until a fit has told the two apart."""
+
+
+def first_white(pieces: Sequence[Piece]) -> tuple[Piece, ...]:
+    """The same pieces with white noise as it is known before any fit: of each channel that of its quietest recording, as
+    what differences show is noise and motion together."""
+    density: dict[str, float] = {}
+    size: dict[str, float] = {}
+    for piece in pieces:
+        for name, white, spread in zip(piece.channels, piece.white, piece.y.std(axis=0), strict=True):
+            density[name] = min(density.get(name, math.inf), float(white) / math.sqrt(piece.rate))
+            size[name] = max(size.get(name, 0.0), float(spread))
+    found = []
+    for piece in pieces:
+        white = [min(density[name] * math.sqrt(piece.rate), FAST * size[name]) for name in piece.channels]
+        found.append(replace(piece, white=np.array(white)))
+    return tuple(found)
 
 
 def own_noise(problem: Problem, fit: Fit) -> tuple[tuple[AutoregressiveNoise, ...], ...]:

@@ -29,10 +29,6 @@ FINEST = 60
 STEPS = 60
 """Least integration steps a period: kicks err by (2 pi / steps)^2 / 24, half a per mille."""
 
-FAST = 0.02
-"""Share of a channel's size beyond which differences are taken to see the motion as well as noise, until a fit has
-told the two apart."""
-
 RAISED = 3.0
 """Largest factor by which a known low-pass is undone: beyond it the log holds noise."""
 
@@ -70,8 +66,7 @@ class Piece:
     every : int
         Steps a sample.
     white : (c,) float
-        Standard deviation of white noise: by differences of the log, at most ``FAST`` of its size, until that of what a
-        fit leaves is known.
+        Standard deviation of white noise: by differences of the log, until that of what a fit leaves is known.
     begin : float [s]
         Time at which the recording, or the release, began that this is a part of.
     """
@@ -145,8 +140,7 @@ def pieces_of(measurement: Measurement, index: int, frequency: float, bandwidth_
         averaged, kept = (_blocks(x, block) for x in (part, counts))
         every = max(1, math.ceil(STEPS * frequency * block / rate))
         fine = _between(force, block, every, len(averaged)) if drive_name else np.zeros(2)
-        fast = np.array([third_difference_std(column) for column in averaged.T])
-        white = np.maximum(np.minimum(fast, FAST * averaged.std(axis=0)), least)
+        white = np.maximum([third_difference_std(column) for column in averaged.T], least)
         middle = even.start + (first + np.arange(len(averaged)) * block + 0.5 * (block - 1)) / rate
         found.append(
             Piece(
@@ -248,8 +242,8 @@ def stretches(y: Array, rate: float, frequency: float) -> list[tuple[int, int]]:
 
 
 def _single(samples: Array) -> tuple[Array, Array]:
-    """(n,) bool, (n,) float: single samples off the cubic through two neighbours on each side by far more than others
-    around are, and that cubic in their place. A single one leaves -2/3 of itself at both neighbours; a jump does not."""
+    """(n,) bool, (n,) float: single samples far off the cubic through two neighbours on each side, and that cubic in
+    their place. A single one leaves -2/3 of itself at both neighbours, which a jump does not."""
     off, smooth = np.zeros(len(samples)), samples.copy()
     wild = np.zeros(len(samples), dtype=bool)
     if len(samples) <= 2 * AROUND:

@@ -9,6 +9,7 @@ import numpy as np
 
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.estimate.node import Coordinate
+from ssmr_ident.estimate.noise import first_white
 from ssmr_ident.estimate.pieces import BASE, FORCES, ORDER, Piece, channels_of, pieces_of
 from ssmr_ident.estimate.values import Problem
 from ssmr_ident.experiments.campaign import Measurement
@@ -48,7 +49,7 @@ def problem_of(measurements: Sequence[Measurement], parameters: ParameterSet) ->
     bandwidth, fastest = parameters.number(BANDWIDTH, math.inf), max(frequency, moving)
     if bandwidth >= 0.5 * min(m.recording.sample_rate for m in measurements):
         bandwidth = math.inf  # cancels with the low-pass of the force's own converter
-    pieces = tuple(p for i, m in enumerate(measurements) for p in pieces_of(m, i, fastest, bandwidth))
+    pieces = first_white([p for i, m in enumerate(measurements) for p in pieces_of(m, i, fastest, bandwidth)])
     size = float(np.sqrt(np.mean([_size(p, frequency) ** 2 for p in pieces])))
     driven = any(p.driven and not p.based for p in pieces)
     noises = tuple(

@@ -69,10 +69,8 @@ class AutoregressiveNoise:
         poles : (k,) complex [1/s]
         step : float [s]
         """
-        whiten, back = (
-            np.exp(-np.outer(np.asarray(poles), np.arange(len(c))) * step) @ c
-            for c in (self.filter, self.moving_average)
-        )
+        lags = np.outer(np.asarray(poles), np.arange(max(len(self.filter), len(self.moving_average)))) * step
+        whiten, back = (np.exp(-lags[:, : len(c)]) @ c for c in (self.filter, self.moving_average))
         result: Array = whiten / back
         return result
 
