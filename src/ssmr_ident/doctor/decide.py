@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from ssmr_ident.doctor.rules import CERTAIN, FOLLOWS, FORMULA, HALVED, OVER_NOISE, SECOND, TIE
 from ssmr_ident.doctor.table import Row
 
+STATIC, MEMORY, FRICTION = "static_force", "memory", "dry_friction"
 MISSING, NOTHING, UNDETERMINED = "missing_physics", "nothing_missing", "undetermined"
 
 
@@ -92,26 +93,38 @@ def needed(law: Row, left: float, rows: Sequence[Row]) -> bool:
 
 
 def stands(row: Row, rows: Sequence[Row]) -> bool:
-    """Whether a second effect beats the first one in any shape, and halves what that leaves beyond noise.
-
-    Any shape is that of the first one's kind; beside a second of the same kind, of the first one's own variable.
-    """
+    """Whether each of two effects beats the other one in any shape, and halves what that leaves beyond noise."""
     if len(row.ids) < 2:
         return True
-    kind, law = row.kinds[0], row.ids[0]
-    alike = row.kinds[1] == kind and not row.generic
-    own = row.variables[0] if alike and row.variables else ""
-
-    def first_alone(r: Row) -> bool:
-        shapes = [v for i, v in zip(r.ids, r.variables, strict=False) if i != law]
-        return (r.generic or r.ids[0] == law) and (not alike or all(v == own != "" for v in shapes))
-
-    first = [r for r in rows if r is not row and r.ids and set(r.kinds) == {kind} and first_alone(r)]
-    if not first:
+    found = [_alone(row, k, rows) for k in (0, 1)]
+    if not found[0]:
         return False
-    best = max(first, key=lambda r: r.log_evidence)
-    halved = row.over**2 - 1.0 < HALVED * (min(r.over for r in first) ** 2 - 1.0)
-    return halved and row.log_evidence > best.log_evidence + SECOND
+    for alone in (rows for rows in found if rows):
+        best = max(r.log_evidence for r in alone)
+        least = min(r.over for r in alone)
+        if max(row.over**2 - 1.0, 0.0) >= HALVED * max(least**2 - 1.0, 0.0) or row.log_evidence < best + SECOND:
+            return False
+    return True
+
+
+def _alone(pair: Row, which: int, rows: Sequence[Row]) -> list[Row]:
+    """One effect of a pair without the other, in any shape: that of its kind; beside a second of the same kind, of its
+    own variable. Dry friction has two kinds: a steep function of speed, and a memory of micrometres."""
+    kind, law = pair.kinds[which], pair.ids[which]
+    alike = pair.kinds[0] == pair.kinds[1] and not pair.generic
+    own = pair.variables[which] if alike and pair.variables else ""
+
+    def shape(r: Row, i: int) -> bool:
+        variable = r.variables[i] if r.variables else ""
+        if law == FRICTION and (r.kinds[i] == MEMORY or (r.kinds[i] == STATIC and variable == "v")):
+            return True
+        return r.kinds[i] == kind and (not alike or variable == own != "")
+
+    def belongs(r: Row) -> bool:
+        others = [i for i, name in enumerate(r.ids) if name != law]
+        return (r.generic or not others) and all(shape(r, i) for i in others)
+
+    return [r for r in rows if r is not pair and r.ids and belongs(r)]
 
 
 def kind_shares(rows: Sequence[Row], base: Row) -> tuple[Share, ...]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -61,9 +62,13 @@ def _of(problem: Problem, pieces: list[Piece]) -> Problem:
 
 
 def held_fit(kept: Problem, fit: Fit) -> Fit | None:
-    """A fit's model on other recordings, their starts and zeros alone refitted; None for a law by recording."""
+    """A fit's model on other recordings, their starts and zeros alone refitted.
+
+    None for a law by recording, and for one that leaves the finite numbers.
+    """
     if any(BY_RECORDING in m.form for m in fit.node.members):
         return None
     paths = tuple(smoothed(p, kept.frequency, kept.size) for p in kept.pieces)
     start = Start(fit.point, tuple(starts_of(kept, fit.node, Start(fit.point, paths=paths))))
-    return polish(kept, fit.node, start, 12, freeze=range(len(fit.point)))
+    found = polish(kept, fit.node, start, 12, freeze=range(len(fit.point)))
+    return found if math.isfinite(found.cost) else None

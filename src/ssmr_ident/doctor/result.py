@@ -122,7 +122,7 @@ def predictions(problem: Problem, fit: Fit, known: ParameterSet) -> list[Predict
     """Every piece beside what a fit says of it."""
     band = max(LOW_PASS_HZ, 4.0 * natural_hz(known))
     return [
-        Prediction(p.time, p.channels, p.units, p.y, p.y + rest, low_pass_hz=band)
+        Prediction(p.time, p.channels, p.units, p.y + p.foot, p.y + p.foot + rest, low_pass_hz=band)
         for p, rest in zip(problem.pieces, fit.residuals, strict=True)
     ]
 

@@ -9,12 +9,13 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from ssmr_ident.doctor.decide import FRICTION
 from ssmr_ident.doctor.laws import Proposal, proposals
 from ssmr_ident.doctor.rules import SECOND, TIE, UNIT
 from ssmr_ident.doctor.table import Row, row_of
 from ssmr_ident.estimate.coarser import coarser
 from ssmr_ident.estimate.exact import polish
-from ssmr_ident.estimate.generic import branch, by_recording, changing, clip, delay, lag, memory, rider, static
+from ssmr_ident.estimate.generic import STATIC, branch, by_recording, changing, clip, delay, lag, memory, rider, static
 from ssmr_ident.estimate.motion import motion
 from ssmr_ident.estimate.node import Member, Node
 from ssmr_ident.estimate.noise import left_white, own_noise
@@ -302,7 +303,7 @@ def _judges(row: Row, rows: Sequence[Row], near: Sequence[Row]) -> bool:
     if len(row.ids) < 2 and row is next((r for r in rows if r.kinds == row.kinds), None):
         return True
     pairs = [r for r in near if len(r.ids) == 2 and row.ids and r.ids[0] == row.ids[0]]
-    return any(set(row.kinds) == {pair.kinds[0]} for pair in pairs)
+    return bool(pairs) and (row.generic or len(row.ids) == 1)
 
 
 def _second(search: Search, say: Progress) -> None:
@@ -324,7 +325,10 @@ def _beside(search: Search, say: Progress, first: Fit) -> None:
     law, problem = first.node.members[0], search.problem
     offers = kinds(problem, motion(problem, first))
     own = [m for m in offers if m.tables and m.kind == law.kind]
-    own += [static(problem, motion(problem, first), law.variable)] if law.variable else []
+    paths = motion(problem, first)
+    own += [static(problem, paths, law.variable)] if law.variable else []
+    if law.id == FRICTION:
+        own += [memory(problem, paths)] if law.kind == STATIC else [static(problem, paths, "v")]
     shaped = [search.add(_near(problem, first, m, FULL)) for m in own]
     alone = row_of(first, problem)
     best = max(row_of(f, problem).log_evidence for f in search.fits)

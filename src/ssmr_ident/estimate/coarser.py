@@ -33,8 +33,7 @@ def _coarser(piece: Piece, block: int, fastest: float) -> Piece:
     if block == 1:
         return piece
     count = len(piece.y) // block
-    y, counts, time = (x[: count * block].reshape(count, block, -1).mean(axis=1) for x in (
-        piece.y, piece.counts, piece.time[:, None]))  # fmt: skip
+    y, counts, time = (_means(x, block) for x in (piece.y, piece.counts, piece.time[:, None]))
     every = max(1, math.ceil(STEPS * fastest * block / piece.rate))
     drive = piece.drive
     if piece.driven:  # averaged as the motion is, so that what is linear stays exact
@@ -44,4 +43,10 @@ def _coarser(piece: Piece, block: int, fastest: float) -> Piece:
     return replace(
         piece, time=time[:, 0], y=y, counts=counts > 0.5, drive=drive, step=block * piece.every * piece.step / every,
         every=every, white=piece.white / math.sqrt(block),
+        foot=_means(piece.foot, block) if len(piece.foot) > 1 else piece.foot,
     )  # fmt: skip
+
+
+def _means(samples: np.ndarray, block: int) -> np.ndarray:
+    count = len(samples) // block
+    return np.asarray(samples[: count * block].reshape(count, block, -1).mean(axis=1))

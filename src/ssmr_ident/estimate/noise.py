@@ -26,8 +26,8 @@ noise, until a fit has told the two apart."""
 
 
 def first_white(pieces: Sequence[Piece]) -> tuple[Piece, ...]:
-    """The same pieces with white noise as it is known before any fit: of each channel that of its quietest recording, as
-    what differences show is noise and motion together."""
+    """The same pieces with white noise as it is known before any fit: a channel's in its quietest recording, for
+    differences show noise and motion together."""
     density: dict[str, float] = {}
     size: dict[str, float] = {}
     for piece in pieces:

@@ -5,12 +5,13 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.recording import Recording
+from ssmr_ident.estimate.foot import foot_motion
 from ssmr_ident.experiments.campaign import Measurement
 from ssmr_ident.experiments.quantities import UNITS
 from ssmr_ident.signals.grid import band_limited, even_samples
@@ -21,7 +22,8 @@ Array = np.ndarray
 ORDER = {"position": 0, "angle": 0, "velocity": 1, "angular_rate": 1, "acceleration": 2}
 """Time derivatives of the deflection that a channel shows."""
 
-FORCES, BASE = ("force", "torque"), "base_acceleration"
+FORCES, FEET = ("force", "torque"), ("base_position", "base_acceleration")
+"""What drives; a position can be differentiated, an acceleration drifts."""
 
 FINEST = 60
 """Samples a period that are kept; faster logs are averaged over blocks, by which a sine of 60 samples loses 0.05 %."""
@@ -59,7 +61,7 @@ class Piece:
         False for single samples far off their neighbours.
     drive : (n·every + 1,) float [N], or [m/s^2] of the base
     based : bool
-        Whether the base drives it.
+        Whether its foot drives it; ``y`` of a position or velocity is then relative to the foot.
     driven : bool
     step : float [s]
         Of the integration.
@@ -69,6 +71,8 @@ class Piece:
         Standard deviation of white noise: by differences of the log, until that of what a fit leaves is known.
     begin : float [s]
         Time at which the recording, or the release, began that this is a part of.
+    foot : (n, c) float
+        What was taken off ``y`` for its being relative.
     """
 
     name: str
@@ -85,6 +89,7 @@ class Piece:
     every: int
     white: Array
     begin: float = 0.0
+    foot: Array = field(default_factory=lambda: np.zeros(1))
 
     @property
     def rate(self) -> float:
@@ -99,8 +104,9 @@ def cut(piece: Piece, first: int, after: int) -> Piece:
     """Samples ``first`` to before ``after`` of a piece, with a start of their own."""
     drive = piece.drive[first * piece.every : after * piece.every + 1] if piece.driven else piece.drive
     return replace(
-        piece, time=piece.time[first:after], y=piece.y[first:after], counts=piece.counts[first:after], drive=drive
-    )
+        piece, time=piece.time[first:after], y=piece.y[first:after], counts=piece.counts[first:after], drive=drive,
+        foot=piece.foot[first:after] if len(piece.foot) > 1 else piece.foot,
+    )  # fmt: skip
 
 
 def pieces_of(measurement: Measurement, index: int, frequency: float, bandwidth_hz: float) -> tuple[Piece, ...]:
@@ -127,6 +133,12 @@ def pieces_of(measurement: Measurement, index: int, frequency: float, bandwidth_
     even = even_samples(recording.time, np.column_stack([recording[name] for name in wanted]))
     y, rate = even.samples[:, : len(channels)], even.sample_rate
     drive = even.samples[:, -1] if drive_name else np.zeros(len(y))
+    orders = np.array([ORDER[name] for name in channels])
+    foot = np.zeros_like(y)
+    if drive_name in FEET:
+        moved = foot_motion(drive, drive_name, {n: ORDER[n] for n in channels}, rate, recording.provenance.file)
+        drive, foot = moved[:, 2], np.where(orders < 2, moved[:, orders], 0.0)
+        y = y - foot
     found = []
     for first, after in stretches(y, rate, frequency) if not drive_name else [(0, len(y))]:
         part, force, block = y[first:after], drive[first:after], max(1, int(rate / (FINEST * frequency)))
@@ -147,17 +159,18 @@ def pieces_of(measurement: Measurement, index: int, frequency: float, bandwidth_
                 measurement.name,
                 index,
                 channels,
-                np.array([ORDER[name] for name in channels]),
+                orders,
                 middle,
                 averaged,
                 kept > 0.5,
                 fine,
-                drive_name == BASE,
+                drive_name in FEET,
                 bool(drive_name),
                 block / (rate * every),
                 every,
                 white,
                 float(middle[0]),
+                _blocks(foot[first:after], block),
             )
         )
     return tuple(found)
@@ -197,7 +210,7 @@ def channels_of(recording: Recording) -> tuple[tuple[str, ...], str]:
         None does.
     """
     motions = tuple(name for name in ORDER if name in recording and np.ptp(recording[name]) > 0)
-    drive = next((name for name in (*FORCES, BASE) if name in recording), "")
+    drive = next((name for name in (*FORCES, *FEET) if name in recording), "")
     if not motions:
         where, found = recording.provenance.file, ", ".join(recording.names)
         raise InputError(where, f"needs a motion that changes; found {found}", "Map the columns by channels:")

@@ -10,7 +10,7 @@ import numpy as np
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.estimate.node import Coordinate
 from ssmr_ident.estimate.noise import first_white
-from ssmr_ident.estimate.pieces import BASE, FORCES, ORDER, Piece, channels_of, pieces_of
+from ssmr_ident.estimate.pieces import ORDER, Piece, channels_of, pieces_of
 from ssmr_ident.estimate.values import Problem
 from ssmr_ident.experiments.campaign import Measurement
 from ssmr_ident.physics.rig import RIG_KEYS
@@ -115,7 +115,3 @@ def _size(piece: Piece, frequency: float) -> float:
     """RMS deflection, from whatever was measured."""
     order = int(piece.orders[0])
     return float(piece.y[:, 0].std()) / (2.0 * math.pi * frequency) ** order
-
-
-def driven_by_force(measurement: Measurement) -> bool:
-    return any(name in measurement.recording for name in FORCES) and BASE not in measurement.recording

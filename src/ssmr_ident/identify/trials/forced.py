@@ -11,10 +11,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from ssmr_ident.core.errors import InputError, SimulationError
 from ssmr_ident.core.parameter import ParameterSet
+from ssmr_ident.estimate.foot import foot_motion
 from ssmr_ident.experiments.campaign import Measurement
 from ssmr_ident.experiments.experiment import BASES, MOTIONS
 from ssmr_ident.experiments.quantities import UNITS
@@ -97,7 +97,8 @@ def forced_trial(measurement: Measurement, parameters: ParameterSet) -> Trial:
     even = even_samples(recording.time, np.column_stack([recording[name] for name in wanted]))
     measured, rate = even.samples[:, : len(outputs)], even.sample_rate
     force = even.samples[:, -1] if drive else np.zeros(len(measured))
-    foot = foot_motion(force, str(drive), outputs, rate, recording.provenance.file) if on_a_base else None
+    motions = {name: COLUMN[name] for name in outputs}
+    foot = foot_motion(force, str(drive), motions, rate, recording.provenance.file) if on_a_base else None
     if foot is not None:
         force = foot[:, 2]
     bandwidth = parameters.number(BANDWIDTH, math.inf)
@@ -192,27 +193,6 @@ def forced_trial(measurement: Measurement, parameters: ParameterSet) -> Trial:
     )
     whole = len(measured) // block
     return assembled(whole, FINE)
-
-
-def foot_motion(logged: Array, name: str, outputs: tuple[str, ...], rate: float, file: str) -> Array:
-    """Position, velocity and acceleration of the foot, (n, 3) float; nought where only its acceleration is known.
-
-    Raises
-    ------
-    InputError
-        A motion that is logged for the mass, and of the foot only by integrals of an acceleration that drift.
-    """
-    if name == "base_position":
-        path = CubicSpline(np.arange(len(logged)) / rate, logged)
-        return np.stack([path(path.x, order) for order in range(3)], axis=1)
-    other = next((output for output in outputs if COLUMN[output] != 2), None)
-    if other is not None:
-        raise InputError(
-            file,
-            f"has base_acceleration beside {other}, which is absolute: the foot's own {other} is not logged",
-            "Map the foot's base_position, or an acceleration of the mass, by channels:",
-        )
-    return np.stack([np.zeros_like(logged), np.zeros_like(logged), logged], axis=1)
 
 
 def _noise(samples: Array, unheld: bool, least: float) -> AutoregressiveNoise:
