@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import Annotated
 
@@ -29,6 +30,9 @@ def command(
     effects: EffectFiles = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the diagnosis as JSON.")] = False,
     quiet: Annotated[bool, typer.Option("-q", "--quiet", help="Print nothing but errors.")] = False,
+    budget: Annotated[
+        float, typer.Option(min=0.0, help="Seconds after which nothing new is tried on a rig.", show_default="none")
+    ] = math.inf,
     seed: Annotated[int, typer.Option(min=0, help="Of permutation tests and simulated floors.")] = 0,
 ) -> None:
     """Say what physics the simulation leaves out, model it, and show it on recordings that were never fitted."""
@@ -48,7 +52,7 @@ def command(
     known = read_parameters(params) if params else None
     with stages(hidden=quiet or as_json) as step:
         campaign = load(session, lambda done, total: step("reading the logs", done, total))
-        diagnosis = diagnose(campaign, known, seed, step)
+        diagnosis = diagnose(campaign, known, seed, step, budget)
     write_diagnosis(diagnosis, campaign, output, called(), seed, files_read(session, params))
     if as_json:
         print_json(diagnosis.as_dict(), indent=1)

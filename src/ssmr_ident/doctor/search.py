@@ -16,6 +16,7 @@ from ssmr_ident.doctor.table import Row, row_of
 from ssmr_ident.estimate.coarser import coarser
 from ssmr_ident.estimate.exact import polish
 from ssmr_ident.estimate.generic import STATIC, branch, by_recording, changing, clip, delay, lag, memory, rider, static
+from ssmr_ident.estimate.instrument import at_outputs
 from ssmr_ident.estimate.motion import motion
 from ssmr_ident.estimate.node import Member, Node
 from ssmr_ident.estimate.noise import left_white, own_noise
@@ -141,6 +142,7 @@ def kinds(problem: Problem, paths: Sequence[Array]) -> list[Member]:
         found.append(delay(piece.step * piece.every))
     if 2 in piece.orders:
         found.append(lag(min(3.0 * f, 0.5 * problem.bandwidth_hz), problem.bandwidth_hz))
+    found += at_outputs(problem)
     ranges = {p.name: p for p in CATALOGUE["sensor_saturation"].parameters}
     for c, (name, unit) in enumerate(zip(piece.channels, piece.units, strict=True)):
         parameter = {

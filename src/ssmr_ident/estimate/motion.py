@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ssmr_ident.estimate.instrument import OUTPUT
 from ssmr_ident.estimate.node import Node
 from ssmr_ident.estimate.simulated import Compiled, simulate
 from ssmr_ident.estimate.values import Fit, Problem
@@ -20,7 +21,7 @@ def motion(problem: Problem, found: Fit) -> list[Array]:
         for p in problem.pieces
     ]
     node, paths = found.node, []
-    bare = Node(node.baseline, tuple(m for m in node.members if m.linear != "lag" and m.after != "clip"))
+    bare = Node(node.baseline, tuple(m for m in node.members if m.linear != "lag" and m.after not in ("clip", OUTPUT)))
     names = [id(c) for c in node.coordinates]
     point = np.array([found.point[names.index(id(c))] for c in bare.coordinates])
     model = Compiled.of(problem, bare, point, pieces)

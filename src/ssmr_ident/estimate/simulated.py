@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ssmr_ident.estimate.instrument import OUTPUT, passed_on
 from ssmr_ident.estimate.motion_kernel import run
 from ssmr_ident.estimate.node import Node, Tables, law_places, law_vector, merged, stepped_with_slopes
 from ssmr_ident.estimate.pieces import Piece
@@ -133,4 +134,10 @@ def _arranged(model: Compiled, index: int, s: Simulated, states: int, n_lin: int
             dy[beyond, c] = 0.0
             dy[beyond, c, states + at] = np.sign(y[beyond, c]) * model.slopes[at]
             y[:, c] = np.clip(y[:, c], -limit, limit)
+    for member in (m for m in node.members if m.after == OUTPUT):
+        places = [[id(c) for c in node.coordinates].index(id(own)) for own in member.coordinates]
+        names = [c.name for c in member.coordinates]
+        given = {name: float(model.values[k]) for name, k in zip(names, places, strict=True)}
+        own = {name: (states + k, float(model.slopes[k])) for name, k in zip(names, places, strict=True)}
+        y, dy = passed_on(member, model.pieces[index], y, dy, given, own)
     return Simulated(y, dy, s.ends, order(s.dends))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -10,8 +11,11 @@ from threadpoolctl import threadpool_limits
 
 from ssmr_ident.core.atomic import make_folder, write_text
 from ssmr_ident.core.documents import yaml_text
+from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.diagnosis import Diagnosis
+from ssmr_ident.doctor.run import RIG
+from ssmr_ident.doctor.run import diagnose as diagnose_rig
 from ssmr_ident.experiments.campaign import Campaign, load
 from ssmr_ident.session import write_parameters
 from ssmr_ident.session.effects_block import in_rotary_units
@@ -25,6 +29,7 @@ def diagnose(
     parameters: ParameterSet | None = None,
     seed: int = 0,
     progress: Progress | None = None,
+    budget: float = math.inf,
 ) -> Diagnosis:
     """Locate the mismatch between recordings and baseline, name it, model it, and prove it on recordings kept back.
 
@@ -37,6 +42,8 @@ def diagnose(
         Of permutations and simulated floors.
     progress : callable, optional
         Called with the name of a stage, what of it is done, and of how much.
+    budget : float [s]
+        Of a rig: after it nothing new is tried, and the answer says what was not.
 
     Raises
     ------
@@ -46,7 +53,7 @@ def diagnose(
     known = campaign.parameters if parameters is None else parameters
     # recordings are simulated side by side; matrices are small, and threads of their own would stand in the way
     with threadpool_limits(1, user_api="blas"):
-        found = _diagnosed(replace(campaign, parameters=known), known, seed, progress)
+        found = _diagnosed(replace(campaign, parameters=known), known, seed, progress, budget)
     return in_rig_units(found) if "inertia_kg_m2" in known else found
 
 
@@ -57,7 +64,14 @@ def in_rig_units(found: Diagnosis) -> Diagnosis:
     return replace(found, effects=named, after=replace(found.after, effects=after))
 
 
-def _diagnosed(campaign: Campaign, known: ParameterSet, seed: int, progress: Progress | None) -> Diagnosis:
+def _diagnosed(
+    campaign: Campaign, known: ParameterSet, seed: int, progress: Progress | None, budget: float
+) -> Diagnosis:
+    if campaign.session.baseline == RIG:
+        return diagnose_rig(campaign, known, seed, progress, budget)
+    if math.isfinite(budget):
+        raise InputError("--budget", f"limits a rig's search; this session's baseline is {campaign.session.baseline}",
+                         "Leave it out")  # fmt: skip
     if not all(m.experiment.repeats for m in campaign.measurements):
         from ssmr_ident.diagnose.turning import diagnose_turning
 
