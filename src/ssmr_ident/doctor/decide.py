@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from ssmr_ident.doctor.rules import CERTAIN, FOLLOWS, FORMULA, HALVED, OVER_NOISE, SECOND, TIE
+from ssmr_ident.doctor.rules import CERTAIN, FOLLOWS, FORMULA, HALVED, OVER_NOISE, SECOND, TIE, UNEVEN
 from ssmr_ident.doctor.table import Row
 
 STATIC, MEMORY, FRICTION = "static_force", "memory", "dry_friction"
@@ -65,7 +65,7 @@ def decide(rows: Sequence[Row]) -> Decision:
     rows = [r for r in rows if stands(r, rows)]
     best = max(rows, key=lambda r: r.log_evidence)
     if best.log_evidence - base.log_evidence < CERTAIN:
-        noise = base.over < OVER_NOISE or base.follows < FOLLOWS
+        noise = base.over < OVER_NOISE or (base.left.follows < FOLLOWS and base.left.uneven < UNEVEN)
         return Decision(NOTHING) if noise else Decision(UNDETERMINED, kinds=kind_shares(rows, base))
     shares = kind_shares(rows, base)
     named = [r for r in rows if r.ids and not r.generic and r.log_evidence > base.log_evidence + CERTAIN]

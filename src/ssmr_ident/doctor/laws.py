@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -175,6 +175,19 @@ def proposals(problem: Problem, found: Fit, paths: Sequence[Array], beside: Sequ
         point = _begun(node, found, (mass, max(d, 0.0), max(k, 0.05 * stiff)), member, values)
         result.append(Proposal(node, Start(point, paths=tuple(paths)), -0.5 * np.log(max(rest, 1e-300))))
     return sorted(result, key=lambda p: -p.promise)
+
+
+def simpler(node: Node) -> list[Node]:
+    """The same with a part of one law's formula dropped, where that is a formula itself."""
+    found = []
+    for member in (m for m in node.members if m.law is not None):
+        names = {c.name for c in member.coordinates}
+        for form in (f for f in FORMS if f.effect == member.id and set(f.moved) < names):
+            kept = tuple(c for c in member.coordinates if c.name in form.moved)
+            less = replace(member, form=form.name, coordinates=kept, law={})
+            members = tuple(less if m is member else m for m in node.members)
+            found.append(replace(node, members=members))
+    return found
 
 
 def best_shape(along: Callable[[Shape], _OnPath], shapes: Sequence[Shape]) -> _OnPath:

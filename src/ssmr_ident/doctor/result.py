@@ -18,6 +18,7 @@ from ssmr_ident.diagnose.words import law, missing, nothing, told, undetermined
 from ssmr_ident.diagnose.worth import overlays, worth
 from ssmr_ident.doctor.decide import MISSING, NOTHING, UNDETERMINED, Decision
 from ssmr_ident.doctor.held import held_fit
+from ssmr_ident.doctor.rules import OVER_NOISE, UNEVEN
 from ssmr_ident.doctor.search import Search
 from ssmr_ident.doctor.table import Row
 from ssmr_ident.estimate.node import Member, effects_of
@@ -85,7 +86,10 @@ def answer(found: Examined) -> Diagnosis:
     elif decision.verdict == NOTHING:
         summary = nothing(shown, METRIC, len(rows) - 1)
     else:
-        summary = undetermined(shown, METRIC, [r.name for r in found.rows if r.ids])
+        event = ""
+        if base.left.uneven > UNEVEN:
+            event = f"{base.left.loudest} holds what noise of no colour reads in it"
+        summary = undetermined(shown, METRIC, [r.name for r in found.rows if r.ids], event)
     if shown is training:
         summary = summary.replace("recordings never fitted", "the recordings that were fitted")
     return Diagnosis(
@@ -102,7 +106,7 @@ def answer(found: Examined) -> Diagnosis:
         before=before_file,
         after=after_file,
         summary=summary,
-        notes=(*found.notes, *_notes(decision, chosen, heldout)),
+        notes=(*found.notes, *_notes(decision, chosen, heldout), *_colour(decision, base)),
         evidence=Evidence(overlays=drawn),
         kinds=tuple(
             KindShare(s.kind, element_of(s.row.fit.node.members[0]), float(s.share), float(s.log_evidence))
@@ -250,6 +254,15 @@ def _next(decision: Decision) -> str:
         return ""
     names = ", ".join((*decision.chosen.ids, *decision.ties))
     return f"Record the same at half and at twice the amplitude, and at another speed: {names} part in how they scale"
+
+
+def _colour(decision: Decision, base: Row) -> tuple[str, ...]:
+    if decision.verdict != NOTHING or base.over < OVER_NOISE:
+        return ()
+    return (
+        f"what is left is {base.over:.1f} times what is white in it; it does not follow the motion, so it is taken for "
+        "noise of another colour",
+    )
 
 
 def _notes(decision: Decision, chosen: Row, heldout: PredictionQuality) -> tuple[str, ...]:

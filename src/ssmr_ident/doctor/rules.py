@@ -28,3 +28,7 @@ OVER_NOISE = 1.6
 FOLLOWS = 4.0
 """Standard deviations of the rank correlation of what is left with the motion from which something is missing even if
 nothing names it: one in thirty thousand under noise that knows nothing of the motion."""
+
+UNEVEN = 10.0
+"""Robust standard deviations by which the loudest window of what is left stands out from which something happened that
+no noise is: of a thousand windows of Gaussian noise one in 10^20. Set by judgement; heavy tails not calibrated."""

@@ -15,7 +15,7 @@ from ssmr_ident.diagnose.diagnosis import Diagnosis
 from ssmr_ident.diagnose.setup import keep_back
 from ssmr_ident.doctor.decide import decide
 from ssmr_ident.doctor.held import held_fit, interleaved
-from ssmr_ident.doctor.left import follows_motion
+from ssmr_ident.doctor.left import left
 from ssmr_ident.doctor.result import Examined, answer, errors, predictions
 from ssmr_ident.doctor.search import searched
 from ssmr_ident.doctor.table import Row
@@ -87,7 +87,7 @@ def examined(campaign: Campaign, known: ParameterSet, progress: Progress | None,
     rows = search.rows()
     first = next(r for r in rows if not r.ids)
     assert first.fit is not None
-    base = replace(first, follows=follows_motion(search.problem, first.fit))
+    base = replace(first, left=left(search.problem, first.fit))
     rows = tuple(base if r is first else r for r in rows)
     decision = decide(rows)
     if kept is not None:

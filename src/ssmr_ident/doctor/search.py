@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ssmr_ident.doctor.decide import FRICTION
-from ssmr_ident.doctor.laws import Proposal, proposals
+from ssmr_ident.doctor.laws import Proposal, proposals, simpler
 from ssmr_ident.doctor.rules import SECOND, TIE, UNIT
 from ssmr_ident.doctor.table import Row, row_of
 from ssmr_ident.estimate.coarser import coarser
@@ -126,6 +126,7 @@ def searched(problem: Problem, budget: float = math.inf, progress: Progress | No
     _offered_back(search)
     search = _with_own_noise(search)
     _second(search, say)
+    _offered_back(search)
     return search if problem is whole else _in_full(search, whole, say)
 
 
@@ -208,7 +209,8 @@ def over(fit: Fit, problem: Problem) -> float:
 
 
 def _offered_back(search: Search) -> None:
-    """What a richer model's fit has found is offered to the poorer one with that member dropped."""
+    """What a richer model's fit has found is offered to the poorer one with that member, or a part of its formula,
+    dropped."""
     for fit in sorted(search.fits, key=lambda f: f.cost)[:OFFERED]:
         for member in fit.node.members:
             node = fit.node.without(member)
@@ -219,6 +221,8 @@ def _offered_back(search: Search) -> None:
             found = polish(search.problem, poorer[0].node, Start(point, carried(node, fit)), SHORT)
             if found.cost < poorer[0].cost - UNIT:
                 search.add(polish(search.problem, found.node, Start(found.point, found.nuisances), FULL))
+        for node in simpler(fit.node):
+            search.add(polish(search.problem, node, Start(joined(node, fit), carried(node, fit)), SHORT))
 
 
 def _named(search: Search, say: Progress, best: Fit, beside: Sequence[Member] = ()) -> None:
@@ -318,7 +322,8 @@ def _second(search: Search, say: Progress) -> None:
     for row in sorted(firsts.values(), key=lambda r: -r.log_evidence)[:FIRSTS]:
         assert row.fit is not None
         _beside(search, say, row.fit)
-        if not search.rows()[0].generic:
+        best = search.rows()[0]
+        if not best.generic and best.over < OVER_NOISE_SECOND:
             return
 
 
@@ -332,11 +337,11 @@ def _beside(search: Search, say: Progress, first: Fit) -> None:
     if law.id == FRICTION:
         own += [memory(problem, paths)] if law.kind == STATIC else [static(problem, paths, "v")]
     shaped = [search.add(_near(problem, first, m, FULL)) for m in own]
-    alone = row_of(first, problem)
-    best = max(row_of(f, problem).log_evidence for f in search.fits)
-    if alone.over < OVER_NOISE_SECOND or alone.log_evidence > best - TIE:
+    alone, beside = row_of(first, problem), [row_of(f, problem) for f in shaped]
+    explained = min((r.over for r in beside), default=math.inf) < OVER_NOISE_SECOND
+    better = any(r.log_evidence > alone.log_evidence + TIE for r in beside)
+    if alone.over < OVER_NOISE_SECOND or (explained and not better):
         return
-    explained = min((row_of(f, problem).over for f in shaped), default=math.inf) < OVER_NOISE_SECOND
     short = []
     others = [] if explained else [m for m in offers if m.kind != law.kind]
     for index, member in enumerate(others):

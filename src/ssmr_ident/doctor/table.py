@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
+from ssmr_ident.doctor.left import Left
 from ssmr_ident.estimate.values import Fit, Problem
 
 
@@ -31,8 +32,8 @@ class Row:
         Number of them.
     over : float
         RMS of the residuals in sizes of the channels' white noise.
-    follows : float
-        Standard deviations by which what is left goes with the size of the motion; of the baseline alone.
+    left : Left
+        What is left, window by window; of the baseline alone.
     heldout : float
         Error on what was kept back, in the metric; nan where nothing was, or it was not asked for.
     fit : Fit or None
@@ -48,7 +49,7 @@ class Row:
     chi2: float
     samples: float
     over: float = 1.0
-    follows: float = math.inf
+    left: Left = field(default_factory=lambda: Left(math.inf))
     heldout: float = math.nan
     fit: Fit | None = None
     variables: tuple[str, ...] = ()

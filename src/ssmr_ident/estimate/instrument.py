@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -69,7 +69,8 @@ def passed_on(
     own : mapping of str to (int, float)
         Column of each parameter in ``dy``, and what a unit of its coordinate is.
     """
-    change: Callable[..., Mapping[str, Array]] = CATALOGUE[member.id].acts[Site.OUTPUT]
+    change = CATALOGUE[member.id].acts[Site.OUTPUT]
+    assert change is not None
 
     def through(channels: Array, values: Mapping[str, float]) -> Array:
         named = dict(zip(piece.channels, channels.T, strict=True))

@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
+from ssmr_ident.estimate.foot import foot_motion
 from ssmr_ident.experiments.campaign import Measurement
 from ssmr_ident.experiments.experiment import BASES
 from ssmr_ident.identify.posterior.most_probable import Observation
 from ssmr_ident.identify.rigs.frequency_domain import DERIVATIVES, ForcedRecord, fit_rig
-from ssmr_ident.identify.trials.forced import foot_motion
 from ssmr_ident.physics.rig import Rig
 
 ALIKE = 1e-4
@@ -74,7 +74,7 @@ def _against_the_foot(measurement: Measurement) -> ForcedRecord:
     """The motion against the foot under the inertia of a unit mass."""
     recording = measurement.recording
     name = next(name for name in reversed(BASES) if name in recording)
-    motions = tuple(motion for motion in DERIVATIVES if motion in recording)
+    motions = {motion: order for motion, order in DERIVATIVES.items() if motion in recording}
     rate = recording.sample_rate
     foot = foot_motion(recording[name], name, motions, rate, recording.provenance.file)
     seen = {motion: recording[motion] - foot[:, DERIVATIVES[motion]] for motion in motions}
