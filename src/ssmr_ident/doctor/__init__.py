@@ -1,1 +1,1 @@
-"""The second doctor: one search over models, one table, one decision; rigs first."""
+"""The doctor of rigs: one search over models, one table, one decision."""

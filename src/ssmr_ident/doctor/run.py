@@ -83,6 +83,8 @@ def examined(campaign: Campaign, known: ParameterSet, progress: Progress | None,
         else:
             spans = ", ".join(f"{p.time[0]:.4g} to {p.time[-1]:.4g} s" for p in kept.pieces)
             notes.append(f"{targets[0].name} is the only recording: {spans} were kept back, with starts of their own")
+    if any("acceleration_2" in m.recording for m in campaign.measurements):
+        notes.append("acceleration_2 was not compared: a rig of one mass moves as one")
     search = searched(fitted, budget, progress)
     rows = search.rows()
     first = next(r for r in rows if not r.ids)
