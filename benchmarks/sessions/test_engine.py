@@ -9,9 +9,6 @@ import pytest
 from integrated_rigs import LEVELS, NOISE, RATE, SECONDS, rig
 from scipy.signal import lfilter
 
-from ssmr_ident.diagnose import engine
-from ssmr_ident.diagnose.setup import set_up
-from ssmr_ident.identify.fitting.joint import differentiate, evaluate
 from ssmr_ident.workflows.diagnose import diagnose
 
 
@@ -29,7 +26,7 @@ def test_what_may_be_noise_of_another_colour_is_said_beside_nothing():
         measurements.append(replace(measurement, recording=replace(measurement.recording, channels=(force, seen))))
     found = diagnose(replace(session, measurements=tuple(measurements)))
     assert (found.verdict, found.effects) == ("nothing_missing", ())
-    assert found.heldout.before > 3.0 * found.heldout.noise_floor
+    assert found.heldout.before > 1.5 * found.heldout.noise_floor
     assert any("noise of another colour" in note for note in found.notes)
 
 
@@ -44,7 +41,7 @@ def test_one_recording_that_nothing_explains_is_not_nothing():
     found = diagnose(replace(session, measurements=(*others, replace(loudest, recording=shaken))))
     assert (found.verdict, found.effects) == ("undetermined", ())
     assert loudest.name in found.summary
-    assert "colour reads in it" in found.summary
+    assert "noise of no colour" in found.summary
 
 
 def test_friction_of_another_formula_is_named_and_alone():
@@ -85,38 +82,3 @@ def test_friction_is_found_under_a_sensor_that_was_taken_for_noise():
     sizes = {name: float(e.value) for effect in found.effects for name, e in effect.parameters.items()}
     assert sizes["F_c_N"] == pytest.approx(4.0, rel=0.05)
     assert sizes["bandwidth_hz"] == pytest.approx(30.0, rel=0.03)
-
-
-def test_a_law_of_no_determined_size_gives_way_to_the_next(monkeypatch):
-    asked, laws = [], []
-
-    def determined(fit):
-        laws.append(fit.model.ids)
-        return len(laws) > 1
-
-    def leading(chosen, new, choose=engine.leading):
-        asked.append({e.id for e in new})
-        return choose(chosen, new)
-
-    monkeypatch.setattr(engine, "significant", determined)
-    monkeypatch.setattr(engine, "leading", leading)
-    diagnose(rig(lambda x, v: 4.6e8 * x**3 + 220.0 * v * np.abs(v)))
-    assert len(asked[0]) > 1
-    assert asked[1] == asked[0] - {"+".join(laws[0])}
-
-
-@pytest.mark.parametrize(("moves", "searches"), [(engine.MOST_MOVES, 2), (0, 1)])
-def test_a_baseline_that_an_effect_led_to_a_better_place_is_searched_again(monkeypatch, moves, searches):
-    def displaced(trials, setup, parameters, best=engine.best_baseline):
-        fit, lengths = best(trials, setup, parameters)
-        return differentiate(evaluate(fit.trials, fit.model, fit.point + 0.02, fit.nuisances)), lengths
-
-    monkeypatch.setattr(engine, "best_baseline", displaced)
-    monkeypatch.setattr(engine, "MOST_MOVES", moves)
-    # as an effect does that has taken the motion's place
-    monkeypatch.setattr(engine, "significant", lambda fit: True)
-    session = rig(lambda x, v: 0.0 * x)
-    outcome = engine.examine(set_up(session, session.parameters), session.parameters)
-    assert outcome.chosen is outcome.baseline
-    assert outcome.baseline.fit.rss < 1.1 * outcome.baseline.fit.size
-    assert len(outcome.searches) == searches

@@ -21,5 +21,6 @@ def test_nothing_is_missing_where_nothing_is():
 def test_hardening_is_named_with_its_size():
     found = diagnose(rig(lambda x, v: 6e8 * x**3))
     assert [e.id for e in found.effects] == ["nonlinear_stiffness"]
-    assert float(found.effects[0].parameters["k3_N_m3"].value) == pytest.approx(6e8, rel=0.02)
+    size = found.effects[0].parameters["k3_N_m3"]
+    assert abs(float(size.value) - 6e8) < 3.0 * float(size.std) < 0.2 * 6e8
     assert found.heldout.after < 1.2 * found.heldout.noise_floor

@@ -11,7 +11,7 @@ from scipy.stats import spearmanr
 
 from ssmr_ident.estimate.noise import LARGEST_ORDER
 from ssmr_ident.estimate.values import Fit, Problem
-from ssmr_ident.signals.noise import fit_noise
+from ssmr_ident.signals.noise import fit_noise, median_std
 
 PERIODS = 2.0
 """Of the motion, that a window lasts."""
@@ -65,5 +65,6 @@ def _of_channel(problem: Problem, fit: Fit, name: str) -> Left:
     rank = float(spearmanr(motion, sizes).statistic)
     follows = math.atanh(min(rank, 1.0 - 1e-12)) * math.sqrt((len(windows) - 3) / 1.06)
     logs = np.log(np.maximum(sizes, 1e-300))
-    uneven = (logs.max() - np.median(logs)) / max(1.4826 * float(np.median(np.abs(logs - np.median(logs)))), 1e-12)
+    logs -= np.median(logs)
+    uneven = logs.max() / max(float(median_std(logs)), 1e-12)
     return Left(follows, float(uneven), windows[int(np.argmax(sizes))][2])

@@ -147,8 +147,10 @@ def _finished(node, point, nuisances, mean, precision, scales, chi2, residuals, 
         information += h[k:, k:] - h[:k, k:].T @ np.linalg.solve(own, h[:k, k:])
     free = ~held
     covariance = np.zeros_like(information)
-    covariance[np.ix_(free, free)] = np.linalg.pinv(
-        (information + np.diag(precision + 1e-12))[np.ix_(free, free)], rcond=1e-14, hermitian=True
+    whole = (information + np.diag(precision + LEAST_CURVATURE))[np.ix_(free, free)]
+    size = np.sqrt(np.maximum(np.diag(whole), LEAST_CURVATURE))
+    covariance[np.ix_(free, free)] = np.linalg.pinv(whole / np.outer(size, size), rcond=1e-13, hermitian=True) / (
+        np.outer(size, size)
     )
     # shapes of a generic member count as far as the data decide them, laws with every parameter that moves
     shapes = {id(c) for m in node.members if m.tables for c in m.coordinates}
