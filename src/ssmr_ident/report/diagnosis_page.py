@@ -93,7 +93,7 @@ def verdict(diagnosis: Diagnosis) -> Verdict:
 def _found(diagnosis: Diagnosis) -> tuple[Fact, ...]:
     sure = [f"{_name(e.id)}: {share(e.confidence)}" for e in diagnosis.effects]
     ties = sorted({_name(id) for e in diagnosis.effects for id in e.indistinguishable_from})
-    facts = [*_before_after(diagnosis)]
+    facts = [*_before_after(diagnosis), *_kind(diagnosis)]
     if sure:
         one = len(sure) == 1
         facts.append(
@@ -125,10 +125,19 @@ def _clear(diagnosis: Diagnosis) -> tuple[Fact, ...]:
 def _open(diagnosis: Diagnosis) -> tuple[Fact, ...]:
     candidates = [_name(e.id) for e in diagnosis.effects]
     candidates += [_name(id) for e in diagnosis.effects for id in e.indistinguishable_from]
-    facts = list(_before_after(diagnosis))
+    facts = [*_before_after(diagnosis), *_kind(diagnosis)]
     if candidates:
         facts.append(Fact("Still possible", str(len(set(candidates))), ", ".join(dict.fromkeys(candidates))))
     return tuple(facts)
+
+
+def _kind(diagnosis: Diagnosis) -> tuple[Fact, ...]:
+    """Which kind of physics in any shape takes most of the misfit, and where it acts."""
+    if not diagnosis.kinds:
+        return ()
+    first, *others = (f"{_name(k.kind)} at {_name(k.element)}: {share(k.share)}" for k in diagnosis.kinds[:3])
+    beside = f"of the misfit by itself; {', '.join(others)}" if others else "of the misfit by itself"
+    return (Fact("Kind of physics", first, beside),)
 
 
 def _before_after(diagnosis: Diagnosis) -> tuple[Fact, ...]:
