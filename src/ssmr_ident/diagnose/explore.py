@@ -9,10 +9,9 @@ from functools import partial
 import numpy as np
 
 from ssmr_ident.core.threads import side_by_side
-from ssmr_ident.diagnose.along import begun_along, without_laws
-from ssmr_ident.diagnose.baseline import WIDE, bent, leaves_much
+from ssmr_ident.diagnose.baseline import WIDE, bent
 from ssmr_ident.diagnose.explain import from_what_is_known
-from ssmr_ident.diagnose.finals import REFITTED, anew, each_once, led_on, to_the_end
+from ssmr_ident.diagnose.finals import REFITTED, anew, each_once, to_the_end
 from ssmr_ident.diagnose.from_known import begun_from_known
 from ssmr_ident.diagnose.loose import begun_loose
 from ssmr_ident.diagnose.race import (
@@ -24,10 +23,9 @@ from ssmr_ident.diagnose.race import (
     screened,
     started,
     started_from_known,
-    within_reach,
 )
 from ssmr_ident.diagnose.scan import Suspect, candidates, moves_beyond, out_of_reach, promising, scan, variants
-from ssmr_ident.identify.fitting.descent import LOUD, chatters, descend, slides
+from ssmr_ident.identify.fitting.descent import LOUD, chatters, slides
 from ssmr_ident.identify.fitting.joint import JointFit
 from ssmr_ident.physics.effects import CATALOGUE
 
@@ -99,23 +97,11 @@ def search(
     groups = scan(base, asked, small=not loud)
     groups += out_of_reach(base, asked, groups) if alone or elsewhere else []
     rest = [np.inf]
-    begun: list[JointFit] = []
-    tried: list[JointFit] = []
-    field = groups
-    if loud and baseline == "sdof":
-        begun = begun_along(base, [suspect for group in groups for suspect in group])
-        begun = ranked(list(side_by_side(lambda fit: descend(fit, 2), begun)))
-        effects = list(dict.fromkeys(fit.model.ids for fit in begun))[:REFITTED]
-        few = [fit for fit in begun if fit.model.ids in effects and within_reach(begun, fit)]
-        tried = led_on(base, few, rest, lengths, progress)
-        if tried and not leaves_much(ranked(tried)[0]):
-            # every law has been begun as well as it could be; what is none may do as much
-            field = without_laws(groups)
     if loud and len(lengths) > 1:
-        rough = screened(base, field, lengths, progress) if field else []
+        rough = screened(base, groups, lengths, progress) if groups else []
         rest = list(lengths[1:])
     elif loud:
-        rough = raced(base, field, progress) if field else []
+        rough = raced(base, groups, progress) if groups else []
     else:
         chosen = [g for g in groups if promising(g[0])][: REFITTED if further else SCREENED]
         beyond = [
@@ -123,9 +109,7 @@ def search(
         ]
         pulls = slides(base)
         same = [g[0] for g in groups if alone and (pulls or g[0].own < SAME) and not CATALOGUE[g[0].effect].sudden]
-        # a straight line from a sensor that is quick enough points nowhere, and on a rig it costs little not to ask it
-        cheap = [g for g in groups if chosen and baseline == "sdof" and CATALOGUE[g[0].effect].sudden]
-        each = _each_group(chosen, beyond, cheap)
+        each = _each_group(chosen, beyond)
         starts = [partial(started, base, s) for group in each for s in variants(group)]
         starts += [partial(from_what_is_known, base, s, lengths) for group in beyond for s in variants(group)]
         starts += [partial(started_from_known, base, group[0], pulls) for group in chosen if alone]
@@ -137,17 +121,12 @@ def search(
             known = replace(base, point=base.model.as_known(base.point))
             begun = list(side_by_side(lambda begin: begin(), begun_loose(known, asked)))
             rough = ranked([*rough, *run_on(begun)])
-    tried += to_the_end(base, rough, rest, lengths, progress)
-    if loud and len(lengths) > 1 and not chatters(base) and field and promising(field[0][0]):
+    tried = to_the_end(base, rough, rest, lengths, progress)
+    if loud and len(lengths) > 1 and not chatters(base) and groups and promising(groups[0][0]):
         # what grows while a recording lasts hardly shows on a first horizon, and is left behind there
-        first = field[0][0]
+        first = groups[0][0]
         tried += [] if _has(tried, first) else to_the_end(base, [started(base, first)], [np.inf], lengths, progress)
-    if loud and baseline == "sdof" and len(lengths) > 1 and tried and leaves_much(ranked(tried)[0]):
-        # what a first horizon tells of two recordings had put something else in front; laws have been begun along the
-        # paths, unless nothing holds the mass
-        others = without_laws(groups) if begun else groups
-        tried += to_the_end(base, raced(base, others, progress), [np.inf], lengths, progress) if others else []
-    astray = loud and baseline != "sdof" and len(lengths) > 1 and not further and leads_astray(tried)
+    astray = loud and len(lengths) > 1 and not further and leads_astray(tried)
     if astray:
         # the first may only have lost its way, and knows its size
         home = [anew(fit, tuple(lengths)) for fit in ranked(tried)[:1]]
