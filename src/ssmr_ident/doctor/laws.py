@@ -135,7 +135,7 @@ def proposals(problem: Problem, found: Fit, paths: Sequence[Array], beside: Sequ
     """Every form beside the baseline and given members, begun along the path of a fit that follows the motion.
 
     The force that moved the mass along the path is regressed on the rig and the form; what is left says what the form
-    promises, by the logarithm of the residual's size. The fit decides, not this.
+    promises, by the logarithm of the residual's size and Schwarz's price of its parameters. The fit decides, not this.
 
     Parameters
     ----------
@@ -173,7 +173,9 @@ def proposals(problem: Problem, found: Fit, paths: Sequence[Array], beside: Sequ
         member = member_of(form, values, reach, fastest, size)
         node = Node(found.node.baseline, (*beside, member))
         point = _begun(node, found, (mass, max(d, 0.0), max(k, 0.05 * stiff)), member, values)
-        result.append(Proposal(node, Start(point, paths=tuple(paths)), -0.5 * np.log(max(rest, 1e-300))))
+        count = len(force)
+        promise = -0.5 * (np.log(max(rest, 1e-300)) + len(form.moved) * np.log(count) / count)
+        result.append(Proposal(node, Start(point, paths=tuple(paths)), promise))
     return sorted(result, key=lambda p: -p.promise)
 
 

@@ -11,7 +11,7 @@ from scipy.stats import spearmanr
 
 from ssmr_ident.estimate.noise import LARGEST_ORDER
 from ssmr_ident.estimate.values import Fit, Problem
-from ssmr_ident.signals.noise import fit_noise, median_std
+from ssmr_ident.signals.noise import fit_noise
 
 PERIODS = 2.0
 """Of the motion, that a window lasts."""
@@ -30,7 +30,8 @@ class Left:
         Standard deviations by which its size goes with the size of the motion: Spearman's rank correlation by Fisher's
         transform, the largest of the channels.
     uneven : float
-        How far the loudest window stands out, in the robust standard deviation of the logarithm of size.
+        How far the loudest window stands out of the mean one, in the standard deviation that the logarithm of its size
+        has in Gaussian noise.
     loudest : str
         The recording that window is in.
     """
@@ -51,20 +52,22 @@ def _of_channel(problem: Problem, fit: Fit, name: str) -> Left:
     chosen = [(p, r, p.channels.index(name)) for p, r in zip(problem.pieces, fit.residuals, strict=True)]
     _, longest, at = max(chosen, key=lambda own: len(own[1]))
     whitening = fit_noise(longest[:, at] - longest[:, at].mean(), LARGEST_ORDER).filter
+    quietest = float(np.sqrt(np.mean([np.mean(r[:, c] ** 2) for _, r, c in chosen])))
     windows: list[tuple[float, float, str]] = []
+    width = 16
     for piece, rest, c in chosen:
         width = max(16, round(PERIODS * piece.rate / problem.frequency))
         white = lfilter(whitening, [1.0], np.where(piece.counts[:, c], rest[:, c] - rest[:, c].mean(), 0.0))
         model = rest[:, c] + piece.y[:, c]
         for first in range(len(whitening) - 1, len(rest) - width + 1, width):
             own = slice(first, first + width)
-            windows.append((float(model[own].std()), float(white[own].std()), piece.name))
-    if len(windows) < FEWEST:
+            windows.append((float(model[own].std()), float(np.sqrt(np.mean(white[own] ** 2))), piece.name))
+    # where nothing moves, a converter's steps show no noise either
+    moving = np.array([w[:2] for w in windows if w[0] > quietest])
+    if len(moving) < FEWEST:
         return Left()
-    motion, sizes = np.array([w[0] for w in windows]), np.array([w[1] for w in windows])
-    rank = float(spearmanr(motion, sizes).statistic)
-    follows = math.atanh(min(rank, 1.0 - 1e-12)) * math.sqrt((len(windows) - 3) / 1.06)
-    logs = np.log(np.maximum(sizes, 1e-300))
-    logs -= np.median(logs)
-    uneven = logs.max() / max(float(median_std(logs)), 1e-12)
-    return Left(follows, float(uneven), windows[int(np.argmax(sizes))][2])
+    rank = float(spearmanr(moving[:, 0], moving[:, 1]).statistic)
+    follows = math.atanh(min(rank, 1.0 - 1e-12)) * math.sqrt((len(moving) - 3) / 1.06)
+    sizes = np.array([w[1] for w in windows])
+    over = float(sizes.max()) / max(float(np.sqrt(np.mean(sizes**2))), 1e-300)
+    return Left(follows, math.log(over) * math.sqrt(2.0 * width), windows[int(np.argmax(sizes))][2])

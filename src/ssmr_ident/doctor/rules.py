@@ -30,5 +30,5 @@ FOLLOWS = 4.0
 nothing names it: one in thirty thousand under noise that knows nothing of the motion."""
 
 UNEVEN = 10.0
-"""Robust standard deviations by which the loudest window of what is left stands out from which something happened that
-no noise is: of a thousand windows of Gaussian noise one in 10^20. Set by judgement; heavy tails not calibrated."""
+"""Standard deviations in Gaussian noise by which the loudest window of what is left stands out of the mean one, from
+which something happened that no noise is. Set by judgement; heavy tails not calibrated."""

@@ -11,6 +11,7 @@ from threadpoolctl import threadpool_limits
 
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import ParameterSet
+from ssmr_ident.diagnose.arranged import arranged
 from ssmr_ident.diagnose.diagnosis import Diagnosis
 from ssmr_ident.diagnose.setup import keep_back
 from ssmr_ident.doctor.decide import decide
@@ -68,6 +69,7 @@ def diagnose(
 def examined(campaign: Campaign, known: ParameterSet, progress: Progress | None, budget: float) -> Examined:
     """The table and the decision."""
     _checked(campaign)
+    campaign = arranged(campaign)  # sums round differently in another order
     targets, heldout, by_us = roles(campaign)
     fitted = problem_of(targets, known)
     notes: list[str] = []

@@ -43,7 +43,8 @@ def _exact(problem: Problem, node: Node, point: Array, nuisances: Sequence[Array
         s = simulate(model, index, start, np.array([0, len(piece.y)]), zero)
         c = piece.y.shape[1]
         gain = 1.0 + nuisance[n + 1] if piece.driven else 1.0
-        rest = gain * s.y + nuisance[-c:] - piece.y
+        course = np.linspace(-1.0, 1.0, len(piece.y))
+        rest = gain * s.y + nuisance[-2 * c : -c] + course[:, None] * nuisance[-c:] - piece.y
         if not np.isfinite(rest).all():
             return math.inf, [], []
         states = start.shape[1]
@@ -53,7 +54,8 @@ def _exact(problem: Problem, node: Node, point: Array, nuisances: Sequence[Array
             flat[..., n] = gain * s.dy[..., -1]
             flat[..., n + 1] = s.y
         for k in range(c):
-            flat[:, k, len(nuisance) - c + k] = 1.0
+            flat[:, k, len(nuisance) - 2 * c + k] = 1.0
+            flat[:, k, len(nuisance) - c + k] = course
         flat[..., len(nuisance) :] = gain * s.dy[..., states:-1]
         white = _whitened(problem, index, np.concatenate([flat, rest[..., None]], axis=2)).reshape(
             -1, flat.shape[2] + 1

@@ -60,5 +60,5 @@ def starts_of(problem: Problem, node: Node, start: Start) -> list[Array]:
     for piece, path in zip(problem.pieces, start.paths, strict=True):
         states = np.zeros(node.states)
         states[:2] = path[0, :2]
-        found.append(np.concatenate([states, np.zeros(2 * int(piece.driven) + piece.y.shape[1])]))
+        found.append(np.concatenate([states, np.zeros(2 * int(piece.driven) + 2 * piece.y.shape[1])]))
     return found

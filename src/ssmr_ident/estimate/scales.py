@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from ssmr_ident.estimate.node import Node
+from ssmr_ident.estimate.node import STIFFNESS, Node
 from ssmr_ident.estimate.pieces import Piece
 from ssmr_ident.estimate.values import Problem
 
@@ -14,6 +14,10 @@ Array = np.ndarray
 
 GAIN = 0.02
 """Standard deviation of what a force cell's or a sensor's gain changes by from one recording to the next."""
+
+DRIFT = 1.0
+"""Standard deviation of what a channel's zero drifts by to either side of a recording, in that of its white noise: what
+stays within a single sample's noise is nothing that a sheet would promise."""
 
 ZERO_SHARE = 0.3
 """Standard deviation of a drive's zero, in the drive's own."""
@@ -25,7 +29,10 @@ def nuisance_scales(problem: Problem, node: Node, piece: Piece) -> Array:
     # what holds a mass aside has loaded its friction, and so has what went before; a driven log begins at rest
     sizes[node.linear_states :] *= 1e-6 if piece.driven and piece.time[0] <= piece.begin else 0.1
     zero, offsets = zero_scales(piece)
-    return np.concatenate([sizes, zero, np.full(len(zero), GAIN), offsets])
+    held = float(node.values(np.array([c.mean for c in node.coordinates]))[STIFFNESS]) > 0.0
+    # the path of a mass that nothing holds may itself go on and on
+    drifts = DRIFT * piece.white if held else np.full(len(offsets), 1e-12)
+    return np.concatenate([sizes, zero, np.full(len(zero), GAIN), offsets, drifts])
 
 
 def zero_scales(piece: Piece) -> list[Array]:

@@ -100,7 +100,8 @@ def shot(problem: Problem, node: Node, start: Start, continuity: Sequence[float]
     nuisances = []
     for piece, own, extra in zip(pieces, states, local, strict=True):
         driven = int(piece.driven)
-        nuisances.append(np.concatenate([own[0], extra[:driven], np.zeros(driven), extra[driven:]]))
+        drifts = np.zeros(piece.y.shape[1])
+        nuisances.append(np.concatenate([own[0], extra[:driven], np.zeros(driven), extra[driven:], drifts]))
     return Start(point, tuple(nuisances))
 
 

@@ -71,7 +71,7 @@ class Fit:
         Coordinates.
     nuisances : tuple of (k,) float
         Per piece: states at its begin (linear, hidden), where it is driven the drive's
-        zero and what the gain is off by, zeros of the channels.
+        zero and what the gain is off by, zeros of the channels, and what these drift by to either side.
     covariance : (p, p) float
         Of the coordinates.
     residuals : tuple of (n, c) float
