@@ -10,7 +10,6 @@ from ssmr_ident.experiments.campaign import Campaign
 
 ENGINES = {
     "diagnose": "ssmr_ident.workflows.diagnose:diagnose",  # what `ident diagnose` runs
-    "second": "ssmr_ident.doctor.run:diagnose",  # rigs alone
 }
 
 

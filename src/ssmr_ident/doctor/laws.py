@@ -24,6 +24,9 @@ FINER = (0.5, 0.25, 0.12)
 VARIABLES = {"nonlinear_stiffness": "x", "free_play": "x", "quadratic_damping": "v", "dry_friction": "v"}
 """Static forces of the catalogue by the one variable that they are a function of."""
 
+LEAST = 1e-3
+"""Of an amplitude's usual size, what a coordinate's unit is at the least: of less data would seem to know nothing."""
+
 Shape = Mapping[str, float]
 _OnPath = tuple[float, Shape, float, float, Shape]
 
@@ -169,8 +172,8 @@ def proposals(problem: Problem, found: Fit, paths: Sequence[Array], beside: Sequ
     sizes = reach, fastest, 0.3 * size
     for form in (f for f in FORMS if f.effect not in taken):
         along = partial(_on_path, form, partial(_along, problem, paths, first), plain, force, stiff, sizes)
-        rest, _, k, d, values = best_shape(along, form.shapes(*sizes))
-        member = member_of(form, values, reach, fastest, size)
+        rest, shape, k, d, values = best_shape(along, form.shapes(*sizes))
+        member = member_of(form, values, form.unit(shape, stiff, *sizes), reach)
         node = Node(found.node.baseline, (*beside, member))
         point = _begun(node, found, (mass, max(d, 0.0), max(k, 0.05 * stiff)), member, values)
         count = len(force)
@@ -221,13 +224,13 @@ def _on_path(
     return rest, shape, k, d, form.settle(c, unit, k)
 
 
-def member_of(form: Form, values: Shape, reach: float, fastest: float, force: float) -> Member:
-    """A form with its coordinates about given values."""
+def member_of(form: Form, values: Shape, unit: Shape, reach: float) -> Member:
+    """A form with its coordinates about given values; what is next to nothing keeps a share of its usual size."""
     declared = {p.name: p for p in CATALOGUE[form.effect].parameters}
     coordinates = []
     for name, log in form.moved.items():
         p, value = declared[name], values[name]
-        scale = abs(value) or 1.0
+        scale = max(abs(value), LEAST * abs(unit.get(name, 0.0))) or 1.0
         if name == "place_m":
             scale = reach
         low, high = p.lower, p.upper

@@ -230,7 +230,10 @@ def _named(search: Search, say: Progress, best: Fit, beside: Sequence[Member] = 
     paths = motion(search.problem, best)
     problem, short = search.problem, []
     base = next(f for f in search.fits if not f.node.members)
-    offers = _varied(proposals(problem, best, paths, beside))
+    offers = proposals(problem, best, paths, beside)
+    if not best.node.members:  # along a linear rig's own motion nothing is left that could promise anything
+        offers = sorted(offers, key=lambda offer: _scored(problem, offer, best))
+    offers = _varied(offers)
     for index, offer in enumerate(offers):
         say("named laws", index, len(offers))
         if search.late:
@@ -240,10 +243,19 @@ def _named(search: Search, say: Progress, best: Fit, beside: Sequence[Member] = 
         if near.cost > base.cost and index < LOST:  # above what it contains
             far = polish(problem, offer.node, shot(problem, offer.node, offer.start), SHORT)
             near = min(near, far, key=lambda f: f.cost)
-        short.append((near, offer))
-    for rank, (near, offer) in enumerate(sorted(short, key=lambda s: s[0].cost)):
+        short.append((near, offer.start.point))
+        for node in simpler(near.node):
+            less = polish(problem, node, Start(joined(node, near), carried(node, near)), SHORT)
+            short.append((less, less.point))
+    for rank, (near, point) in enumerate(sorted(short, key=lambda s: s[0].cost)):
         whole = rank < FULL_LAWS and not search.late
-        search.add(_finished(search, near, base, offer.start.paths or (), offer.start.point) if whole else near)
+        search.add(_finished(search, near, base, paths, point) if whole else near)
+
+
+def _scored(problem: Problem, offer: Proposal, best: Fit) -> float:
+    """Cost after the first steps, with Schwarz's price of an offer's parameters."""
+    begun = polish(problem, offer.node, Start(offer.start.point, carried(offer.node, best)), BEGUN)
+    return begun.cost + len(offer.node.members[-1].coordinates) * math.log(problem.samples)
 
 
 def _varied(offers: Sequence[Proposal]) -> list[Proposal]:
