@@ -93,11 +93,13 @@ def needed(law: Row, left: float, rows: Sequence[Row]) -> bool:
 
 
 def stands(row: Row, rows: Sequence[Row]) -> bool:
-    """Whether each of two effects beats the other one in any shape, and halves what that leaves beyond noise."""
+    """Whether each of two effects beats the other one in any shape, and halves what that leaves beyond noise; and both
+    any one law, by evidence in sizes of what they themselves leave."""
     if len(row.ids) < 2:
         return True
     found = [_alone(row, k, rows) for k in (0, 1)]
-    if not found[0]:
+    single = [r.log_evidence for r in rows if len(r.ids) == 1 and not r.generic]
+    if not found[0] or row.log_evidence < max(single, default=-math.inf) + SECOND * max(row.over, 1.0) ** 2:
         return False
     for alone in (rows for rows in found if rows):
         best = max(r.log_evidence for r in alone)

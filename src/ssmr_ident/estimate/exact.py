@@ -57,14 +57,14 @@ def _exact(problem: Problem, node: Node, point: Array, nuisances: Sequence[Array
             flat[:, k, len(nuisance) - 2 * c + k] = 1.0
             flat[:, k, len(nuisance) - c + k] = course
         flat[..., len(nuisance) :] = gain * s.dy[..., states:-1]
-        white = _whitened(problem, index, np.concatenate([flat, rest[..., None]], axis=2)).reshape(
-            -1, flat.shape[2] + 1
-        )
-        chi2 += float(white[:, -1] @ white[:, -1])
+        whole = np.concatenate([flat, rest[..., None]], axis=2)
+        with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is refused below
+            white = _whitened(problem, index, whole).reshape(-1, whole.shape[2])
+            normal = white.T @ white
         residuals.append(rest)
-        normal = white.T @ white
         if not np.isfinite(normal).all():
             return math.inf, [], []
+        chi2 += float(normal[-1, -1])
         parts.append((normal[:-1, :-1], normal[:-1, -1], len(nuisance)))
     return chi2, residuals, parts
 
