@@ -53,3 +53,14 @@ def test_what_comes_to_no_end_is_stopped(log: Path, monkeypatch: pytest.MonkeyPa
     with pytest.raises(InputError, match="came to no end"):
         apart.read(open_source(log), ReadOptions())
     apart.close()
+
+
+def test_a_struct_of_more_members_than_bytes_is_refused_before_room_is_made_for_them(tmp_path: Path) -> None:
+    file = tmp_path / "log.mat"
+    savemat(file, {"run": {"t": np.arange(50.0), "force": np.arange(50.0)}})
+    data = bytearray(file.read_bytes())
+    assert int.from_bytes(data[160:164], "little") == 1  # rows of the struct, behind its flags
+    data[163] = 0x10
+    file.write_bytes(data)
+    with pytest.raises(InputError, match="of 268435457 members in"):
+        read(file)

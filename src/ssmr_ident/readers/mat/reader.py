@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import io
+import math
 import warnings
 import zlib
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -15,7 +16,8 @@ from ssmr_ident.readers.options import ReadOptions
 from ssmr_ident.readers.source import Source
 
 NAMES = ("mat",)
-_COMPRESSED = 15  # miCOMPRESSED, the type of a packed element
+_COMPRESSED, _MATRIX = 15, 14  # miCOMPRESSED, the type of a packed element, and miMATRIX
+_OF_MEMBERS = (1, 2, 3)  # classes of arrays that hold arrays: cell, struct, object
 _DEEPEST = 8  # structs in structs
 
 
@@ -76,23 +78,51 @@ def _check_size(source: Source) -> None:
     """Unpack every element once against the limit: a few bytes can stand for gigabytes of zeros."""
     data, position, budget = source.data, 128, MOST_BYTES
     if data[:4] == b"MATL":
-        order = "little" if data[126:128] == b"IM" else "big"
+        order: Literal["little", "big"] = "little" if data[126:128] == b"IM" else "big"
+        _check_counts(source, data[position:], order)
         while position + 8 <= len(data):
-            kind = int.from_bytes(data[position : position + 4], order)  # type: ignore[arg-type]
-            length = int.from_bytes(data[position + 4 : position + 8], order)  # type: ignore[arg-type]
+            kind = int.from_bytes(data[position : position + 4], order)
+            length = int.from_bytes(data[position + 4 : position + 8], order)
             if kind == _COMPRESSED:
-                budget -= _unpacked(data[position + 8 : position + 8 + length], budget)
+                size, first = _unpacked(data[position + 8 : position + 8 + length], budget)
+                budget -= size
+                _check_counts(source, first, order)
             if budget <= 0:
                 raise source.error(f"unpacks to more than {MOST_BYTES // 2**20} MB", "Split the recording.")
             position += 8 + length
 
 
-def _unpacked(data: bytes, budget: int) -> int:
-    size, machine = 0, zlib.decompressobj()
+def _check_counts(source: Source, data: bytes, order: Literal["little", "big"], depth: int = 0) -> None:
+    """That no cell or struct says that it has more members than bytes: scipy makes room for as many as are said."""
+    position = 0
+    while position + 8 <= len(data) and depth < _DEEPEST:
+        head = int.from_bytes(data[position : position + 4], order)
+        if head >> 16:  # a small element, in the place of its length
+            position += 8
+            continue
+        length = int.from_bytes(data[position + 4 : position + 8], order)
+        inside = data[position + 8 : position + 8 + length]
+        if head == _MATRIX and len(inside) >= 24:
+            sizes = int.from_bytes(inside[20:24], order)
+            count = math.prod(int.from_bytes(inside[24 + k : 28 + k], order) for k in range(0, min(sizes, 64), 4))
+            if int.from_bytes(inside[8:12], order) & 0xFF in _OF_MEMBERS and count > len(inside):
+                raise source.error(
+                    f"is a MATLAB file that is damaged (a cell or struct of {count} members in {len(inside)} bytes)",
+                    "Save it again in MATLAB.",
+                )
+            _check_counts(source, inside, order, depth + 1)
+        position += 8 + length + (-length % 8 if head != _COMPRESSED else 0)
+
+
+def _unpacked(data: bytes, budget: int) -> tuple[int, bytes]:
+    """Size of what is unpacked, and the begin of it."""
+    size, machine, first = 0, zlib.decompressobj(), b""
     try:
         while data and size <= budget:
-            size += len(machine.decompress(data, 2**22))
+            part = machine.decompress(data, 2**22)
+            first = first or part
+            size += len(part)
             data = machine.unconsumed_tail
     except zlib.error:
-        return size  # damage is reported by whoever reads the element
-    return size
+        return size, first  # damage is reported by whoever reads the element
+    return size, first
