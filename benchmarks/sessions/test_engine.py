@@ -26,7 +26,7 @@ def test_what_may_be_noise_of_another_colour_is_said_beside_nothing():
         measurements.append(replace(measurement, recording=replace(measurement.recording, channels=(force, seen))))
     found = diagnose(replace(session, measurements=tuple(measurements)))
     assert (found.verdict, found.effects) == ("nothing_missing", ())
-    assert found.heldout.before > 1.5 * found.heldout.noise_floor
+    assert found.heldout.before > 3.0 * found.heldout.noise_floor
     assert any("noise of another colour" in note for note in found.notes)
 
 

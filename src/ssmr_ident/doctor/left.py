@@ -17,7 +17,7 @@ PERIODS = 2.0
 """Of the motion, that a window lasts."""
 
 FEWEST = 10
-"""Windows below which ranks say nothing."""
+"""Windows below which ranks say nothing, and what is left is taken to follow the motion."""
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,7 @@ def _of_channel(problem: Problem, fit: Fit, name: str) -> Left:
     chosen = [(p, r, p.channels.index(name)) for p, r in zip(problem.pieces, fit.residuals, strict=True)]
     _, longest, at = max(chosen, key=lambda own: len(own[1]))
     whitening = fit_noise(longest[:, at] - longest[:, at].mean(), LARGEST_ORDER).filter
-    quietest = float(np.sqrt(np.mean([np.mean(r[:, c] ** 2) for _, r, c in chosen])))
+    overall = float(np.sqrt(np.mean([np.mean(r[:, c] ** 2) for _, r, c in chosen])))
     windows: list[tuple[float, float, str]] = []
     width = 16
     for piece, rest, c in chosen:
@@ -63,9 +63,9 @@ def _of_channel(problem: Problem, fit: Fit, name: str) -> Left:
             own = slice(first, first + width)
             windows.append((float(model[own].std()), float(np.sqrt(np.mean(white[own] ** 2))), piece.name))
     # where nothing moves, a converter's steps show no noise either
-    moving = np.array([w[:2] for w in windows if w[0] > quietest])
+    moving = np.array([w[:2] for w in windows if w[0] > overall])
     if len(moving) < FEWEST:
-        return Left()
+        return Left(math.inf)
     rank = float(spearmanr(moving[:, 0], moving[:, 1]).statistic)
     follows = math.atanh(min(rank, 1.0 - 1e-12)) * math.sqrt((len(moving) - 3) / 1.06)
     sizes = np.array([w[1] for w in windows])

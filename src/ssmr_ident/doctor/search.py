@@ -342,9 +342,9 @@ def _second(search: Search, say: Progress) -> None:
 def _beside(search: Search, say: Progress, first: Fit) -> None:
     """Every kind in any shape beside a named effect, and named ones along the best of these."""
     law, problem = first.node.members[0], search.problem
-    offers = kinds(problem, motion(problem, first))
-    own = [m for m in offers if m.tables and m.kind == law.kind]
     paths = motion(problem, first)
+    offers = kinds(problem, paths)
+    own = [m for m in offers if m.tables and m.kind == law.kind]
     own += [static(problem, paths, law.variable)] if law.variable else []
     if law.id == FRICTION:
         own += [memory(problem, paths)] if law.kind == STATIC else [static(problem, paths, "v")]
