@@ -1,26 +1,36 @@
 """What many small sessions cost beside their own seconds, and whether killing costs more than time.
 
-python benchmarks/bench_batch.py --count 2000            # fitted only
-python benchmarks/bench_batch.py --count 40 --diagnose
+python benchmarks/bench_batch.py --count 2000 --alone            # fitted only, and by one process without a batch
+python benchmarks/bench_batch.py --count 20 --diagnose --report
 python benchmarks/bench_batch.py --count 200 --kills 3 --dask
+
+Beside the seconds of the clock stand those of the processor, which other work on the machine hardly changes.
 """
 
 from __future__ import annotations
 
 import argparse
 import json
+import os
+import resource
 import subprocess
 import sys
 import tempfile
 import time
 from pathlib import Path
 
-import pandas as pd
-
-from ssmr_ident.workflows.batch import read_results
+from ssmr_ident.workflows.batch.results import read_results
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
 from small_fleet import write_fleet
+
+ALONE = """
+import sys
+from ssmr_ident import fit_session
+for name in sys.argv[1:]:
+    fit_session(name)
+"""
+"""The same fits, one after the other in one process, and nothing else."""
 
 
 def batch(folder: Path, out: Path, words: list[str]) -> list[str]:
@@ -40,15 +50,24 @@ def memory_mb(parent: int) -> float:
     return max(sizes)
 
 
-def watched(command: list[str], out: Path, every: float = 5.0) -> tuple[float, list[tuple[int, float]]]:
-    """Wall time [s], and how many sessions were done and the memory [MB] then, over the run."""
-    begun = time.monotonic()
+def watched(command: list[str], out: Path, every: float = 5.0) -> tuple[float, float, list[tuple[int, float]]]:
+    """Seconds of the clock and of processors, and over the run how many sessions were done and the memory [MB]."""
+    begun, used = time.monotonic(), _processor_s()
     run = subprocess.Popen(command)
     seen = []
-    while run.poll() is None:
-        time.sleep(every)
-        seen.append((sum(1 for _ in out.rglob("row.json")), memory_mb(run.pid)))
-    return time.monotonic() - begun, seen
+    while True:
+        try:
+            run.wait(every)
+            break
+        except subprocess.TimeoutExpired:
+            seen.append((sum(1 for _ in out.rglob("row.json")), memory_mb(run.pid)))
+    return time.monotonic() - begun, _processor_s() - used, seen
+
+
+def _processor_s() -> float:
+    """Of all children so far that have ended, and theirs."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
 
 
 def same(one: Path, other: Path) -> bool:
@@ -63,14 +82,14 @@ def killed(folder: Path, out: Path, words: list[str], times: int, count: int) ->
     for kill in range(1, times + 1):
         run = subprocess.Popen(batch(folder, out, words))
         while run.poll() is None and sum(1 for _ in out.rglob("row.json")) < kill * count / (times + 1):
-            time.sleep(0.05)
+            time.sleep(0.5)
         run.kill()
         run.wait()
     subprocess.run(batch(folder, out, words), check=True)
 
 
-def on_dask(folder: Path, out: Path, words: list[str], count: int) -> None:
-    """Two workers, one of them killed half way."""
+def on_dask(folder: Path, out: Path, words: list[str], count: int) -> str:
+    """Two workers, one of them killed half way; what travelled, and what the scheduler had to do, of each session."""
     say = out.parent / "scheduler.json"
     start = [sys.executable, "-m", "distributed.cli.dask_scheduler", "--scheduler-file", str(say), "--port", "0"]
     scheduler = subprocess.Popen([*start, "--no-dashboard"], stderr=subprocess.DEVNULL)
@@ -80,44 +99,84 @@ def on_dask(folder: Path, out: Path, words: list[str], count: int) -> None:
         while not say.is_file():
             time.sleep(0.1)
         address = json.loads(say.read_text(encoding="utf-8"))["address"]
+        time.sleep(10.0)  # of workers that begin
+        idle = _watch(scheduler.pid)
+        time.sleep(10.0)
+        begun = _watch(scheduler.pid)
         run = subprocess.Popen(batch(folder, out, [*words, "--scheduler", address]))
         while run.poll() is None and sum(1 for _ in out.rglob("row.json")) < count / 2:
-            time.sleep(0.05)
+            time.sleep(0.5)
         workers[0].kill()
         run.wait()
+        ended = _watch(scheduler.pid)
     finally:
         for process in (*workers, scheduler):
             process.kill()
             process.wait()
+    wall, travelled, busy = (b - a for a, b in zip(begun, ended, strict=True))
+    still, idle_bytes, idle_busy = (b - a for a, b in zip(idle, begun, strict=True))
+    travelled, busy = travelled - idle_bytes * wall / still, busy - idle_busy * wall / still
+    return (
+        f"beyond what Dask does at rest, a session: {travelled / count / 1e3:.2f} kB travelled (task, row and all of "
+        f"Dask's words), {1e3 * busy / count:.2f} ms of the scheduler's processor ({count / wall:.1f} sessions/s here)"
+    )
+
+
+def _watch(scheduler: int) -> tuple[float, int, float]:
+    """The time [s], bytes that went through the loopback, and the scheduler's processor time [s], so far."""
+    return time.monotonic(), _loopback_bytes(), _processor_of(scheduler)
+
+
+def _loopback_bytes() -> int:
+    """Sent so far from this machine to itself."""
+    lines = Path("/proc/net/dev").read_text(encoding="ascii").splitlines()
+    return int(next(line for line in lines if line.strip().startswith("lo:")).split(":")[1].split()[8])
+
+
+def _processor_of(process: int) -> float:
+    """Seconds of a processor that a process has used."""
+    fields = Path(f"/proc/{process}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--count", type=int, default=200)
     parser.add_argument("--jobs", type=int, default=2)
-    parser.add_argument("--diagnose", action="store_true", help="diagnose as well, without pages")
+    parser.add_argument("--alone", action="store_true", help="fit all of them in one process without a batch, too")
+    parser.add_argument("--diagnose", action="store_true", help="diagnose as well")
+    parser.add_argument("--report", action="store_true", help="draw pages of diagnoses")
     parser.add_argument("--kills", type=int, default=0)
     parser.add_argument("--dask", action="store_true")
     a = parser.parse_args()
-    words = ["--no-report", *([] if a.diagnose else ["--no-diagnose"])]
+    words = [*([] if a.report else ["--no-report"]), *([] if a.diagnose else ["--no-diagnose"])]
     here = [*words, "--jobs", str(a.jobs)]
     with tempfile.TemporaryDirectory() as place:
         root = Path(place)
-        write_fleet(root / "in", a.count)
-        wall, seen = watched(batch(root / "in", root / "out", here), root / "out")
-        seconds: pd.Series = read_results(root / "out").sessions.seconds
-        print(f"{a.count} sessions, {a.jobs} processes: {wall:.1f} s wall, {seconds.sum():.1f} s of processor in them")
-        print(f"beside their own seconds: {(wall * a.jobs - seconds.sum()) / a.count:.3f} s of a processor a session")
+        names = write_fleet(root / "in", a.count)
+        wall, used, seen = watched(batch(root / "in", root / "out", here), root / "out")
+        own = read_results(root / "out").sessions.seconds.sum()
+        print(
+            f"{a.count} sessions, {a.jobs} processes: {wall:.1f} s, {used:.1f} s of processors, {own:.1f} in sessions"
+        )
+        beside = f"{(wall * a.jobs - own) / a.count:.3f} s by the clock, {(used - own) / a.count:.3f} of processors"
+        print(f"a session, beside its own seconds: {beside}")
         shown = seen[:: max(1, len(seen) // 8)]
         print("sessions done, memory of the largest process [MB]:", *(f"{n}: {mb:.0f}" for n, mb in shown))
+        if a.alone:
+            folders = [str(root / "in" / name) for name in names]
+            clock, spent, _ = watched([sys.executable, "-c", ALONE, *folders], root / "none")
+            print(f"fitted by one process without a batch: {clock:.1f} s, {spent:.1f} s of its processor")
+            print(f"efficiency: {clock / wall / a.jobs:.1%} by the clock, {spent / used:.1%} of processors' seconds")
         if a.kills:
             killed(root / "in", root / "killed", here, a.kills, a.count)
             print(
                 f"killed {a.kills} times and resumed: {'the same' if same(root / 'out', root / 'killed') else 'OTHERS'}"
             )
         if a.dask:
-            on_dask(root / "in", root / "dask", words, a.count)
+            told = on_dask(root / "in", root / "dask", words, a.count)
             print(f"two Dask workers, one killed: {'the same' if same(root / 'out', root / 'dask') else 'OTHERS'}")
+            print(told)
 
 
 if __name__ == "__main__":

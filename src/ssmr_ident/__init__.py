@@ -30,7 +30,7 @@ _DOOR = {
     "fit_session": ("workflows.fit.run", "fit_session"),
     "compare_session": ("workflows.compare", "compare_session"),
     "diagnose_session": ("workflows.diagnose", "diagnose_session"),
-    "read_results": ("workflows.batch", "read_results"),
+    "read_results": ("workflows.batch.results", "read_results"),
     "plot": ("workflows.plot", "plot"),
 }
 

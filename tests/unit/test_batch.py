@@ -16,11 +16,11 @@ from small_fleet import write_fleet
 
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.report.html import Link, render_page
-from ssmr_ident.workflows.batch import read_results, run_batch
 from ssmr_ident.workflows.batch.guarded import Guarded
 from ssmr_ident.workflows.batch.outliers import farthest
 from ssmr_ident.workflows.batch.page import batch_page
-from ssmr_ident.workflows.batch.results import Results, write_results
+from ssmr_ident.workflows.batch.results import Results, read_results, write_results
+from ssmr_ident.workflows.batch.run import run_batch
 from ssmr_ident.workflows.batch.schema import COLUMNS
 from ssmr_ident.workflows.batch.task import ROW, find_tasks
 

@@ -15,7 +15,7 @@ import pytest
 from small_fleet import write_fleet
 
 from ssmr_ident.core.errors import InputError
-from ssmr_ident.workflows.batch import run_batch
+from ssmr_ident.workflows.batch.run import run_batch
 
 distributed = pytest.importorskip("distributed")
 pytestmark = pytest.mark.slow

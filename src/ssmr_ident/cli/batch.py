@@ -45,7 +45,7 @@ def command(
     """Fit and diagnose every session below a folder; a run that was stopped goes on where it was."""
     from ssmr_ident.cli.called import called
     from ssmr_ident.cli.progress import counted
-    from ssmr_ident.workflows.batch import run_batch
+    from ssmr_ident.workflows.batch.run import run_batch
 
     with counted("sessions", hidden=quiet or as_json) as step:
         batch = run_batch(

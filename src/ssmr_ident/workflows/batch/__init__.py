@@ -1,6 +1,4 @@
-"""``ident batch``: every session below a folder, each in a process that may fail, hang or be killed on its own."""
+"""``ident batch``: every session below a folder, each in a process that may fail, hang or be killed on its own.
 
-from ssmr_ident.workflows.batch.results import Results, read_results
-from ssmr_ident.workflows.batch.run import Batch, run_batch
-
-__all__ = ["Batch", "Results", "read_results", "run_batch"]
+Nothing is imported here, for each of those processes comes by and needs neither tables nor page.
+"""

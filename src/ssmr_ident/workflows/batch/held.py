@@ -6,8 +6,6 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from filelock import FileLock, Timeout
-
 from ssmr_ident.core.errors import InputError
 
 
@@ -18,8 +16,12 @@ def held(folder: Path) -> Iterator[None]:
     Raises
     ------
     InputError
-        Another run has it.
+        Another run has it, or filelock is not installed.
     """
+    try:
+        from filelock import FileLock, Timeout
+    except ModuleNotFoundError as error:
+        raise InputError("filelock", "is not installed", "pip install 'ssmr_ident[batch]'") from error
     lock = FileLock(folder / ".held")
     try:
         lock.acquire(timeout=0)

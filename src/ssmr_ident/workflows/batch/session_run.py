@@ -15,6 +15,7 @@ from ssmr_ident.experiments.campaign import Campaign, load
 from ssmr_ident.physics.effects import effects_of
 from ssmr_ident.session import read_parameters, write_parameters
 from ssmr_ident.workflows.batch.task import ROW, Task
+from ssmr_ident.workflows.fit.run import fit_campaign
 
 
 def run_session(task: Task) -> dict[str, Any]:
@@ -46,14 +47,13 @@ def run_session(task: Task) -> dict[str, Any]:
 
 
 def _answers(task: Task, campaign: Campaign, row: dict[str, Any], out: Path) -> None:
-    from ssmr_ident.workflows.diagnose import diagnose, write_diagnosis
-    from ssmr_ident.workflows.fit.run import fit_session
-
     known = read_parameters(task.params) if task.params else None
-    fit = fit_session(task.folder, seed=task.seed, parameters=known)
+    fit = fit_campaign(campaign, seed=task.seed, parameters=known)
     write_parameters(out / "params.yaml", fit.parameters)
     row["parameters"] = _numbers(fit.parameters, "fit", fit.changed)
     if task.diagnose:
+        from ssmr_ident.workflows.diagnose import diagnose, write_diagnosis
+
         found = diagnose(campaign, known, task.seed)
         write_diagnosis(found, campaign, out, f"ident diagnose {task.name}", task.seed, report=task.report)
         row["diagnosis"] = found.as_dict()

@@ -57,6 +57,18 @@ def fit_session(
         raise InputError("--method", f"is {method!r}, expected {' or '.join(METHODS)}", did_you_mean(method, METHODS))
     step = progress or (lambda stage, done, total: None)
     campaign = load(path, lambda done, total: step("reading logs", done, total))
+    return fit_campaign(campaign, seed, coulomb, parameters, method, step)
+
+
+def fit_campaign(
+    campaign: Campaign,
+    seed: int = 0,
+    coulomb: bool = True,
+    parameters: ParameterSet | None = None,
+    method: str | None = None,
+    step: Callable[[str, int, int], None] = lambda stage, done, total: None,
+) -> SessionFit:
+    """As ``fit_session``, of a session whose logs are read already."""
     if parameters is not None:
         campaign = replace(campaign, parameters=parameters)
     chosen = fitted_measurements(campaign)
