@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from ssmr_ident.core.errors import InputError
+from ssmr_ident.core.recording import rate_of
 from ssmr_ident.readers import ReadOptions, read, read_one
 
 
@@ -173,6 +174,14 @@ def test_gap_is_told_with_its_line(tmp_path: Path) -> None:
     (gap,) = recording.warnings
     assert "2642 samples missing after t = 8.05 s: time jumps to 34.48 s" in gap.text
     assert gap.where == "line 808"
+    assert recording.sample_rate == pytest.approx(100.0)
+
+
+def test_lost_samples_do_not_slow_the_rate_and_a_clock_of_its_own_kind_keeps_its_mean() -> None:
+    kept = np.delete(np.arange(600), [150, 151, 400]) / 200.0
+    assert rate_of(np.round(kept, 3)) == pytest.approx(200.0, rel=1e-12)
+    bursts = np.cumsum(np.tile([0.001, 0.001, 0.003], 200))
+    assert rate_of(bursts) == pytest.approx(599 / (bursts[-1] - bursts[0]))
 
 
 def test_two_clocks_in_one_table(tmp_path: Path) -> None:

@@ -66,7 +66,7 @@ class LogHealth(Shown):
     Parameters
     ----------
     sample_rate : float [Hz]
-        From first and last time.
+        From first and last time, lost samples counted.
     jitter : float [s]
         Largest distance of a stamp from the even grid; rounding of printed stamps counts as well.
     gaps : int

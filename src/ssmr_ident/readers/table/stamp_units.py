@@ -134,8 +134,9 @@ def _from_zero(column: Column, values: np.ndarray, first: float, factor: float, 
     if absolute:
         resolution = max(float(np.spacing(np.nanmax(np.abs(values)))) * factor, 1e-9)
         origin = "LabVIEW counts from 1904" if begin > SECONDS_1904 else f"since 1970: {date_of(begin)}"
+        stamp = np.format_float_positional(round(begin, 9), trim="-")
         notes.append(
-            f"time: absolute seconds ({origin}) became seconds since the first sample "
+            f"time: absolute seconds ({origin}) became seconds since the first sample, which was at {stamp} s "
             f"(resolution of the stamp {resolution:.1g} s)"
         )
     return Clock(column.shown, seconds, begin if absolute else 0.0, notes, column)

@@ -5,7 +5,9 @@ The way of reading that makes the longest run of rows with most numbers and leas
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 from ssmr_ident.readers.options import ReadOptions
 from ssmr_ident.readers.source import Source
@@ -61,22 +63,28 @@ def filled_up(cells: list[str], line: bytes, layout: Layout) -> list[str]:
     return cells + [""] * (count - len(cells))
 
 
-def is_row(cells: list[str], layout: Layout) -> bool:
-    """True when the cells are a row of the body, or all of them are numbers or stamps, at least one a finite one."""
+def numbers_of(cells: list[str], layout: Layout) -> list[float | None] | None:
+    """The cells' numbers, NaN for empty ones and for text, None for a stamp; None for cells that are no row.
+
+    A row is one of the body, or cells that are all numbers or stamps, at least one a finite one.
+    """
     found = False
     kinds = layout.kinds if 1 < len(cells) == len(layout.kinds) else ()
     decimal = layout.dialect.decimal
+    numbers: list[float | None] = [math.nan] * len(cells)
     for k, cell in enumerate(cells):
         if not cell or (kinds and kinds[k] == TEXT):
             continue
-        value = value_of(cell, decimal)
-        if value is None:
-            if not (is_stamp(cell) or (kinds and kinds[k] == STAMP and is_date(cell))):
-                return False
-            found = True
-        else:
-            found = found or value == value
-    return found
+        value = numbers[k] = value_of(cell, decimal)
+        if value is None and not (is_stamp(cell) or (kinds and kinds[k] == STAMP and is_date(cell))):
+            return None
+        found = found or value is None or value == value
+    return numbers if found else None
+
+
+def is_row(cells: list[str], layout: Layout) -> bool:
+    """True when the cells are a row of numbers."""
+    return numbers_of(cells, layout) is not None
 
 
 def sniff(source: Source, text: Text, options: ReadOptions, *, delimiters: str = "\t;,| ") -> Layout:
@@ -94,11 +102,16 @@ def sniff(source: Source, text: Text, options: ReadOptions, *, delimiters: str =
         lines = [text.decode(line) for line in head if len(line) <= LONGEST_LINE]
         best, most, rows = None, 0.0, []
         whole = 0
+        absent: set[str] = set()  # decimal signs tried with a delimiter that no line holds: another one reads the same
         for dialect in _CANDIDATES:
             if dialect.delimiter == dialect.decimal and not any('"' in line for line in lines):
                 continue  # a comma between numbers and within them needs quotes around them
             if dialect.delimiter not in delimiters or (options.decimal or dialect.decimal) != dialect.decimal:
                 continue
+            if dialect.delimiter != " " and not any(dialect.delimiter in line for line in lines):
+                if dialect.decimal in absent:
+                    continue
+                absent.add(dialect.decimal)
             run, worth = _longest_run(lines, dialect)
             if dialect.delimiter == " " and len(run) <= whole:
                 continue  # blanks within cells of a table that a sign separates throughout
@@ -166,6 +179,7 @@ def _without_words(run: list[list[str]], dialect: Dialect) -> bool:
     )
 
 
+@lru_cache(maxsize=20_000)  # cells are looked at once for every dialect that does not cut them
 def _sure(cell: str, decimal: str) -> int:
     """What a cell holds; -1 for an empty one and for a mark of 'no number', which stand in columns of either kind."""
     value = value_of(cell, decimal) if cell else float("nan")

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ssmr_ident.readers.text.dialect import LONGEST_LINE, NUMBER, STAMP, TEXT, Layout, filled_up, is_row, value_of
+from ssmr_ident.readers.text.dialect import LONGEST_LINE, NUMBER, STAMP, TEXT, Layout, filled_up, is_row, numbers_of
 from ssmr_ident.readers.text.encoding import Text
 from ssmr_ident.readers.text.numbers import Dialect
 from ssmr_ident.readers.text.stamps import seconds_of
@@ -162,17 +162,13 @@ class _Run:
 
     def _take(self, cells: list[str], line: bytes) -> bool:
         padded = cells + [""] * (self.width - len(cells))
-        if not is_row(padded, self.layout):
+        numbers = numbers_of(padded, self.layout)
+        if numbers is None:
             return False
-        row = [np.nan] * self.width
-        for k, cell in enumerate(cells):
-            if not cell or self.kinds[k] == TEXT:
-                continue
-            value = value_of(cell, self.layout.dialect.decimal) if self.kinds[k] == NUMBER else None
-            if value is not None:
-                row[k] = value
-            elif k not in self.stamps:  # a stamp in a run whose columns nobody looked over
-                self.stamps[k] = [b""] * (self.filled + len(self.rows))
+        row = [np.nan if v is None or kind != NUMBER else v for v, kind in zip(numbers, self.kinds, strict=True)]
+        for k, number in enumerate(numbers):
+            if number is None and k not in self.stamps and self.kinds[k] != TEXT:
+                self.stamps[k] = [b""] * (self.filled + len(self.rows))  # in a run whose columns nobody looked over
         for k, stamps in self.stamps.items():
             stamps.append(padded[k].encode("utf-8", errors="replace") if np.isnan(row[k]) else b"")
         self.rows.append(row)

@@ -10,6 +10,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
+from functools import lru_cache
 
 import numpy as np
 
@@ -90,6 +91,7 @@ def is_date(cell: str) -> bool:
     return parts is not None and ("one" in parts or "month" in parts) and parts.get("minute") is None
 
 
+@lru_cache(maxsize=20_000)  # a cell is asked about as a stamp and as a date, for every dialect that does not cut it
 def _parts(cell: str) -> dict[str, str] | None:
     """Named parts of a stamp; None for anything else, and for hours, minutes and months that are none."""
     for form in _FORMS:
