@@ -12,6 +12,7 @@ Run: python benchmarks/fuzz_readers.py [--count 20000] [--minutes 20] [--seed 0]
 from __future__ import annotations
 
 import argparse
+import gzip
 import io
 import math
 import resource
@@ -141,10 +142,14 @@ def as_strangers_write(folder: Path) -> None:
                                                       for k, _, v in rows),
         "z.txt": "".join(f"[{k / 200:.4f}, {v:.5f}, {v / 2:.5f}]\n" for k, _, v in rows),
         "0.json": f'{{"force_N": {{{", ".join(f"{chr(34)}{k * 5}{chr(34)}: {v:.5f}" for k, _, v in rows)}}}}}',
+        "2.csv": '"Run 1: Time\n(s)","Run 1: Force\n(N)","Run 2: Time (s)","Run 2: Force (N)"\n' + "".join(
+            f"{k / 200:.4f},{v:.5f},{k / 200:.4f},{v:.5f}\n" for k, _, v in rows),
+        "3.csv": "Reading,Unit,Relative Time\n" + "".join(f"{v:.6E},VDC,{k / 200:.4f}\n" for k, _, v in rows),
         "1.jsonl": "".join(f'{{"t0": {k / 20:.3f}, "force_N": {[round(v, 4)] * 10}}}\n' for k, _, v in rows),
     }  # fmt: skip
     for name, text in texts.items():
         (folder / name).write_text(text)
+    (folder / "4.csv.gz").write_bytes(gzip.compress(texts["p.csv"].encode()))
 
 
 def mutated(data: bytes, rng: np.random.Generator) -> bytes:

@@ -305,6 +305,66 @@ def test_headerless_counts_are_asked_for(tmp_path: Path) -> None:
         read(tmp_path / "log.txt")
 
 
+@pytest.mark.parametrize(
+    "names",
+    [
+        "Run 1: Time (s),Run 1: Force (N),Run 2: Time (s),Run 2: Force (N)",
+        "Time (s) Run #1,Force (N) Run #1,Time (s) Run #2,Force (N) Run #2",
+        "Data Set 1 Time (s),Data Set 1 Force (N),Data Set 2 Time (s),Data Set 2 Force (N)",
+    ],
+)
+def test_runs_side_by_side_are_recordings(tmp_path: Path, names: str) -> None:
+    second = [f"{t:.4f},{2 * f:.5f}" if k < 50 else "," for k, (t, f) in enumerate(zip(TIME, FORCE, strict=True))]
+    rows = [f"{t:.4f},{f:.5f},{other}" for t, f, other in zip(TIME, FORCE, second, strict=True)]
+    (tmp_path / "log.csv").write_text("\n".join([names, *rows]) + "\n")
+    one, two = read(tmp_path / "log.csv")
+    np.testing.assert_allclose(one["force"], FORCE, atol=1e-5)
+    np.testing.assert_allclose(two["force"], 2 * FORCE[:50], atol=1e-5)
+
+
+def test_names_broken_over_lines_within_quotes(tmp_path: Path) -> None:
+    rows = "".join(f"{t:.4f},{f:.5f}\n" for t, f in zip(TIME, FORCE, strict=True))
+    (tmp_path / "log.csv").write_text('"Time\n(s)","Force\n(N)"\n' + rows.replace("0.0400", "broken"))
+    recording = read_one(tmp_path / "log.csv")
+    assert recording.names == ("force",)
+    assert any("line 14" in note.text + note.where for note in recording.warnings)  # as the file counts them
+
+
+@pytest.mark.parametrize("names", ["Reading,Unit,Time (s)", "Force,,Time (s)"])
+def test_units_in_cells_of_their_own(tmp_path: Path, names: str) -> None:
+    rows = "".join(f"{f / POUND:.6f},lbf,{t:.4f}\n" for t, f in zip(TIME, FORCE, strict=True))
+    (tmp_path / "log.csv").write_text(f"{names}\n{rows}")
+    (channel,) = read_one(tmp_path / "log.csv").channels
+    assert channel.unit == "N"
+    np.testing.assert_allclose(channel.samples, FORCE, atol=1e-5)
+
+
+@pytest.mark.parametrize("names", ["in s,C1 in V", "[s],[V]"])
+def test_units_without_names(tmp_path: Path, names: str) -> None:
+    rows = "".join(f"{t:.4f},{f:.5f}\n" for t, f in zip(TIME, FORCE, strict=True))
+    (tmp_path / "log.csv").write_text(f"{names}\n{rows}")
+    (channel,) = read_one(tmp_path / "log.csv").channels
+    assert channel.unit == "V"
+
+
+def test_a_matrix_as_it_is_shown_is_refused(tmp_path: Path) -> None:
+    rows = "".join(f"    {t / 1e3:.4f}    {f / 1e3:.4f}\n" for t, f in zip(TIME, FORCE, strict=True))
+    (tmp_path / "log.txt").write_text(f"A =\n\n   1.0e+03 *\n\n{rows}")
+    with pytest.raises(InputError, match="few digits"):
+        read(tmp_path / "log.txt", ReadOptions(fs=250))
+
+
+@pytest.mark.parametrize(
+    ("names", "encoding"),
+    [("시간(s),하중(N)", "euc_kr"), ("Idő (s),Erő (N)", "cp1250"), ("Χρόνος (s),Δύναμη (N)", "cp1253"),
+     ("Süre (s),Yük (N)", "cp1254"), ("Aika (s),Voima (N)", "ascii")],
+)  # fmt: skip
+def test_words_of_more_languages(tmp_path: Path, names: str, encoding: str) -> None:
+    rows = "".join(f"{t:.4f},{f:.5f}\n" for t, f in zip(TIME, FORCE, strict=True))
+    (tmp_path / "log.csv").write_bytes(f"{names}\n{rows}".encode(encoding))
+    assert read_one(tmp_path / "log.csv").names == ("force",)
+
+
 def test_a_clock_in_no_known_unit_is_left_out_beside_another(tmp_path: Path) -> None:
     rows = "".join(f"{4 * k},{t:.4f},{f:.5f}\n" for k, (t, f) in enumerate(zip(TIME, FORCE, strict=True)))
     (tmp_path / "log.csv").write_text("uptime,time_s,force_N\n" + rows)

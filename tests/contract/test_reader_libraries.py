@@ -6,6 +6,7 @@ import io
 import json
 import sys
 import zipfile
+from importlib import import_module
 from pathlib import Path
 
 import numpy as np
@@ -454,6 +455,48 @@ def test_frames_with_an_index_of_dates_and_structs(tmp_path: Path) -> None:
     assert recording.names == ("ax", "ay")
     assert recording.sample_rate == pytest.approx(RATE)
     same(recording["ay"], ACCEL[:, 1])
+
+
+def test_units_of_a_record_are_its_fields_own(tmp_path: Path) -> None:
+    import h5py
+
+    record = np.zeros(100, dtype=[("time", "f8"), ("force", "f8"), ("acc", "f4")])
+    record["time"], record["force"] = np.arange(100) / 50.0, np.arange(100.0)
+    for units in (["s", "kN", "m/s^2"], ["kN", "m/s^2"], "s, kN, m/s^2"):
+        with h5py.File(tmp_path / "log.h5", "w") as file:
+            file.create_dataset("log", data=record).attrs["units"] = units
+        recording = read_one(tmp_path / "log.h5")
+        assert [channel.unit for channel in recording.channels] == ["N", "m/s^2"]
+        np.testing.assert_allclose(recording["force"], 1e3 * record["force"])
+
+
+def test_clocks_named_after_their_channels_and_a_scope_s_interval(tmp_path: Path) -> None:
+    from scipy.io import savemat
+
+    clock, force = np.arange(100) / 50.0, np.sin(np.arange(100.0))
+    savemat(tmp_path / "a.mat", {"Data1_time_AI_1": clock, "Data1_AI_1": force})
+    savemat(tmp_path / "b.mat", {"A": force, "Tstart": -1.0, "Tinterval": 0.02, "Length": 100.0})
+    savemat(tmp_path / "c.mat", {"tout": clock, "yout": force})
+    for name in "abc":
+        recording = read_one(tmp_path / f"{name}.mat")
+        assert recording.sample_rate == pytest.approx(50.0)
+        assert len(recording.channels) == 1
+
+
+@pytest.mark.parametrize("module", ["gzip", "bz2", "lzma"])
+def test_a_packed_log_is_read_as_the_log(tmp_path: Path, module: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    rows = "time_s,force_N\n" + "".join(f"{k / 50:.2f},{k}\n" for k in range(100))
+    packed = import_module(module).compress(rows.encode())
+    (tmp_path / "log.csv.gz").write_bytes(packed)
+    recording = read_one(tmp_path / "log.csv.gz")
+    np.testing.assert_array_equal(recording["force"], np.arange(100.0))
+    assert recording.provenance.file == str(tmp_path / "log.csv.gz")
+    (tmp_path / "damaged.gz").write_bytes(packed[:-20])
+    with pytest.raises(InputError, match="damaged"):
+        read_one(tmp_path / "damaged.gz")
+    monkeypatch.setattr("ssmr_ident.readers.archive.reader.MOST_BYTES", 500)
+    with pytest.raises(InputError, match="unpacks to more"):
+        read_one(tmp_path / "log.csv.gz")
 
 
 def test_documents_that_are_zips_are_called_by_their_names(tmp_path: Path) -> None:

@@ -21,3 +21,10 @@ def test_a_json_of_samples_is_a_log_and_one_of_settings_or_results_is_not(tmp_pa
     files, errors = logs_in([tmp_path])
     assert [file.name for file in files] == ["arrays.json", "columns.json", "rows.json"]
     assert not errors
+
+
+def test_a_packed_log_is_one_and_other_packed_files_are_not(tmp_path: Path) -> None:
+    for name in ("log.csv.gz", "log.lvm.xz", "notes.md.gz", "backup.gz"):
+        (tmp_path / name).write_bytes(b"\x1f\x8b")
+    files, _ = logs_in([tmp_path])
+    assert [file.name for file in files] == ["log.csv.gz", "log.lvm.xz"]

@@ -119,6 +119,19 @@ def test_text_below_and_cells_beside_the_data(tmp_path: Path) -> None:
     assert "beside the data not read" in text
 
 
+def test_a_sheet_without_time_that_states_its_rate(tmp_path: Path) -> None:
+    book = openpyxl.Workbook()
+    sheet = book.active
+    for row in ([None, "Sampling rate", "200 Hz"], [], [None, "Force", "Accel"], [None, "N", "m/s²"]):
+        sheet.append(row)
+    for k in range(60):
+        sheet.append([None, float(k % 7), 0.1 * k])
+    book.save(tmp_path / "a.xlsx")
+    recording = read_one(tmp_path / "a.xlsx")
+    assert recording.names == ("force", "acceleration")
+    assert recording.sample_rate == pytest.approx(200.0)
+
+
 def test_booleans_are_no_volts(tmp_path: Path) -> None:
     rows = {f"S{i}": columns(i) for i in range(3)}
     rows["S2"][7][1] = True

@@ -49,7 +49,7 @@ class Reader(Protocol):
 
 
 class _Archive:
-    """Zips with logs in them, as phone apps export, and NumPy's arrays, alone or in archives."""
+    """Zips with logs in them, as phone apps export, single logs packed by gzip, bzip2 or xz, and NumPy's arrays."""
 
     NAMES = archive.NAMES
 

@@ -15,6 +15,7 @@ LOG_EXTENSIONS = frozenset(
         *(".wav", ".zip", ".bag", ".mcap", ".db3"),
     }
 )
+_PACKED = frozenset({".gz", ".bz2", ".xz"})  # behind a log's extension
 _HEAD = 65536  # bytes of a .json that are looked at
 _ARRAY = re.compile(rb"""(?:\[|\{)(?:\s*(?:"[\d.]{1,25}"\s*:\s*)?-?\d[\d.eE+-]{0,30}\s*,){8}""")  # so many are samples
 
@@ -62,6 +63,8 @@ def _of(folder: Path) -> list[Path]:
 def _is_log(entry: Path) -> bool:
     """True for a log's extension; a ``.json`` may be settings, properties or results, so its head is asked as well."""
     extension = entry.suffix.lower()
+    if extension in _PACKED:
+        return Path(entry.stem).suffix.lower() in LOG_EXTENSIONS
     if extension != ".json":
         return extension in LOG_EXTENSIONS
     try:

@@ -19,7 +19,8 @@ _BESIDE = 2**20  # bytes from which on a thread pays
 _OLE2 = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"
 _LFS = b"version https://git-lfs"
 _MARKS = {b"PAR1": "parquet", b"ARROW1": "feather", b"FEA1": "feather", b"#ROSBAG V2.0": "rosbag1",
-          b"\x89MCAP0\r\n": "mcap", b"SQLite format 3": "db3", b"\x93NUMPY": "npy"}  # fmt: skip
+          b"\x89MCAP0\r\n": "mcap", b"SQLite format 3": "db3", b"\x93NUMPY": "npy",
+          b"\x1f\x8b\x08": "gzip", b"BZh": "bzip2", b"\xfd7zXZ\x00": "xz"}  # fmt: skip
 
 
 class Digest:
@@ -49,7 +50,7 @@ class Source:
     data : bytes
     kind : str
         ``workbook``, ``tdms``, ``xml``, ``text``, ``zip``, ``npz``, ``mat``, ``hdf5``, ``parquet``, ``feather``,
-        ``wav``, ``rosbag1``, ``mcap`` or ``db3``.
+        ``wav``, ``rosbag1``, ``mcap``, ``db3``, ``gzip``, ``bzip2`` or ``xz``.
     shown : str
         What messages call it, where that is not the path: a member of a zip.
     notes : list of Note
@@ -152,6 +153,8 @@ def _kind(path: Path, data: bytes) -> str:
         return "hdf5"
     if len(data) > 128 and head.startswith(b"MATLAB") and data[126:128] in (b"IM", b"MI"):
         return "mat"
+    if head[257:262] == b"ustar":
+        raise InputError(where, "is a tar archive, which is not read", "Unpack it and name the logs in it.")
     if head.startswith(_OLE2):
         raise InputError(where, "is a password-protected workbook or an old .xls", "Save it as unprotected .xlsx.")
     if head.startswith(_LFS):

@@ -1,8 +1,11 @@
-"""Zips with logs in them, as phone apps export: every table with a time is read, the others are named."""
+"""Zips with logs in them, as phone apps export: every table with a time is read, the others are named; packed logs."""
 
 from __future__ import annotations
 
+import bz2
+import gzip
 import io
+import lzma
 import zipfile
 import zlib
 from collections.abc import Callable
@@ -17,13 +20,18 @@ from ssmr_ident.readers.arrays.named import MOST_BYTES, NamedArray, fields_of, n
 from ssmr_ident.readers.options import ReadOptions
 from ssmr_ident.readers.source import Source, source_of
 
-NAMES = ("zip", "npz", "npy")
+NAMES = ("zip", "npz", "npy", "gzip", "bzip2", "xz")
+_UNPACKED: dict[str, Callable[[io.BytesIO], gzip.GzipFile | bz2.BZ2File | lzma.LZMAFile]] = {
+    "gzip": lambda data: gzip.GzipFile(fileobj=data),
+    "bzip2": bz2.BZ2File,
+    "xz": lzma.LZMAFile,
+}
 _MOST_MEMBERS = 200
 _TABLES = (".csv", ".txt", ".tsv", ".dat", ".json", ".jsonl", ".lvm")
 
 
 def recognises(source: Source) -> bool:
-    return source.kind in ("zip", "npz", "npy")
+    return source.kind in NAMES
 
 
 def read_with(
@@ -41,6 +49,8 @@ def read_with(
     InputError
         Damaged, unpacks to too much, or no member is a log.
     """
+    if source.kind in _UNPACKED:
+        return _of_packed(source, options, read_source)
     if source.kind == "npy":
         return _arrays(source, [(".npy", source.data)], options)
     members = _members(source)
@@ -73,6 +83,28 @@ def read_with(
         source.inform(note)
         recordings = [replace(r, notes=(*r.notes, source.notes[-1])) for r in recordings]
     return recordings
+
+
+def _of_packed(
+    source: Source, options: ReadOptions, read_source: Callable[[Source, ReadOptions], list[Recording]]
+) -> list[Recording]:
+    """Recordings of one packed log, as of the log itself."""
+    opened, size = _UNPACKED[source.kind], 0
+    try:
+        with opened(io.BytesIO(source.data)) as stream:  # measured before anything of it is kept
+            while size <= MOST_BYTES and (part := stream.read(2**20)):
+                size += len(part)
+        if size > MOST_BYTES:
+            raise source.error(f"unpacks to more than {MOST_BYTES // 2**20} MB", "Split the recording.")
+        with opened(io.BytesIO(source.data)) as stream:
+            data = stream.read()
+    except (OSError, EOFError, zlib.error, lzma.LZMAError, ValueError) as error:
+        raise source.error(f"{source.kind} is damaged ({str(error)[:80]})", "Copy it again.") from error
+    packed = source_of(source.path, data, source.digest, source.name)
+    if packed.kind in _UNPACKED:
+        raise source.error(f"is {packed.kind} within {source.kind}", "Unpack it once and name what comes out.")
+    packed.inform(f"unpacked from {source.kind}")
+    return read_source(packed, options)
 
 
 def _members(source: Source) -> list[tuple[str, bytes]]:

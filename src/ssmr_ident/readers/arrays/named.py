@@ -66,10 +66,18 @@ class NamedArray:
 
 
 def fields_of(path: tuple[str, ...], values: np.ndarray, attributes: Mapping[str, Any]) -> list[NamedArray]:
-    """The fields of a record array, or the array itself."""
-    if values.dtype.names is None:
+    """The fields of a record array, or the array itself; what is said of all fields in turn goes to each its own."""
+    names = values.dtype.names
+    if names is None:
         return [NamedArray(path, values, attributes)]
-    return [NamedArray((*path, name), np.ascontiguousarray(values[name]), attributes) for name in values.dtype.names]
+    measured = [name for name in names if not is_time_name(name, shipped())]
+    units = _texts(attributes, _UNIT_KEYS)
+    units = [unit.strip() for unit in re.split(r"[,;|]", units[0])] if len(units) == 1 else units
+    owners = next((some for some in (list(names), measured) if len(some) == len(units)), [])
+    own = dict(zip(owners, units, strict=False))
+    common = {key: value for key, value in attributes.items() if str(key).lower() not in _UNIT_KEYS}
+    said = {name: common | ({"unit": own[name]} if name in own else {}) for name in names}
+    return [NamedArray((*path, name), np.ascontiguousarray(values[name]), said[name]) for name in names]
 
 
 def recordings_of_arrays(
@@ -93,6 +101,7 @@ def recordings_of_arrays(
         made = _columns(source, array, arrays, sign)
         if made:
             columns.append((array.group, made, array.attributes))
+    _name_clocks([column for _, made, _ in columns for column in made])
     if not columns:
         raise source.error(
             "holds no arrays of numbers", f"Names in it: {', '.join(sign.join(a.path) for a in arrays[:8]) or 'none'}."
@@ -144,6 +153,16 @@ def _columns(source: Source, array: NamedArray, arrays: list[NamedArray], sign: 
         Column(name, unit or None, np.ascontiguousarray(values[:, k], dtype=float))
         for k, (name, unit) in enumerate(zip(names, each, strict=True))
     ]
+
+
+def _name_clocks(columns: list[Column]) -> None:
+    """``AI_time_1`` is the clock of ``AI_1`` where it rises: the same words, but for the one that says time."""
+    words = {words_of(column.label) for column in columns}
+    for column in columns:
+        mine = words_of(column.label)
+        beside = tuple(word for word in mine if word != "time")
+        if len(beside) < len(mine) and beside in words and bool((np.diff(column.values) > 0).all()):
+            column.quantity = "time"
 
 
 def _scaled(source: Source, array: NamedArray, values: np.ndarray, label: str) -> np.ndarray:

@@ -18,6 +18,7 @@ from ssmr_ident.readers.table.clock import Clocked, clocked
 from ssmr_ident.readers.table.columns import Column, Table, all_finite
 from ssmr_ident.readers.table.fill_values import without_fill_values
 from ssmr_ident.readers.table.naming import named_columns
+from ssmr_ident.readers.table.runs import runs_of
 
 _BLANK = 0.9
 """Choice: share of filled cells below which a column that is filled at even distances has a rate of its own."""
@@ -33,6 +34,11 @@ def recordings_of(source: Source, reader: str, table: Table, options: ReadOption
     InputError
         Time or a unit is missing, or time cannot be used.
     """
+    runs = {} if options.columns else runs_of(table.columns, source.vocabulary)
+    if runs:
+        part = f"{table.part}, " if table.part else ""
+        each = [replace(table, columns=made, part=part + run, notes=list(table.notes)) for run, made in runs.items()]
+        return [recording for one in each for recording in recordings_of(source, reader, one, options)]
     columns = named_columns(source, table, options)
     without_fill_values(columns, table)
     groups = clocked(source, columns, options, table)

@@ -108,6 +108,9 @@ def split_header(header: str, vocabulary: Vocabulary | None = None) -> tuple[str
     header = header.strip().strip("\"'").strip()
     if len(header) > 4 * LONGEST:
         return header, None
+    bare = header[3:] if header.startswith("in ") else header[1:-1] if _CLOSING.get(header[-1:]) == header[:1] else ""
+    if bare and known.unit(bare) is not None:  # in s; [s]
+        return "", bare.strip()
     bracketed = _bracketed(header)
     if bracketed is not None and known.unit(bracketed[1]) is None:  # Accel, g (S/N: 123)
         left, found, right = bracketed[0].rpartition(", ")

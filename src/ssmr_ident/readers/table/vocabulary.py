@@ -17,7 +17,7 @@ from ssmr_ident.core.units import QUANTITY_OF_UNIT, Conversion, find_unit
 SHIPPED = Path(__file__).with_name("vocabulary.yaml")
 BESIDE = "vocabulary.yaml"
 LONGEST = 120  # characters of a header that are looked at; no name is longer
-_SECTIONS = ("modifiers", "others", "lengths", "counters", "ignored", "rates", "steps", "units_said", "series")
+_SECTIONS = ("modifiers", "others", "lengths", "counters", "ignored", "rates", "steps", "units_said", "series", "runs")
 _KEYS = {"quantities", "symbols", "conventions", "units", *_SECTIONS}
 _TOKEN = re.compile(r"[^\W\d_]+|\d+|[°%µ#]")
 _HUMP = re.compile(r"(?<=[a-zà-öø-ÿ])(?=[A-ZÀ-ÖØ-Þ])|(?<=[A-Z])(?=[A-Z][a-z])")
@@ -56,7 +56,7 @@ class Vocabulary:
         Quantities that are not asked about, with their SI unit.
     symbols : dict of str to tuple of str
     words : dict of str to frozenset of tuple of str
-        By section: modifiers, others, lengths, counters, ignored, rates, steps, units_said, series.
+        By section: modifiers, others, lengths, counters, ignored, rates, steps, units_said, series, runs.
     conventions : tuple of Convention
     units : dict of str to Conversion
         Beyond those of ``core.units``.

@@ -6,6 +6,7 @@ lines or columns. The longest run of rows gives delimiter and decimal sign, the 
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
@@ -29,6 +30,7 @@ from ssmr_ident.readers.text.line_forms import plain_rows
 from ssmr_ident.readers.text.numeric_run import NumberRun, TextRow, walk
 
 NAMES = ("csv", "mtestquattro")
+_FACTOR = re.compile(r"\s*\d(?:\.\d{1,9})?[eE][+-]?\d{1,3}\s?\*\s*\Z")
 MACHINE_WORDS = {"load", "standardkraft", "prüfkraft", "obciążenie", "kraft", "force", "charge", "carga", "fuerza"}
 
 
@@ -75,6 +77,7 @@ def recordings_of_text(
     if not within:
         text = without_cut_line(source, text, layout.dialect.delimiter)
     items = list(walk(text, layout))
+    _refuse_common_factor(source, items)
     blocks = _data_blocks(source, blocks_of(source, items, layout))
     _refuse_split_decimals(source, items, blocks, layout)
     recordings: list[Recording] = []
@@ -86,6 +89,17 @@ def recordings_of_text(
         part = f"{within}, {part}" if within and len(blocks) > 1 else within or part
         recordings += _recordings_of_block(source, text, block, part, layout, options, reader, place)
     return recordings
+
+
+def _refuse_common_factor(source: Source, items: list[NumberRun | TextRow]) -> None:
+    """``1.0e+03 *`` above a matrix, as MATLAB shows it: the numbers below are neither the values nor exact."""
+    for item in items:
+        if isinstance(item, TextRow) and _FACTOR.match(item.raw[:40]):
+            raise source.error(
+                f"{item.raw.strip()[:40]!r} stands above numbers that were printed for reading, to few digits",
+                "Export the values themselves, with writematrix or writetable.",
+                f"line {item.line}",
+            )
 
 
 def _data_blocks(source: Source, blocks: list[Block]) -> list[Block]:
@@ -172,6 +186,7 @@ def _recordings_of_block(
         rate_from=told,
         words=words,
     )
+    _units_beside(source, block, columns, lambda k: _words(text, block, layout, k))
     named = {w: _words(text, block, layout, k) for w, k in zip(words, block.text, strict=False)}
     table.columns = in_own_columns(source, columns, named, table)
     recordings = recordings_of(source, reader, table, options)
@@ -192,6 +207,23 @@ def _words(text: Text, block: Block, layout: Layout, number: int) -> Words:
         return [row[number] if number < len(row) else "" for row in found]
 
     return cells
+
+
+def _units_beside(source: Source, block: Block, columns: list[Column], cells_of: Callable[[int], Words]) -> None:
+    """Units that stand in a column of their own, the same one in every row, right of the numbers."""
+    known = source.vocabulary
+    for column in columns:
+        beside, heading = column.number + 1, heading_of(column.label, column.unit, known)
+        if column.unit or heading.unit or beside not in block.text:
+            continue
+        called = words_of(block.headings[beside].label)
+        if called and not known.has("units_said", called):
+            continue
+        cells = cells_of(beside)
+        unit = cells(slice(0, 1))[0]
+        if known.unit(unit) is not None and set(cells(slice(None))) == {unit}:
+            column.unit = unit
+            source.inform(f"{column.shown}: {unit}, as the cells beside it say")
 
 
 def _units_said(source: Source, columns: list[Column], facts: dict[str, str]) -> None:

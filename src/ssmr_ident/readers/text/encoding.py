@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from ssmr_ident.readers.source import Source
 from ssmr_ident.readers.table.vocabulary import words_of
 
-_CODE_PAGES = ("cp1252", "cp1250", "cp1251", "shift_jis", "gb18030")
-"""Of Western, Central and Eastern Europe, Japan and China; the first where no word says which."""
+_CODE_PAGES = ("cp1252", "cp1250", "cp1251", "cp1253", "cp1254", "shift_jis", "gb18030", "euc_kr")
+"""Of Western, Central and Eastern Europe, Greece, Turkey, Japan, China, Korea; the first where no word says which."""
+_OF_TWO_BYTES = ("shift_jis", "gb18030", "euc_kr")
 _MINUS = "\u2212".encode()  # as typesetters print it
 _HEAD = 16384  # bytes in which words are looked for
 
@@ -62,7 +63,7 @@ def text_of(source: Source) -> Text:
         except UnicodeDecodeError:
             encoding = max(_CODE_PAGES, key=lambda page: _words_known(source, data[:_HEAD], page))
             source.inform(f"text is not UTF-8; read as {encoding}")
-            if encoding in ("shift_jis", "gb18030"):  # a second byte may be a delimiter's
+            if encoding in _OF_TWO_BYTES:  # a second byte may be a delimiter's
                 data, encoding = data.decode(encoding, errors="replace").encode(), "utf-8"
         if encoding == "utf-8":
             data = data.replace(_MINUS, b"-")

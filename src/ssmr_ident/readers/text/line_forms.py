@@ -17,6 +17,7 @@ from ssmr_ident.readers.text.united_cells import without_units
 
 _LOOK = 200  # lines that say which form a log has
 _MOST = 0.6  # share of them that must have it
+_BROKEN_OVER = 3  # lines that a cell may be broken over
 _ARROW = re.compile(r"\[?([^\[\]>]{5,40}?)\]?[ \t]{0,3}(?:->|=>|→)[ \t]{0,3}|[\[(]([^\[\]()]{5,40})[\])][ \t:]{1,3}")
 _UPTIME = re.compile(r"\d{1,10}\.\d{2,9}\Z", re.ASCII)  # seconds since the start, as kernels print them
 _NAMED = re.compile(
@@ -30,6 +31,7 @@ _BETWEEN = re.compile(r"[\s,;|]*")
 
 def plain_rows(source: Source, text: Text) -> Text:
     """The text with every line as a row of cells, and a header where the lines themselves say the names."""
+    text = _with_whole_names(text)
     sample = _sample(text)
     if _share(sample, lambda line: '="' in line) >= _MOST:  # a spreadsheet keeps it as text, or as it is printed
         text = Text(text.data.replace(b'="', b'"'), text.encoding)
@@ -40,6 +42,25 @@ def plain_rows(source: Source, text: Text) -> Text:
     text = _without_brackets(source, text, sample)
     text = _without_names(source, text, _sample(text))
     return without_units(source, text, _sample(text))
+
+
+def _with_whole_names(text: Text) -> Text:
+    """Header cells that a spreadsheet broke over lines within quotes, on one line below blank ones in their place."""
+    head = text.data[: 400 * _LOOK].split(b"\n", _LOOK)[:_LOOK]
+    if not any(line.count(b'"') % 2 for line in head):
+        return text
+    made: list[bytes] = []
+    held: list[bytes] = []
+    for line in head:
+        held.append(line.rstrip(b"\r"))
+        whole = b" ".join(held)
+        if whole.count(b'"') % 2 and len(held) <= _BROKEN_OVER:
+            continue
+        if whole.count(b'"') % 2:
+            return text  # a quote that nothing closes
+        made += [*[b""] * (len(held) - 1), whole]
+        held = []
+    return Text(b"\n".join(made + held) + text.data[sum(map(len, head)) + len(head) - 1 :], text.encoding)
 
 
 def _without_brackets(source: Source, text: Text, sample: list[str]) -> Text:

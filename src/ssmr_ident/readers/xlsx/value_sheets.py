@@ -42,10 +42,11 @@ def _chosen(source: Source, sheets: list[Sheet], which: int | str) -> Sheet:
 
 def _is_wide(source: Source, sheet: Sheet) -> bool:
     widths = [sum(cell != "" for cell in row) for row in sheet.rows[-3:]]
-    headers = [
-        split_header(c, source.vocabulary) for row in sheet.rows[:_HEAD] for c in row if isinstance(c, str) and c
-    ]
-    united = any(unit and source.vocabulary.unit(unit) for _, unit in headers)
+    words = [cell for row in sheet.rows[:_HEAD] for cell in row if isinstance(cell, str) and cell]
+    units = [source.vocabulary.unit(word) for word in words]
+    united = any(unit is not None and unit.unit not in ("s", "V") for unit in units) or any(
+        unit and source.vocabulary.unit(unit) for _, unit in (split_header(word, source.vocabulary) for word in words)
+    )
     return bool(widths) and (max(widths) > 2 or (united and max(widths) == 2))
 
 
