@@ -161,7 +161,7 @@ def _values(
         columns = list(range(low, high))
     types = set(map(type, chain.from_iterable(body)))
     if types <= {float, int}:
-        values = np.array(body, dtype=float)
+        values = np.fromiter(chain.from_iterable(body), dtype=float).reshape(len(body), -1)  # half of np.array's time
         if not np.isfinite(values).all():  # a literal NaN in a numeric cell, which Excel never writes
             return _mixed(source, sheet, body, begin, columns, options, notes)
         return values, np.arange(begin + 1, begin + 1 + len(body)), False
