@@ -165,6 +165,9 @@ class Draft(Shown):
         for guess in self.guesses:
             keys = ("motion", "direction", "yaw_rate_deg_s", "speed_mm_s", "release_s")
             about = [_about(key, guess.fields[key]) for key in keys if key in guess.fields]
+            channels = guess.fields.get("channels", {})
+            about += [", ".join(f"{quantity} = {header}" for quantity, header in channels.items())] if channels else []
+            about += [f" # {guess.reasons['channels']}"] if "?" in guess.reasons.get("channels", "") else []
             lines.append(f"  {guess.file:<{width}}  {' '.join([str(guess.fields['experiment']), *about])}")
         lines += [f"  {file:<{width}}  left out: {reason}" for file, reason in self.aside]
         lines += [f"  {sentence}" for sentence in self.found]

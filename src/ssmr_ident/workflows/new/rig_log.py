@@ -58,8 +58,15 @@ def guess_rig(log: Log, experiment: str = "") -> LogGuess:
     found = quantities_of(recording)
     named, mapping, reason = dict(found.named), dict(found.mapping), found.reason
     _axis_as_acceleration(recording, named, mapping)
+    both = tuple(c.label or c.name for c in recording.channels if c.name in ("acceleration", "acceleration_2"))
     if found.alike.get("acceleration") and not set(FORCES) & set(named):
         reason = _foot_and_mass(recording, found.alike["acceleration"], mapping, named) or reason
+    elif len(both) == 2 and not set(FORCES) & set(named):
+        tried: dict[str, str] = {}
+        said = _foot_and_mass(recording, both, tried, named)
+        if "base_acceleration" in tried:  # else they are the two accelerometers that their names say
+            mapping, reason = mapping | tried, said
+            named.pop("acceleration_2")
     elif TODO in mapping.values():
         reason = _first_of_several(found.alike, mapping)
     rotary = bool(ROTARY & set(named)) and not {"force", "position", "acceleration", "base_acceleration"} & set(named)
