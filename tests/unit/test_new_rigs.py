@@ -124,7 +124,12 @@ def test_a_shaker_with_one_axis_named_is_a_rig(tmp_path: Path) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize(
     "heads",
-    ["table [m/s^2],mass [m/s^2]", "ch1 [m/s^2],ch2 [m/s^2]", "table_acc [m/s^2],mass_acc [m/s^2]", "acc1 [m/s^2],acc2 [m/s^2]"],
+    [
+        "table [m/s^2],mass [m/s^2]",
+        "ch1 [m/s^2],ch2 [m/s^2]",
+        "table_acc [m/s^2],mass_acc [m/s^2]",
+        "acc1 [m/s^2],acc2 [m/s^2]",
+    ],
 )
 def test_a_moved_foot_is_told_by_its_name_or_by_what_answers(tmp_path: Path, heads: str) -> None:
     made = event(np.random.default_rng(6), hertz=(7.0,), mass=1.0, seconds=15.0, band=(1.0, 20.0))

@@ -98,7 +98,10 @@ def test_the_column_says_which_is_the_day() -> None:
      ("deg", "rad", math.pi / 180),
      ("rpm", "rad/s", 0.10471975511965977), ("µm", "m", 1e-6), ("m/s²", "m/s^2", 1.0), ("Sec", "s", 1.0),
      ("°/s", "rad/s", math.pi / 180),
-     ("N/mm²", "Pa", 1e6), ("mm/min", "m/s", 1e-3 / 60), ("Volts", "V", 1.0), ("mN", "N", 1e-3), ("MN", "N", 1e6)],
+     ("N/mm²", "Pa", 1e6), ("mm/min", "m/s", 1e-3 / 60), ("Volts", "V", 1.0), ("mN", "N", 1e-3), ("MN", "N", 1e6),
+     ("N.m", "N m", 1.0), ("m.s-2", "m/s^2", 1.0), ("Ncm", "N m", 1e-2), ("min⁻¹", "rad/s", 0.10471975511965977),
+     ("tr/min", "rad/s", 0.10471975511965977), ("mph", "m/s", 0.44704), ("mbar", "Pa", 100.0), ("µε", "1", 1e-6),
+     ("mGal", "m/s^2", 1e-5), ("mils", "m", 2.54e-5)],
 )  # fmt: skip
 def test_units(unit: str, si: str, factor: float) -> None:
     assert to_si(unit).unit == si

@@ -39,6 +39,7 @@ INCH = 0.0254  # m, exact (1959)
 _TABLE: dict[str, tuple[str, float]] = {
     # force
     "N": ("N", 1.0), "kN": ("N", 1e3), "mN": ("N", 1e-3), "MN": ("N", 1e6), "uN": ("N", 1e-6), "daN": ("N", 10.0),
+    "cN": ("N", 1e-2), "kg-f": ("N", STANDARD_GRAVITY),
     "kips": ("N", 1e3 * POUND_FORCE),
     "ton-force": ("N", 1e3 * STANDARD_GRAVITY),
     "tf": ("N", 1e3 * STANDARD_GRAVITY), "dyn": ("N", 1e-5),
@@ -49,37 +50,47 @@ _TABLE: dict[str, tuple[str, float]] = {
     # length
     "m": ("m", 1.0), "mm": ("m", 1e-3), "cm": ("m", 1e-2), "um": ("m", 1e-6), "nm": ("m", 1e-9), "km": ("m", 1e3),
     "in": ("m", INCH), "inch": ("m", INCH), "inches": ("m", INCH), "ft": ("m", 12 * INCH),
-    "mil": ("m", INCH / 1e3),
+    "mil": ("m", INCH / 1e3), "mils": ("m", INCH / 1e3), "thou": ("m", INCH / 1e3), "dm": ("m", 0.1),
     # time
     "s": ("s", 1.0), "sec": ("s", 1.0), "secs": ("s", 1.0),
     "ms": ("s", 1e-3), "msec": ("s", 1e-3), "us": ("s", 1e-6), "usec": ("s", 1e-6), "ns": ("s", 1e-9),
     "nsec": ("s", 1e-9), "sek": ("s", 1.0),
     "min": ("s", 60.0), "minutes": ("s", 60.0), "h": ("s", 3600.0), "hour": ("s", 3600.0), "hours": ("s", 3600.0),
+    "hr": ("s", 3600.0), "hrs": ("s", 3600.0),
     # speed
     "m/s": ("m/s", 1.0), "mm/s": ("m/s", 1e-3), "cm/s": ("m/s", 1e-2), "um/s": ("m/s", 1e-6),
     "mm/min": ("m/s", 1e-3 / 60), "m/min": ("m/s", 1 / 60), "km/h": ("m/s", 1 / 3.6),
-    "in/s": ("m/s", INCH), "in/min": ("m/s", INCH / 60),
+    "in/s": ("m/s", INCH), "ips": ("m/s", INCH), "mph": ("m/s", 63360 * INCH / 3600), "knots": ("m/s", 1852 / 3600),
+    "in/min": ("m/s", INCH / 60),
     # acceleration; "g" alone is the unit of acceleration, a mass or a force in grams is written out
     "m/s^2": ("m/s^2", 1.0), "mm/s^2": ("m/s^2", 1e-3), "cm/s^2": ("m/s^2", 1e-2), "in/s^2": ("m/s^2", INCH),
     "g": ("m/s^2", STANDARD_GRAVITY), "mg": ("m/s^2", STANDARD_GRAVITY / 1e3), "g0": ("m/s^2", STANDARD_GRAVITY),
     "g_n": ("m/s^2", STANDARD_GRAVITY), "gn": ("m/s^2", STANDARD_GRAVITY), "ug": ("m/s^2", STANDARD_GRAVITY / 1e6),
     "milli-g": ("m/s^2", STANDARD_GRAVITY / 1e3), "mps2": ("m/s^2", 1.0), "gal": ("m/s^2", 1e-2),
+    "mGal": ("m/s^2", 1e-5),
     # angle and its rate
-    "rad": ("rad", 1.0), "mrad": ("rad", 1e-3), "deg": ("rad", math.pi / 180), "rad/s": ("rad/s", 1.0),
+    "rad": ("rad", 1.0), "mrad": ("rad", 1e-3), "urad": ("rad", 1e-6), "gon": ("rad", math.pi / 200),
+    "deg": ("rad", math.pi / 180), "rad/s": ("rad/s", 1.0),
     "mrad/s": ("rad/s", 1e-3), "deg/s": ("rad/s", math.pi / 180), "dps": ("rad/s", math.pi / 180),
     "rpm": ("rad/s", 2 * math.pi / 60), "U/min": ("rad/s", 2 * math.pi / 60), "rev": ("rad", 2 * math.pi),
     "mdps": ("rad/s", 1e-3 * math.pi / 180), "mps": ("m/s", 1.0), "kph": ("m/s", 1 / 3.6),
-    "1/min": ("rad/s", 2 * math.pi / 60),
+    "1/min": ("rad/s", 2 * math.pi / 60), "min^-1": ("rad/s", 2 * math.pi / 60), "min-1": ("rad/s", 2 * math.pi / 60),
+    "r/min": ("rad/s", 2 * math.pi / 60), "tr/min": ("rad/s", 2 * math.pi / 60), "rps": ("rad/s", 2 * math.pi),
+    "krpm": ("rad/s", 2e3 * math.pi / 60),
     "rad/s^2": ("rad/s^2", 1.0), "deg/s^2": ("rad/s^2", math.pi / 180),
     # stress, strain, moment
     "Pa": ("Pa", 1.0), "kPa": ("Pa", 1e3), "MPa": ("Pa", 1e6), "GPa": ("Pa", 1e9), "N/mm^2": ("Pa", 1e6),
-    "bar": ("Pa", 1e5), "psi": ("Pa", POUND_FORCE / INCH**2), "ksi": ("Pa", 1e3 * POUND_FORCE / INCH**2),
+    "bar": ("Pa", 1e5), "mbar": ("Pa", 100.0), "hPa": ("Pa", 100.0), "atm": ("Pa", 101325.0),
+    "psi": ("Pa", POUND_FORCE / INCH**2), "ksi": ("Pa", 1e3 * POUND_FORCE / INCH**2),
     "1": ("1", 1.0), "-": ("1", 1.0), "%": ("1", 1e-2), "mm/mm": ("1", 1.0), "m/m": ("1", 1.0),
     "in/in": ("1", 1.0),
-    "ustrain": ("1", 1e-6), "um/m": ("1", 1e-6),
+    "ustrain": ("1", 1e-6), "microstrain": ("1", 1e-6), "uε": ("1", 1e-6), "ue": ("1", 1e-6), "mε": ("1", 1e-3),
+    "um/m": ("1", 1e-6),
     "N m": ("N m", 1.0), "Nm": ("N m", 1.0), "N*m": ("N m", 1.0), "N-m": ("N m", 1.0), "kNm": ("N m", 1e3),
     "Nmm": ("N m", 1e-3),
-    "mNm": ("N m", 1e-3), "in-lb": ("N m", INCH * POUND_FORCE), "in lbf": ("N m", INCH * POUND_FORCE),
+    "mNm": ("N m", 1e-3), "Ncm": ("N m", 1e-2), "kgf-m": ("N m", STANDARD_GRAVITY),
+    "kgf-cm": ("N m", STANDARD_GRAVITY / 100), "in-lb": ("N m", INCH * POUND_FORCE),
+    "in lbf": ("N m", INCH * POUND_FORCE),
     "lbf in": ("N m", INCH * POUND_FORCE), "ft-lb": ("N m", 12 * INCH * POUND_FORCE),
     "in-lbf": ("N m", INCH * POUND_FORCE), "lbf-in": ("N m", INCH * POUND_FORCE), "lb-in": ("N m", INCH * POUND_FORCE),
     "ft-lbf": ("N m", 12 * INCH * POUND_FORCE), "lbf-ft": ("N m", 12 * INCH * POUND_FORCE),
@@ -87,7 +98,7 @@ _TABLE: dict[str, tuple[str, float]] = {
     "ozf-in": ("N m", INCH * POUND_FORCE / 16), "kgf m": ("N m", STANDARD_GRAVITY),
     "ft lbf": ("N m", 12 * INCH * POUND_FORCE), "lbf ft": ("N m", 12 * INCH * POUND_FORCE),
     # electrical and others that pass through
-    "VDC": ("V", 1.0), "mVDC": ("V", 1e-3), "V": ("V", 1.0), "mV": ("V", 1e-3), "uV": ("V", 1e-6),
+    "VDC": ("V", 1.0), "mVDC": ("V", 1e-3), "V": ("V", 1.0), "mV": ("V", 1e-3), "uV": ("V", 1e-6), "kV": ("V", 1e3),
     "A": ("A", 1.0), "mA": ("A", 1e-3), "Hz": ("Hz", 1.0), "kHz": ("Hz", 1e3),
     "S/s": ("Hz", 1.0), "Sa/s": ("Hz", 1.0), "sps": ("Hz", 1.0), "kS/s": ("Hz", 1e3), "ksps": ("Hz", 1e3),
     "kSa/s": ("Hz", 1e3), "MS/s": ("Hz", 1e6),
@@ -122,6 +133,7 @@ _PREFIXES = {"": "", "kilo": "k", "centi": "c", "milli": "m", "mili": "m", "micr
              "mega": "M", "giga": "G"}  # fmt: skip
 _WORDS = {"degrees": "deg", "degree": "deg", "grad": "deg", "millis": "ms", "micros": "us", "nanos": "ns",
           "micron": "um", "microns": "um", "feet": "ft", "pound": "lbf", "pounds": "lbf", "pounds-force": "lbf",
+          "pound-force": "lbf", "newton-meter": "N m", "newton-metre": "N m",
           "с": "s", "сек": "s", "мс": "ms", "мкс": "us", "н": "N", "кн": "kN", "м": "m", "мм": "mm", "м/с2": "m/s^2",
           "м/с^2": "m/s^2", "м/с": "m/s", "мм/с": "mm/s", "н*м": "N m", "град": "deg", "рад": "rad",
           "秒": "s", "毫秒": "ms",
@@ -160,6 +172,7 @@ def _plain(text: str) -> str:
 def _composed(text: str) -> Conversion | None:
     """A product of known units with powers: ``m s^-2``, ``in/s2``, ``m/s/s``, ``kg*m/s^2``, ``rad s-1``."""
     factor, total, sign = 1.0, [0] * 7, 1
+    text = re.sub(r"(?<=[a-zA-Z])\.(?=[a-zA-Z])", "*", text)  # N.m, as much of Europe writes products
     parts = re.split(r"([*/ ])", text.replace("(", "").replace(")", "").replace(" / ", "/").replace(" * ", "*"))
     for part in parts:
         if part in ("*", " ", ""):
