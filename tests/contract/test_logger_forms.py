@@ -311,6 +311,8 @@ def test_headerless_counts_are_asked_for(tmp_path: Path) -> None:
         "Run 1: Time (s),Run 1: Force (N),Run 2: Time (s),Run 2: Force (N)",
         "Time (s) Run #1,Force (N) Run #1,Time (s) Run #2,Force (N) Run #2",
         "Data Set 1 Time (s),Data Set 1 Force (N),Data Set 2 Time (s),Data Set 2 Force (N)",
+        "Specimen 1,,Specimen 2,\nTime,Force,Time,Force\n(s),(N),(s),(N)",
+        "Probe 1,,Probe 2,\nZeit (s),Kraft (N),Zeit (s),Kraft (N)",
     ],
 )
 def test_runs_side_by_side_are_recordings(tmp_path: Path, names: str) -> None:

@@ -25,7 +25,7 @@ def runs_of(columns: list[Column], known: Vocabulary) -> dict[str, list[Column]]
     found: dict[str, list[Column]] = {}
     names: dict[str, list[str]] = {}
     for column in columns:
-        run, label = _run_in(column.label[:LONGEST], known)
+        run, label = run_in(column.label[:LONGEST], known)
         if not run:
             return {}
         found.setdefault(run, []).append(column)
@@ -42,7 +42,7 @@ def runs_of(columns: list[Column], known: Vocabulary) -> dict[str, list[Column]]
     return found
 
 
-def _run_in(label: str, known: Vocabulary) -> tuple[str, str]:
+def run_in(label: str, known: Vocabulary) -> tuple[str, str]:
     """The run that a name says, and the name without it; empty for none."""
     for match in _RUN.finditer(label):
         for word, begin in ((match[1] + match[2], match.start()), (match[2], match.start(2))):

@@ -6,6 +6,7 @@ import re
 from dataclasses import dataclass, field
 
 from ssmr_ident.readers.table.headings import Heading, bare_unit, heading_of, is_units_row
+from ssmr_ident.readers.table.runs import run_in
 from ssmr_ident.readers.table.vocabulary import Vocabulary, words_of
 from ssmr_ident.readers.text.numbers import Dialect
 from ssmr_ident.readers.text.numeric_run import TextRow
@@ -92,6 +93,8 @@ def header_of(rows: list[TextRow], width: int, dialect: Dialect, vocabulary: Voc
             bare = _bare(units, width, vocabulary)
             if left and units is None:
                 cells, bare = _over_two_rows(cells, _fitting(left[-1].raw, width, dialect), vocabulary)
+            if left:
+                cells = _below_runs(cells, _padded(left[-1].cells, width), vocabulary)
             headings = [heading_of(name, unit or None, vocabulary) for name, unit in zip(cells, bare, strict=True)]
             return Header(headings, len(rows) - len(left), facts_of(left, dialect) | paired)
         if _marked(last.raw) and units is None and len(rows) - len(left) < 8 and len(left) > 1:
@@ -122,6 +125,18 @@ def _over_two_rows(
         elif upper and unit is not None and bare_unit(upper, vocabulary) is None:
             names[k], units[k] = upper, unit
     return names, units
+
+
+def _below_runs(cells: list[str], above: list[str] | None, vocabulary: Vocabulary) -> list[str]:
+    """Names with the run or specimen that a row above them says over the first column of each."""
+    marks = [mark for mark in above or () if mark]
+    if above is None or not above[0] or len(set(marks)) < 2 or not all(run_in(mark, vocabulary)[0] for mark in marks):
+        return cells
+    named, mark = [], ""
+    for cell, upper in zip(cells, above, strict=True):
+        mark = upper or mark
+        named.append(f"{mark}: {cell}")
+    return named
 
 
 def _names_said(rows: list[TextRow], width: int) -> list[str] | None:
