@@ -70,20 +70,19 @@ def shot(problem: Problem, node: Node, start: Start, continuity: Sequence[float]
             for _ in range(4):
                 trial = _joined(current, point, states, local, mean, precision, weight, sizes, damping)
                 moved = bounded(node, trial[0])
-                with np.errstate(over="ignore", invalid="ignore"):
-                    new = _shooting(
-                        problem,
-                        node,
-                        moved,
-                        trial[1],
-                        trial[2],
-                        borders,
-                        weights,
-                        weight,
-                        local_scales,
-                        mean,
-                        precision,
-                    )
+                new = _shooting(
+                    problem,
+                    node,
+                    moved,
+                    trial[1],
+                    trial[2],
+                    borders,
+                    weights,
+                    weight,
+                    local_scales,
+                    mean,
+                    precision,
+                )
                 if new[0] < current[0]:
                     better = True
                     break
@@ -105,6 +104,7 @@ def shot(problem: Problem, node: Node, start: Start, continuity: Sequence[float]
     return Start(point, tuple(nuisances))
 
 
+@np.errstate(over="ignore", invalid="ignore")  # a cost that is not finite is refused
 def _shooting(problem, node, point, states, local, borders, weights, weight, local_scales, mean, precision):
     """Cost of stretches and defects, and what their elimination takes."""
     model = Compiled.of(problem, node, point, problem.pieces)
