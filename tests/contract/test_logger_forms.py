@@ -324,6 +324,15 @@ def test_runs_side_by_side_are_recordings(tmp_path: Path, names: str) -> None:
     np.testing.assert_allclose(two["force"], 2 * FORCE[:50], atol=1e-5)
 
 
+def test_names_of_sensors_that_logged_nothing(tmp_path: Path) -> None:
+    rows = "".join(f"{t:.4f};{f:.5f};;\n" for t, f in zip(TIME, FORCE, strict=True))
+    for names in ("time_s;force_N;acc_g;x_mm", "Time;Force;Acc;X\ns;N;g;mm"):
+        (tmp_path / "log.csv").write_text(f"{names}\n{rows}")
+        recording = read_one(tmp_path / "log.csv")
+        assert recording.names == ("force",)
+        assert recording.channels[0].unit == "N"
+
+
 def test_names_broken_over_lines_within_quotes(tmp_path: Path) -> None:
     rows = "".join(f"{t:.4f},{f:.5f}\n" for t, f in zip(TIME, FORCE, strict=True))
     (tmp_path / "log.csv").write_text('"Time\n(s)","Force\n(N)"\n' + rows.replace("0.0400", "broken"))

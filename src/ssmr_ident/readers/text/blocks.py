@@ -87,7 +87,7 @@ def blocks_of(source: Source, items: list[NumberRun | TextRow], layout: Layout) 
             pending.append(item)
             continue
         filled = [row for row in pending if row.cells]
-        header = header_of(filled, item.values.shape[1], layout.dialect, source.vocabulary)
+        header = header_of(filled, item.values.shape[1], layout.dialect, source.vocabulary, item.written)
         facts = facts | header.facts
         previous = blocks[-1] if blocks else None
         results = any(_is_results(row) for row in filled[-4:])

@@ -48,8 +48,10 @@ class Header:
     names: list[str] = field(default_factory=list)
 
 
-def header_of(rows: list[TextRow], width: int, dialect: Dialect, vocabulary: Vocabulary) -> Header:
-    """Read the filled rows above a table of ``width`` columns."""
+def header_of(rows: list[TextRow], width: int, dialect: Dialect, vocabulary: Vocabulary, written: int = 0) -> Header:
+    """Read the filled rows above a table of ``width`` columns, of ``written`` with those that are blank at its end."""
+    if written > width:
+        rows = [_without_blank_columns(row, width, written, dialect) for row in rows]
     rows = [row for row in rows if row.raw.strip()]
     left = list(rows)
     units: list[str] | None = None
@@ -108,6 +110,15 @@ def header_of(rows: list[TextRow], width: int, dialect: Dialect, vocabulary: Voc
         return Header(headings, 1, facts_of(rows, dialect) | paired)
     blank = [Heading("", None, None) for _ in range(width)]
     return Header(blank, 0, facts_of(rows, dialect), _names(rows[-1].raw, dialect) if rows else [])
+
+
+def _without_blank_columns(row: TextRow, width: int, written: int, dialect: Dialect) -> TextRow:
+    """A row of names or units without those of columns that hold nothing."""
+    named = len(row.cells)
+    if named <= width or written not in (named, _cells_written(row.raw, dialect)) or _marked(row.raw):
+        return row
+    cells = row.cells[:width]
+    return TextRow(row.line, cells, dialect.delimiter.join(f'"{c}"' if dialect.delimiter in c else c for c in cells))
 
 
 def _over_two_rows(

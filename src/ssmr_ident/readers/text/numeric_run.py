@@ -39,6 +39,8 @@ class NumberRun:
         Lines with fewer cells than the run.
     text : tuple of int
         Columns of words.
+    written : int
+        Columns with those at the end that hold nothing.
     """
 
     values: np.ndarray
@@ -46,6 +48,7 @@ class NumberRun:
     timed: tuple[int, ...]
     short: list[int] = field(default_factory=list)
     text: tuple[int, ...] = ()
+    written: int = 0
 
 
 @dataclass
@@ -87,7 +90,10 @@ def walk(
             continue
         run = _Run(text, layout, width or _width(text, layout, position, cells))
         position, line_number = run.fill(position, line_number)
-        yield run.whole()
+        whole = run.whole()
+        sign = layout.dialect.delimiter
+        whole.written = whole.values.shape[1] if sign == " " else line.count(sign.encode()) + 1
+        yield whole
 
 
 def _line_at(data: bytes, position: int) -> tuple[bytes, int]:
