@@ -172,6 +172,21 @@ def test_a_batch_does_again_what_another_law_has_answered(law: Path) -> None:
 
 
 @pytest.mark.slow
+def test_every_process_of_a_sweep_knows_the_law_and_another_law_is_another_sweep(
+    law: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(law.parent)
+    call = ["sweep", "p3at-extended", "-e", "free_response", "--duration-s", "0.3", "--over", f"{ID}.corner_Hz=0,1,9"]
+    call += ["--effects", law.name, "--workers", "2", "-o", "out", "--json"]
+    first = json.loads(RUN.invoke(cli.app, call).stdout)
+    assert [run[f"{ID}.corner_Hz"] for run in first["runs"]] == [0.0, 1.0, 9.0]
+    assert len({run["ay_amplitude_m_s2"] for run in first["runs"]}) == 3
+    assert json.loads(RUN.invoke(cli.app, call).stdout)["reused"] == 3
+    law.write_text(LAW + "\n", encoding="utf-8")
+    assert json.loads(RUN.invoke(cli.app, call).stdout)["reused"] == 0
+
+
+@pytest.mark.slow
 def test_from_check_to_a_name_as_the_page_says(law: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Every command of the page, as it stands there: the law is checked, simulated, and named with its value."""
     monkeypatch.chdir(law.parent)

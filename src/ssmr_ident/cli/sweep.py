@@ -9,6 +9,7 @@ import typer
 
 from ssmr_ident.cli import completion
 from ssmr_ident.cli import experiment_options as asked
+from ssmr_ident.cli.effect_files import EffectFiles
 
 EXAMPLES = (
     "ident sweep p3at-extended --over lambda_max=0.2:1:9 --experiment swivel -o sweep",
@@ -54,6 +55,7 @@ def command(
     speed_m_s: asked.SpeedMS = 0.3,
     contact: asked.Contact = None,
     effect: asked.EffectIds = None,
+    effects: EffectFiles = None,
     duration_s: asked.DurationS = None,
     rate_hz: asked.RateHz = None,
     workers: Annotated[int | None, typer.Option(help="Processes; by default one per processor.")] = None,
@@ -84,7 +86,7 @@ def command(
         contact=contact,
     )  # fmt: skip
     axes = [axis_of(text) for text in over or ()]
-    points = points_of(params, axes, request, repeats)
+    points = points_of(params, axes, request, repeats, effects or ())
     with progress("simulating", hidden=quiet or as_json) as step:
         found = sweep(axes, points, output, workers, step)
     files = write(found, output, figure_format)

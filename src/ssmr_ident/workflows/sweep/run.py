@@ -8,6 +8,7 @@ import json
 import multiprocessing
 from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
+from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -20,6 +21,7 @@ from ssmr_ident.core.recording import Channel, Recording
 from ssmr_ident.core.shown import Shown
 from ssmr_ident.core.threads import processors
 from ssmr_ident.experiments import EXPERIMENTS
+from ssmr_ident.physics.effects import effects_of
 from ssmr_ident.physics.robot import robot_from_parameters
 from ssmr_ident.physics.slots import effect_values
 from ssmr_ident.readers import writers
@@ -47,6 +49,8 @@ class Point:
     repeat : int
     parameters : ParameterSet
     request : Request
+    laws : tuple of path
+        Python files with effects beyond the catalogue.
     """
 
     name: str
@@ -54,13 +58,15 @@ class Point:
     repeat: int
     parameters: ParameterSet
     request: Request
+    laws: tuple[Path, ...] = ()
 
     @property
     def digest(self) -> str:
         """Of everything that the run's numbers hang on."""
         asked = self.request
         run = (asked.experiment.name, asked.conditions, asked.duration, asked.rate, self.repeat)
-        facts = (__version__, parameters_text(self.parameters), repr(run))
+        laws = (hashlib.sha256(law.read_bytes()).hexdigest() for law in self.laws)
+        facts = (__version__, parameters_text(self.parameters), repr(run), *laws)
         return hashlib.sha256("\n".join(facts).encode()).hexdigest()
 
 
@@ -100,7 +106,9 @@ def _cell(value: Any) -> str:
     return f"{value:.4g}" if isinstance(value, float) else "–" if value is None else str(value)
 
 
-def points_of(params: str, axes: Sequence[Axis], request: Request, repeats: int = 1) -> tuple[Point, ...]:
+def points_of(
+    params: str, axes: Sequence[Axis], request: Request, repeats: int = 1, laws: Sequence[Path] = ()
+) -> tuple[Point, ...]:
     """The grid, last axis fastest.
 
     Raises
@@ -132,7 +140,7 @@ def points_of(params: str, axes: Sequence[Axis], request: Request, repeats: int 
         words = "-".join(f"{axis.name}={_short(value)}" for axis, value in zip(axes, values, strict=True))
         for repeat in range(repeats):
             name = f"{len(points):03d}-{words}" + (f"-{repeat + 1}" if repeats > 1 else "")
-            points.append(Point(name, values, repeat, parameters, own))
+            points.append(Point(name, values, repeat, parameters, own, tuple(laws)))
     return tuple(points)
 
 
@@ -178,7 +186,8 @@ def sweep(
         tell(done, len(points))
     count = min(workers or processors(), len(rest))
     if count > 1:
-        with ProcessPoolExecutor(count, mp_context=multiprocessing.get_context("spawn")) as pool:
+        spawned = multiprocessing.get_context("spawn")
+        with ProcessPoolExecutor(count, mp_context=spawned, initializer=_know, initargs=rest[0].laws) as pool:
             waiting = {pool.submit(run_point, folder, point): point for point in rest}
             for future in as_completed(waiting):
                 kept[waiting[future].name] = future.result()
@@ -198,6 +207,15 @@ def sweep(
         for point, one in zip(points, found, strict=True)
     )
     return Sweep(tuple(axes), rows, tuple(one["spectrum"] for one in found), len(points) - len(todo))
+
+
+_OWN = ExitStack()
+"""Of a process of the pool: what its catalogue has beside the package's."""
+
+
+def _know(*laws: Path) -> None:
+    """Take effects into this process' catalogue for as long as it lives."""
+    _OWN.enter_context(effects_of(*laws))
 
 
 def _kept(folder: Path, point: Point) -> dict[str, Any] | None:
