@@ -73,12 +73,25 @@ def test_a_run_stopped_at_its_beginning_or_its_work_says_so(tmp_path: Path, how:
             time.sleep(wait)
             process.send_signal(how)
             _, told = process.communicate(timeout=30)
-        if process.returncode == -how:  # before the interpreter had read the first of our lines
+        if wait < 1.0 and process.returncode in (-how, 1):  # before the interpreter had read the first of our lines
             continue
         assert process.returncode == 128 + how, told
         assert told.strip().splitlines()[-1] == "ident: stopped; what was being written is not there"
         assert "Traceback" not in told
         assert not list(tmp_path.iterdir())
+
+
+def test_a_run_asked_to_stop_when_it_has_just_ended_keeps_to_its_statuses(tmp_path: Path) -> None:
+    """From its last line to the interpreter's end is a tenth of a second."""
+    for wait in (0.0, 0.02, 0.04, 0.06, 0.1):
+        with subprocess.Popen(
+            [sys.executable, "-m", "ssmr_ident", "effects", "dry_friction", "--json"], stdout=subprocess.PIPE, text=True
+        ) as process:
+            assert process.stdout is not None
+            process.stdout.readline()
+            time.sleep(wait)
+            process.send_signal(signal.SIGTERM)
+            assert process.wait(timeout=30) in (0, 143)
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full here")

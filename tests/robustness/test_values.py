@@ -114,6 +114,12 @@ IN_RIG = {
     "no band": ("effects", "accelerometer: {bandwidth_hz: 0}\neffects", 6, "accelerometer.bandwidth_hz: is 0"),
     "no schema": ("schema: ssmr-ident/parameters/1\n", "", None, "schema: is missing, expected"),
     "a list as name": ("name: r", "name: [r]", 2, "name: is ['r'], expected text"),
+    "a question of a page": (
+        "value: 8.0",
+        f"source: {'x' * 5000}, value: TODO",
+        3,
+        "still says TODO: mass_kg: {source: xx",
+    ),
     "quoted": ("value: 8.0", 'value: "8.0"', 3, "mass_kg.value: is '8.0', expected a finite number"),
 }
 

@@ -85,6 +85,6 @@ def shown(value: Any) -> str:
 _SHOWN = _OneLine()
 
 
-def short(text: str) -> str:
+def short(text: str, longest: int = _LONGEST) -> str:
     """The beginning of a text that is longer than a line has room for."""
-    return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 1]}…"
+    return text if len(text) <= longest else f"{text[: longest - 1]}…"

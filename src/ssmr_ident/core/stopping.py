@@ -7,12 +7,13 @@ polite way to work, and ends the process if it has not.
 
 from __future__ import annotations
 
+import atexit
 import os
 import signal
 import sys
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from types import FrameType
@@ -33,18 +34,27 @@ def asked() -> int:
 
 @contextmanager
 def stoppable() -> Iterator[None]:
-    """Turn SIGINT and SIGTERM into ``KeyboardInterrupt``, and into an end where nobody hears it."""
+    """Turn SIGINT and SIGTERM into ``KeyboardInterrupt``, and into an end where nobody hears it.
+
+    Afterwards either ends the process at once, until its last threads have ended. The tenth of a second in which the
+    interpreter then takes itself apart hears none: all is done, and it would die of the signal and say nothing.
+    """
     numbers = (signal.SIGINT, signal.SIGTERM)
-    before = {number: signal.signal(number, _stop) for number in numbers}
+    atexit.register(_heard_by, signal.SIG_IGN, numbers)
+    _heard_by(_stop, numbers)
     woken, written = _watched(numbers) if os.name == "posix" else (-1, -1)
     try:
         yield
     finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
+        _heard_by(_end, numbers)
         if woken != -1:
             signal.set_wakeup_fd(woken)
             os.close(written)  # the thread reads its end and ends
+
+
+def _heard_by(handler: Callable[[int, FrameType | None], None] | signal.Handlers, numbers: tuple[int, ...]) -> None:
+    for number in numbers:
+        signal.signal(number, handler)
 
 
 def _watched(numbers: tuple[int, ...]) -> tuple[int, int]:
@@ -58,6 +68,10 @@ def _watched(numbers: tuple[int, ...]) -> tuple[int, int]:
 def _stop(number: int, frame: FrameType | None) -> None:
     _ASKED.append(number)
     raise KeyboardInterrupt
+
+
+def _end(number: int, frame: FrameType | None) -> None:
+    end_now(number)
 
 
 def _watch(reading: int, numbers: tuple[int, ...]) -> None:

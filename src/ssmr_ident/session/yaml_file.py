@@ -10,7 +10,7 @@ from typing import Any
 import yaml
 
 from ssmr_ident.core.errors import InputError
-from ssmr_ident.core.place import Place, Way, shown
+from ssmr_ident.core.place import Place, Way, short, shown
 
 _LARGEST_KEY = 10**18  # of a whole number; one of thousands of digits cannot be printed in an error
 _SIZE_LIMIT = 4_000_000  # bytes; a hand-written file is a thousand times smaller
@@ -131,6 +131,6 @@ def _refuse_questions(path: Path, text: str) -> None:
         if asked:
             raise InputError(
                 f"{path}:{number}",
-                f"still says TODO: {line.partition('#')[0].strip(' -')}",
-                f"Fill in: {asked[2].strip()}" if asked[2] else "Fill this line in",
+                f"still says TODO: {short(line.partition('#')[0].strip(' -'), 160)}",
+                f"Fill in: {short(asked[2].strip(), 300)}" if asked[2] else "Fill this line in",
             )
