@@ -12,6 +12,7 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
+from ssmr_ident.core.atomic import make_folder
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.shown import Shown
 from ssmr_proof.blind import DIAGNOSE, BlindRun, run_blind
@@ -178,5 +179,5 @@ def _emptied(out: Path) -> None:
             shutil.rmtree(out / name, ignore_errors=True)
         for name in ("seals.csv", "proof.csv", "proof.html", "proof.md"):
             (out / name).unlink(missing_ok=True)
-    (out / "sessions").mkdir(parents=True, exist_ok=True)
-    (out / "answers").mkdir(exist_ok=True)
+    make_folder(out / "sessions")
+    make_folder(out / "answers")

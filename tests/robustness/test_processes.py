@@ -42,6 +42,28 @@ def _lives(process: int) -> bool:
         return False
 
 
+def test_a_signal_in_a_destructor_says_no_more_than_any_other() -> None:
+    code = """
+import os, signal, time
+from ssmr_ident.__main__ import main
+import ssmr_ident.cli
+
+class Slow:
+    def __del__(self):
+        os.kill(os.getpid(), signal.SIGINT)
+        time.sleep(0.1)
+
+def run():
+    del [Slow()][0]
+    time.sleep(60)
+
+ssmr_ident.cli.main = run
+main()
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False)
+    assert (done.returncode, done.stderr) == (130, "ident: stopped; what was being written is not there\n")
+
+
 @pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM])
 def test_a_loop_that_hears_nothing_ends_all_the_same(tmp_path: Path, how: signal.Signals) -> None:
     half = tmp_path / "half"

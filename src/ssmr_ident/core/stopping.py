@@ -41,6 +41,7 @@ def stoppable() -> Iterator[None]:
     """
     numbers = (signal.SIGINT, signal.SIGTERM)
     atexit.register(_heard_by, signal.SIG_IGN, numbers)
+    sys.unraisablehook = _unraisable
     _heard_by(_stop, numbers)
     woken, written = _watched(numbers) if os.name == "posix" else (-1, -1)
     try:
@@ -72,6 +73,12 @@ def _stop(number: int, frame: FrameType | None) -> None:
 
 def _end(number: int, frame: FrameType | None) -> None:
     end_now(number)
+
+
+def _unraisable(told: sys.UnraisableHookArgs) -> None:
+    """A signal in the midst of a destructor can be raised to nobody: the thread ends the run, without more words."""
+    if not (_ASKED and told.exc_type is KeyboardInterrupt):
+        sys.__unraisablehook__(told)
 
 
 def _watch(reading: int, numbers: tuple[int, ...]) -> None:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ssmr_ident.core.errors import InputError
+from ssmr_ident.core.atomic import make_folder
 from ssmr_ident.core.shown import Shown
 from ssmr_ident.workflows.batch.cluster import run_on_cluster
 from ssmr_ident.workflows.batch.held import held
@@ -82,12 +82,10 @@ def run_batch(
     """
     parquet()
     folder, out = Path(folder), Path(out)
-    if out.exists() and not out.is_dir():
-        raise InputError(str(out), "is a file, expected a folder", "Give another name with -o")
     params = str(Path(params).absolute()) if Path(params).is_file() else params
     files = tuple(str(Path(file).absolute()) for file in effects)
     tasks = find_tasks(folder, out, params, diagnose, report, seed, files)
-    out.mkdir(parents=True, exist_ok=True)
+    make_folder(out)
     with held(out):
         rows = {task.name: row for task in tasks if (row := task.done()) and (row["status"] == "done" or not retry)}
         kept = len(rows)

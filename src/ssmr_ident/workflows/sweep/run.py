@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from ssmr_ident import __version__
-from ssmr_ident.core.atomic import write_text
+from ssmr_ident.core.atomic import make_folder, write_text
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.core.recording import Channel, Recording
@@ -169,10 +169,7 @@ def sweep(
     progress : callable, optional
         Called with the runs that are done, and all of them.
     """
-    if output.exists() and not output.is_dir():
-        raise InputError(str(output), "is a file, a folder is wanted", "Give another -o")
-    folder = output / "runs"
-    folder.mkdir(parents=True, exist_ok=True)
+    folder = make_folder(output / "runs")
     tell = progress or (lambda done, total: None)
     kept = {point.name: _kept(folder, point) for point in points}
     todo = [point for point in points if kept[point.name] is None]
