@@ -225,6 +225,17 @@ def test_text_from_outside_is_escaped() -> None:
     assert "<img" not in page
 
 
+def test_a_name_that_turns_the_line_round_or_fills_a_page_is_shown_as_text() -> None:
+    name = "<b>\"quoted' \u202egpj.exe " + "x" * 4000
+    page = render_report(replace(nothing(), session=name), f"ident diagnose {name}", 0)
+    assert "\u202e" not in page
+    assert "U+202E" in page
+    assert "<b>&quot;" not in page
+    assert "&lt;b&gt;" in page
+    assert "x" * 4000 in page
+    assert "overflow-wrap: break-word" in page  # so that it cannot push the page wider
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("made", EVERY)
 def test_a_diagnosis_without_figures_still_makes_a_page(made: Callable[[], Diagnosis]) -> None:
