@@ -6,6 +6,8 @@ import hashlib
 import itertools
 import json
 import multiprocessing
+import os
+import threading
 from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from contextlib import ExitStack
@@ -211,8 +213,15 @@ _OWN = ExitStack()
 
 
 def _know(*laws: Path) -> None:
-    """Take effects into this process' catalogue for as long as it lives."""
+    """Take effects into this process' catalogue for as long as it lives, which is no longer than who began it."""
+    threading.Thread(target=_end_with, args=(multiprocessing.parent_process(),), daemon=True).start()
     _OWN.enter_context(effects_of(*laws))
+
+
+def _end_with(parent: Any) -> None:
+    """A process that was killed cannot end those of its pool, and they would wait for work for ever."""
+    parent.join()
+    os._exit(1)
 
 
 def _kept(folder: Path, point: Point) -> dict[str, Any] | None:
