@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 from ssmr_ident.doctor.decide import MISSING, NOTHING, UNDETERMINED, decide
 from ssmr_ident.doctor.laws import best_shape
+from ssmr_ident.doctor.left import Left
 from ssmr_ident.doctor.table import Row
 
 SAMPLES = 5000.0
@@ -128,3 +130,21 @@ def test_where_much_is_left_a_pair_has_to_gain_in_sizes_of_that() -> None:
     assert decide([BASE, law, play, pair]).chosen is play
     certain = row("nonlinear_stiffness sensor_bandwidth", "static_force sensor_chain", 20_800.0, 7400.0, 6.0)
     assert decide([BASE, law, play, certain]).chosen is certain
+
+
+def test_coloured_noise_is_nothing_that_a_second_effect_has_to_take() -> None:
+    law = row("free_play", "static_force", 20_000.0, 9000.0, 1.9)
+    pair = row("free_play viscoelastic_relaxation", "static_force memory", 21_000.0, 7000.0, 1.55)
+    assert decide([BASE, law, pair]).chosen is law
+    noise = replace(pair, left=Left(0.5, 2.0, "a.csv"))
+    assert decide([BASE, law, noise]).chosen is noise
+
+
+def test_a_law_of_another_kind_does_not_stand_for_a_kind_that_is_certainly_better() -> None:
+    law = row("nonlinear_stiffness", "static_force", 20_000.0, 9000.0, 1.34)
+    shape = row("unlisted", "static_force", 19_900.0, 9100.0, 1.35, generic=True)
+    both = row("nonlinear_stiffness unlisted", "static_force static_force", 20_100.0, 8700.0, 1.32, generic=True)
+    over_time = row("unlisted", "changing", 22_000.0, 5000.0, 1.0, generic=True)
+    found = decide([BASE, law, shape, both, over_time])
+    assert found.chosen is over_time
+    assert not found.listed

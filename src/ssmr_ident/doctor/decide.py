@@ -85,8 +85,11 @@ def decide(rows: Sequence[Row]) -> Decision:
 
 def needed(law: Row, left: float, rows: Sequence[Row]) -> bool:
     """Whether a law that takes most of the misfit is there in another formula: its kind in any shape, as smooth as that
-    is, is certainly worse without it than beside it."""
+    is, is certainly worse without it than beside it, and no other kind alone is better than both."""
     own = [r for r in rows if r.generic and set(r.kinds) == {law.kinds[0]}]
+    other = [r.log_evidence for r in rows if r.generic and len(r.ids) == 1 and r.kinds[0] != law.kinds[0]]
+    if max(other, default=-math.inf) > max(r.log_evidence for r in (law, *own)) + SECOND:
+        return False
     beside = [r.log_evidence for r in own if len(r.ids) == 2 and r.ids[0] == law.ids[0]]
     without = [r.log_evidence for r in own if len(r.ids) == 1]
     return left < HALVED and bool(beside) and max(beside) > max(without, default=math.inf) + SECOND
@@ -104,9 +107,15 @@ def stands(row: Row, rows: Sequence[Row]) -> bool:
     for alone in (rows for rows in found if rows):
         best = max(r.log_evidence for r in alone)
         least = min(r.over for r in alone)
-        if max(row.over**2 - 1.0, 0.0) >= HALVED * max(least**2 - 1.0, 0.0) or row.log_evidence < best + SECOND:
+        if _beyond_noise(row) >= HALVED * max(least**2 - 1.0, 0.0) or row.log_evidence < best + SECOND:
             return False
     return True
+
+
+def _beyond_noise(row: Row) -> float:
+    """Variance that is left beyond white noise, in units of that; nought where it knows nothing of the motion."""
+    noise = row.left.follows < FOLLOWS and row.left.uneven < UNEVEN
+    return 0.0 if noise else max(row.over**2 - 1.0, 0.0)
 
 
 def _alone(pair: Row, which: int, rows: Sequence[Row]) -> list[Row]:
