@@ -21,6 +21,7 @@ from ssmr_ident.doctor.result import Examined, answer, errors, predictions
 from ssmr_ident.doctor.search import searched
 from ssmr_ident.doctor.table import Row
 from ssmr_ident.estimate.problem import problem_of
+from ssmr_ident.estimate.stretches import in_stretches
 from ssmr_ident.estimate.values import Problem
 from ssmr_ident.experiments import EXPERIMENTS
 from ssmr_ident.experiments.campaign import Campaign, Measurement
@@ -88,11 +89,16 @@ def examined(campaign: Campaign, known: ParameterSet, progress: Progress | None,
     if any("acceleration_2" in m.recording for m in campaign.measurements):
         notes.append("acceleration_2 was not compared: a rig of one mass moves as one")
     search = searched(fitted, budget, progress)
+    horizon = search.problem.horizon
+    if math.isfinite(horizon):
+        kept = in_stretches(kept, horizon) if kept is not None else None
+        notes.append(
+            f"the motion is chaotic: after {horizon:.2g} periods a start no longer tells where it is, so that the "
+            "recordings were fitted in stretches of that length, each with a start of its own"
+        )
     rows = search.rows()
-    first = next(r for r in rows if not r.ids)
-    assert first.fit is not None
-    base = replace(first, left=left(search.problem, first.fit))
-    rows = tuple(base if r is first else r for r in rows)
+    rows = tuple(_with_left(r, search.problem) if len(r.ids) != 1 and not r.generic else r for r in rows)
+    base = next(r for r in rows if not r.ids)
     decision = decide(rows)
     if kept is not None:
         wanted = {id(r): r for r in (*rows[:SHOWN], base, *([decision.chosen] if decision.chosen else []))}
@@ -126,6 +132,11 @@ def roles(campaign: Campaign) -> tuple[list[Measurement], list[Measurement], boo
     if heldout or len(targets) == 1:
         return targets, heldout, False
     return (*keep_back(targets), True)
+
+
+def _with_left(row: Row, problem: Problem) -> Row:
+    assert row.fit is not None
+    return replace(row, left=left(problem, row.fit))
 
 
 def _with_heldout(row: Row, kept: Problem, known: ParameterSet) -> Row:

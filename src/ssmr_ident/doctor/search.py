@@ -11,7 +11,7 @@ import numpy as np
 
 from ssmr_ident.doctor.decide import FRICTION
 from ssmr_ident.doctor.laws import Proposal, proposals, simpler
-from ssmr_ident.doctor.rules import SECOND, TIE, UNIT
+from ssmr_ident.doctor.rules import FORMULA, SECOND, TIE, UNIT
 from ssmr_ident.doctor.table import Row, row_of
 from ssmr_ident.estimate.coarser import coarser
 from ssmr_ident.estimate.exact import polish
@@ -23,6 +23,7 @@ from ssmr_ident.estimate.noise import left_white, own_noise
 from ssmr_ident.estimate.regression import regressed
 from ssmr_ident.estimate.shooting import shot
 from ssmr_ident.estimate.smoother import smoothed
+from ssmr_ident.estimate.stretches import in_stretches, predictable, sampled
 from ssmr_ident.estimate.values import Fit, Problem, Start, with_noises
 from ssmr_ident.physics.effects import CATALOGUE
 
@@ -33,7 +34,8 @@ TRIED_LAWS, FULL_LAWS = 7, 3
 """Named laws that get a short fit, most promising first, two formulas of one effect at the most; and a full one."""
 
 LOST = 3
-"""Of these, the most promising that are begun by multiple shooting where a short fit ends above the baseline."""
+"""Of these, the most promising that are begun by multiple shooting where a short fit stays far above the fit along
+whose motion they promise most."""
 
 BEGUN, SHORT, FULL = 2, 6, 25
 """Gauss-Newton steps: the fewest move the states at the begin, in which all is linear."""
@@ -50,8 +52,9 @@ FULL_KINDS = 4
 FIRSTS = 2
 """Named effects, the best ones, beside which a second is looked for."""
 
-MOSTLY = 0.3
-"""Share of its base's cost below which a fit from nearby is on its way, and needs no other start."""
+NEAR = 200.0
+"""Log evidence below the best one, on every sample, up to which a model is fitted to every sample; so is what leaves
+``FORMULA`` of the misfit at the most, for means over several samples are a little off themselves."""
 
 FAR_OFF = 2.0
 """Factor on the least cost beyond which a short fit is not followed where another explains everything."""
@@ -100,7 +103,8 @@ def searched(problem: Problem, budget: float = math.inf, progress: Progress | No
     progress : callable, optional
     """
     say = progress or (lambda stage, done, total: None)
-    whole, problem = problem, coarser(problem)
+    whole = problem
+    problem, begins = sampled(coarser(whole))
     search = Search(problem, time.monotonic() + budget)
     say("fitting the baseline", 0, 1)
     paths = [smoothed(p, problem.frequency, problem.size) for p in problem.pieces]
@@ -116,18 +120,17 @@ def searched(problem: Problem, budget: float = math.inf, progress: Progress | No
             continue
         node = base.node.with_member(member)
         short.append(polish(problem, node, Start(joined(node, base), carried(node, base)), SHORT))
-    for rank, fit in enumerate(sorted(short, key=lambda f: f.cost)):
+    best = {f.node.name: f for f in sorted(short, key=lambda f: -f.cost)}  # of several starts of one
+    for rank, fit in enumerate(sorted(best.values(), key=lambda f: f.cost)):
         search.add(_finished(search, fit, base, paths) if rank < FULL_KINDS and not search.late else fit)
     _offered_back(search)
     search = _with_white(search)
-    leader = search.rows()[0].fit
-    assert leader is not None
-    _named(search, say, leader)
+    _named_along(search, say)
     _offered_back(search)
     search = _with_own_noise(search)
     _second(search, say)
     _offered_back(search)
-    return search if problem is whole else _in_full(search, whole, say)
+    return search if problem is whole else _in_full(search, whole, begins, say)
 
 
 def kinds(problem: Problem, paths: Sequence[Array]) -> list[Member]:
@@ -140,9 +143,10 @@ def kinds(problem: Problem, paths: Sequence[Array]) -> list[Member]:
     found += [rider(problem, ratio * f) for ratio in (0.6, 1.5)]
     piece = problem.pieces[0]
     if any(p.driven for p in problem.pieces):
-        found.append(delay(piece.step * piece.every))
+        found.append(delay(piece.step * piece.every, problem.begin))
     if 2 in piece.orders:
-        found.append(lag(min(3.0 * f, 0.5 * problem.bandwidth_hz), problem.bandwidth_hz))
+        most = min(0.5 * problem.bandwidth_hz, 0.4 * piece.rate)
+        found += [lag(min(ratio * f, most), problem.bandwidth_hz) for ratio in (3.0, 12.0)]
     found += at_outputs(problem)
     ranges = {p.name: p for p in CATALOGUE["sensor_saturation"].parameters}
     for c, (name, unit) in enumerate(zip(piece.channels, piece.units, strict=True)):
@@ -188,14 +192,14 @@ def carried(node: Node, fit: Fit) -> tuple[Array, ...]:
 
 
 def _finished(search: Search, near: Fit, base: Fit, paths: Sequence[Array], point: Array | None = None) -> Fit:
-    """A short fit to its end; by multiple shooting too, unless it is on its way or another one explains everything."""
+    """A short fit to its end; by multiple shooting too, unless it or another one explains everything."""
     problem = search.problem
     least = min((f for f in search.fits), key=lambda f: f.cost)
     explained = over(least, problem) < NEAR_NOISE
     if explained and near.cost > FAR_OFF * least.cost:
         return near
     full = polish(problem, near.node, Start(near.point, near.nuisances), FULL)
-    if full.cost < MOSTLY * base.cost or over(full, problem) < NEAR_NOISE or explained:
+    if over(full, problem) < NEAR_NOISE or explained:
         return full
     if point is None:
         point = regressed(problem, paths, near.node) if near.node.generic else joined(near.node, base)
@@ -225,6 +229,17 @@ def _offered_back(search: Search) -> None:
             search.add(polish(search.problem, node, Start(joined(node, fit), carried(node, fit)), SHORT))
 
 
+def _named_along(search: Search, say: Progress, beside: Sequence[Member] = (), begun: Sequence[Fit] = ()) -> None:
+    """Named laws along the best motion, and again where one of them follows it better than what they began from."""
+    near = min((*begun, *(() if begun else search.fits)), key=lambda f: f.cost)
+    while not search.late:
+        _named(search, say, near, beside)
+        best = min((f for f in search.fits if set(beside) <= set(f.node.members)), key=lambda f: f.cost, default=near)
+        if best.cost > near.cost - 2.0 * SECOND:
+            return
+        near = best
+
+
 def _named(search: Search, say: Progress, best: Fit, beside: Sequence[Member] = ()) -> None:
     """Named laws beside given members, begun along the motion of a fit that follows it well."""
     paths = motion(search.problem, best)
@@ -240,7 +255,7 @@ def _named(search: Search, say: Progress, best: Fit, beside: Sequence[Member] = 
             search.untried.append(offer.node.name)
             continue
         near = polish(problem, offer.node, Start(offer.start.point, carried(offer.node, best)), SHORT)
-        if near.cost > base.cost and index < LOST:  # above what it contains
+        if near.cost > FAR_OFF * best.cost and index < LOST:
             far = polish(problem, offer.node, shot(problem, offer.node, offer.start), SHORT)
             near = min(near, far, key=lambda f: f.cost)
         short.append((near, offer.start.point))
@@ -296,23 +311,39 @@ def _with_own_noise(search: Search) -> Search:
     return new
 
 
-def _in_full(search: Search, whole: Problem, say: Progress) -> Search:
+def _in_full(search: Search, whole: Problem, begins: Sequence[int], say: Progress) -> Search:
     """The table again on every sample: what comes near the best, and of each kind the best single member."""
     rows = search.rows()
     best = rows[0].fit
     assert best is not None
-    near = [r for r in rows if r.fit is not None and r.fit.cost < FAR_OFF * best.cost]
+    share = search.problem.samples / whole.samples
+    base = next(f for f in search.fits if not f.node.members)
+    reach = best.cost + max(2.0 * NEAR * share, FORMULA * (base.cost - best.cost))
+    near = [r for r in rows if r.fit is not None and r.fit.cost < reach]
     kept = near + [r for r in rows if r not in near and _judges(r, rows, near)]
-    found = _again(whole, best, SHORT)
+    whole = in_stretches(whole, predictable(search.problem, best))
+    chaotic = math.isfinite(whole.horizon)
+
+    if chaotic:  # what a start does to the motion is no longer linear: the best one's states begin all others
+        paths = [smoothed(p, whole.frequency, whole.size) for p in whole.pieces]
+        found = polish(whole, best.node, shot(whole, best.node, Start(best.point, paths=tuple(paths))), SHORT)
+    else:
+        found = polish(whole, best.node, _at_begins(best, begins), SHORT)
     problem = left_white(whole, found)
     problem = with_noises(problem, own_noise(problem, found))
     new = replace(search, problem=problem, fits=[], far=[r for r in rows if r not in kept])
     for index, row in enumerate(kept):
         say("every sample", index, len(kept))
         assert row.fit is not None
-        steps = SHORT if row in near or not row.ids else BEGUN
-        new.add(_again(problem, found if row.fit is best else row.fit, steps))
+        start = Start(row.fit.point, carried(row.fit.node, found)) if chaotic else _at_begins(row.fit, begins)
+        start = Start(found.point, found.nuisances) if row.fit is best else start
+        new.add(polish(problem, row.fit.node, start, SHORT if row in near or not row.ids else BEGUN))
     return new
+
+
+def _at_begins(fit: Fit, begins: Sequence[int]) -> Start:
+    """A fit's point with its nuisances at the begins of the recordings."""
+    return Start(fit.point, tuple(fit.nuisances[k] for k in begins))
 
 
 def _judges(row: Row, rows: Sequence[Row], near: Sequence[Row]) -> bool:
@@ -335,7 +366,7 @@ def _second(search: Search, say: Progress) -> None:
         assert row.fit is not None
         _beside(search, say, row.fit)
         best = search.rows()[0]
-        if not best.generic and best.over < OVER_NOISE_SECOND:
+        if row.over < OVER_NOISE_SECOND or (not best.generic and best.over < OVER_NOISE_SECOND):
             return
 
 
@@ -350,24 +381,24 @@ def _beside(search: Search, say: Progress, first: Fit) -> None:
         own += [memory(problem, paths)] if law.kind == STATIC else [static(problem, paths, "v")]
     shaped = [search.add(_near(problem, first, m, FULL)) for m in own]
     alone, beside = row_of(first, problem), [row_of(f, problem) for f in shaped]
-    explained = min((r.over for r in beside), default=math.inf) < OVER_NOISE_SECOND
-    better = any(r.log_evidence > alone.log_evidence + TIE for r in beside)
-    if alone.over < OVER_NOISE_SECOND or (explained and not better):
-        return
+    better = [r for r in beside if r.log_evidence > alone.log_evidence + TIE]
     short = []
-    others = [] if explained else [m for m in offers if m.kind != law.kind]
+    others = [m for m in offers if not (m.tables and m.kind == law.kind)]
     for index, member in enumerate(others):
         say("second effects", index, len(others))
         if search.late:
             search.untried.append(f"{first.node.name} + {member.name}")
             continue
         short.append(_near(problem, first, member, SHORT))
-    for fit in sorted(short, key=lambda f: f.cost)[:2]:
-        full = search.add(polish(problem, fit.node, Start(fit.point, fit.nuisances), FULL))
-        if fit.node.generic and row_of(full, problem).log_evidence > alone.log_evidence + SECOND:
-            _named(search, say, full, [law])
+    gain = max((row_of(f, problem).log_evidence - alone.log_evidence for f in short), default=0.0)
+    if alone.over < OVER_NOISE_SECOND and not better and gain < UNIT:
+        return
+    full = [
+        search.add(polish(problem, fit.node, Start(fit.point, fit.nuisances), FULL))
+        for fit in sorted(short, key=lambda f: f.cost)[:2]
+    ]
     if not search.late:
-        _named(search, say, min((*short, *shaped, first), key=lambda f: f.cost), [law])
+        _named_along(search, say, [law], [*full, *shaped, first])
 
 
 def _near(problem: Problem, fit: Fit, member: Member, steps: int) -> Fit:

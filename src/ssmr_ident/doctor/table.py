@@ -33,7 +33,7 @@ class Row:
     over : float
         RMS of the residuals in sizes of the channels' white noise.
     left : Left
-        What is left, window by window; of the baseline alone.
+        What is left, window by window; of the baseline and of two named effects.
     heldout : float
         Error on what was kept back, in the metric; nan where nothing was, or it was not asked for.
     fit : Fit or None

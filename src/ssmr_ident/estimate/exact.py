@@ -45,6 +45,7 @@ def _exact(problem: Problem, node: Node, point: Array, nuisances: Sequence[Array
         gain = 1.0 + nuisance[n + 1] if piece.driven else 1.0
         course = np.linspace(-1.0, 1.0, len(piece.y))
         rest = gain * s.y + nuisance[-2 * c : -c] + course[:, None] * nuisance[-c:] - piece.y
+        rest[: problem.passed_over(piece)] = 0.0
         if not np.isfinite(rest).all():
             return math.inf, [], []
         states = start.shape[1]
@@ -58,6 +59,7 @@ def _exact(problem: Problem, node: Node, point: Array, nuisances: Sequence[Array
             flat[:, k, len(nuisance) - c + k] = course
         flat[..., len(nuisance) :] = gain * s.dy[..., states:-1]
         whole = np.concatenate([flat, rest[..., None]], axis=2)
+        whole[: problem.passed_over(piece)] = 0.0
         with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is refused below
             white = _whitened(problem, index, whole).reshape(-1, whole.shape[2])
             normal = white.T @ white
@@ -123,7 +125,7 @@ def _step(parts, point, nuisances, mean, precision, scales, damping, held):
         own = h[:k, :k] + np.diag(1.0 / scale**2)
         own = own + damping * np.diag(np.diag(own))
         cross, line = h[:k, k:], g[:k] + nuisance / scale**2
-        solved = np.linalg.solve(own, np.column_stack([cross, line]))
+        solved = solved_positive(own, np.column_stack([cross, line]))
         left = left + h[k:, k:] - cross.T @ solved[:, :-1]
         right = right - g[k:] + cross.T @ solved[:, -1]
         eliminated.append(solved)
@@ -142,11 +144,18 @@ def solved_evenly(left: Array, right: Array) -> Array:
     return np.linalg.lstsq(left / np.outer(size, size), right / size, rcond=1e-13)[0] / size
 
 
+def solved_positive(left: Array, columns: Array) -> Array:
+    """Positive definite equations, rows and columns first brought to one size; what round-off alone decides stays."""
+    size = np.sqrt(np.diag(left))
+    even = left / np.outer(size, size) + LEAST_CURVATURE * np.eye(len(left))
+    return np.linalg.solve(even, columns / size[:, None]) / size[:, None]
+
+
 def _finished(node, point, nuisances, mean, precision, scales, chi2, residuals, parts, stop, held) -> Fit:
     information = np.zeros((len(point), len(point)))
     for (h, _, k), scale in zip(parts, scales, strict=True):
         own = h[:k, :k] + np.diag(1.0 / scale**2)
-        information += h[k:, k:] - h[:k, k:].T @ np.linalg.solve(own, h[:k, k:])
+        information += h[k:, k:] - h[:k, k:].T @ solved_positive(own, h[:k, k:])
     free = ~held
     covariance = np.zeros_like(information)
     whole = (information + np.diag(precision + LEAST_CURVATURE))[np.ix_(free, free)]

@@ -145,9 +145,9 @@ def lag(hz: float, known_hz: float = math.inf) -> Member:
     )
 
 
-def delay(step: float) -> Member:
-    """The motion comes later than the force by a constant time."""
-    late = Coordinate("delay_s", step, False, -50.0 * step, 50.0 * step, 0.0, 10.0, "s")
+def delay(step: float, longest: float) -> Member:
+    """The motion comes later than the force by a constant time; both arguments in seconds."""
+    late = Coordinate("delay_s", step, False, -longest, longest, 0.0, 10.0, "s")
     return Member("sensor_delay", SENSOR, "", (late,), after="delay")
 
 

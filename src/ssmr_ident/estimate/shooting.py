@@ -24,7 +24,9 @@ CLOSE = 0.02
 """Share of the motion below which noise is not believed while stretches are joined."""
 
 
-def shot(problem: Problem, node: Node, start: Start, continuity: Sequence[float] = CONTINUITY) -> Start:
+def shot(
+    problem: Problem, node: Node, start: Start, continuity: Sequence[float] = CONTINUITY, held: bool = False
+) -> Start:
     """Multiple shooting from paths: stretches of a period, whose borders are joined from loose to as good as exact.
 
     Parameters
@@ -34,6 +36,8 @@ def shot(problem: Problem, node: Node, start: Start, continuity: Sequence[float]
     start : Start
         With paths, (n, 3) per piece.
     continuity : sequence of float
+    held : bool
+        Whether the point stays, and states and zeros alone are found.
 
     Returns
     -------
@@ -68,7 +72,7 @@ def shot(problem: Problem, node: Node, start: Start, continuity: Sequence[float]
         for _ in range(LAST_STEPS if level == len(continuity) - 1 else LOOSE_STEPS):
             better = False
             for _ in range(4):
-                trial = _joined(current, point, states, local, mean, precision, weight, sizes, damping)
+                trial = _joined(current, point, states, local, mean, precision, weight, sizes, damping, held)
                 moved = bounded(node, trial[0])
                 new = _shooting(
                     problem,
@@ -148,7 +152,7 @@ def _shooting(problem, node, point, states, local, borders, weights, weight, loc
     return cost, systems
 
 
-def _joined(current, point, states, local, mean, precision, weight, sizes, damping):
+def _joined(current, point, states, local, mean, precision, weight, sizes, damping, held):
     """One Gauss-Newton step of everything: parameters, nuisances, states at the borders."""
     p, kept = len(point), []
     left, right = np.diag(precision + 1e-12), -precision * (point - mean)
@@ -162,7 +166,8 @@ def _joined(current, point, states, local, mean, precision, weight, sizes, dampi
         left = left + a[:p, :p] - a[:p, p:] @ solved[:, :-1]
         right = right - b[:p] + a[:p, p:] @ solved[:, -1]
         kept.append((gain, by_par, base, solved))
-    step = solved_evenly(left + damping * np.diag(np.maximum(np.diag(left), 1e-12)), right)
+    whole = left + damping * np.diag(np.maximum(np.diag(left), 1e-12))
+    step = np.zeros(p) if held else solved_evenly(whole, right)
     new_states, new_local = [], []
     for index, (gain, by_par, base, solved) in enumerate(kept):
         extra = -(solved[:, :-1] @ step) - solved[:, -1]

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 
 from ssmr_ident.estimate.instrument import OUTPUT, passed_on
 from ssmr_ident.estimate.motion_kernel import run
@@ -94,8 +95,10 @@ def simulate(model: Compiled, index: int, starts: Array, borders: Array, zero: f
     if delay is not None:
         late, _ = delay
         grid = np.arange(len(drive))
-        drive = np.interp(grid - late / piece.step, grid, piece.drive)
-        drives = np.stack([drives[0], -np.gradient(drive) / piece.step])
+        between = CubicSpline(grid, piece.drive)  # straight lines would round a drive's corners off
+        at = np.clip(grid - late / piece.step, 0.0, None)
+        drive = between(at)
+        drives = np.stack([drives[0], -between(at, 1) / piece.step])
     drive = drive + zero
     states = starts.shape[1]
     columns = states + n_lin + n_tab + n_law + len(drives)

@@ -41,6 +41,8 @@ class Problem:
         Of the accelerometer, as known; its low-pass is undone in the pieces.
     fastest : float [Hz]
         Highest frequency at which the rig is expected to move; ``frequency`` where it is less.
+    horizon : float
+        Periods after which a start no longer tells where the motion is; ``inf`` unless it is chaotic.
     """
 
     pieces: tuple[Piece, ...]
@@ -50,14 +52,25 @@ class Problem:
     size: float
     bandwidth_hz: float = math.inf
     fastest: float = 0.0
+    horizon: float = math.inf
 
     @property
     def speed(self) -> float:
         return 2.0 * math.pi * self.frequency * self.size
 
     @property
+    def begin(self) -> float:
+        """Time at the begin of driven stretches that is compared with nothing [s]: half a period, for a sensor that is
+        late shows there what drove the rig before."""
+        return 0.5 / max(self.frequency, self.fastest)
+
+    def passed_over(self, piece: Piece) -> int:
+        """Samples of that time."""
+        return min(math.ceil(self.begin * piece.rate), len(piece.y) // 4) if piece.driven else 0
+
+    @property
     def samples(self) -> int:
-        return sum(int(p.counts.sum()) for p in self.pieces)
+        return sum(int(p.counts[self.passed_over(p) :].sum()) for p in self.pieces)
 
 
 @dataclass(frozen=True, eq=False)
