@@ -231,7 +231,7 @@ def _offered_back(search: Search) -> None:
 
 def _named_along(search: Search, say: Progress, beside: Sequence[Member] = (), begun: Sequence[Fit] = ()) -> None:
     """Named laws along the best motion, and again where one of them follows it better than what they began from."""
-    near = min((*begun, *(() if begun else search.fits)), key=lambda f: f.cost)
+    near = min(begun or search.fits, key=lambda f: f.cost)
     while not search.late:
         _named(search, say, near, beside)
         best = min((f for f in search.fits if set(beside) <= set(f.node.members)), key=lambda f: f.cost, default=near)
@@ -323,7 +323,6 @@ def _in_full(search: Search, whole: Problem, begins: Sequence[int], say: Progres
     kept = near + [r for r in rows if r not in near and _judges(r, rows, near)]
     whole = in_stretches(whole, predictable(search.problem, best))
     chaotic = math.isfinite(whole.horizon)
-
     if chaotic:  # what a start does to the motion is no longer linear: the best one's states begin all others
         paths = [smoothed(p, whole.frequency, whole.size) for p in whole.pieces]
         found = polish(whole, best.node, shot(whole, best.node, Start(best.point, paths=tuple(paths))), SHORT)

@@ -96,7 +96,7 @@ def simulate(model: Compiled, index: int, starts: Array, borders: Array, zero: f
         late, _ = delay
         grid = np.arange(len(drive))
         between = CubicSpline(grid, piece.drive)  # straight lines would round a drive's corners off
-        at = np.clip(grid - late / piece.step, 0.0, None)
+        at = np.clip(grid - late / piece.step, 0.0, grid[-1])
         drive = between(at)
         drives = np.stack([drives[0], -between(at, 1) / piece.step])
     drive = drive + zero
