@@ -96,8 +96,9 @@ def needed(law: Row, left: float, rows: Sequence[Row]) -> bool:
 
 
 def stands(row: Row, rows: Sequence[Row]) -> bool:
-    """Whether each of two effects beats the other one in any shape, and halves what that leaves beyond noise; and both
-    any one law, by evidence in sizes of what they themselves leave."""
+    """Whether each of two effects beats the other one in any shape, and halves what that leaves beyond white noise, or
+    leaves nothing that goes with the motion and ``FORMULA`` less; and both any one law, by evidence in sizes of what
+    they themselves leave."""
     if len(row.ids) < 2:
         return True
     found = [_alone(row, k, rows) for k in (0, 1)]
@@ -105,17 +106,14 @@ def stands(row: Row, rows: Sequence[Row]) -> bool:
     if not found[0] or row.log_evidence < max(single, default=-math.inf) + SECOND * max(row.over, 1.0) ** 2:
         return False
     for alone in (rows for rows in found if rows):
-        best = max(r.log_evidence for r in alone)
+        best = max(alone, key=lambda r: r.log_evidence)
         least = min(r.over for r in alone)
-        if _beyond_noise(row) >= HALVED * max(least**2 - 1.0, 0.0) or row.log_evidence < best + SECOND:
+        halved = row.over**2 - 1.0 < HALVED * max(least**2 - 1.0, 0.0)
+        only_noise = row.left.follows < FOLLOWS and row.left.uneven < UNEVEN
+        takes = halved or (only_noise and row.chi2 < (1.0 - FORMULA) * best.chi2)
+        if not takes or row.log_evidence < best.log_evidence + SECOND:
             return False
     return True
-
-
-def _beyond_noise(row: Row) -> float:
-    """Variance that is left beyond white noise, in units of that; nought where it knows nothing of the motion."""
-    noise = row.left.follows < FOLLOWS and row.left.uneven < UNEVEN
-    return 0.0 if noise else max(row.over**2 - 1.0, 0.0)
 
 
 def _alone(pair: Row, which: int, rows: Sequence[Row]) -> list[Row]:

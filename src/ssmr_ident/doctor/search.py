@@ -212,18 +212,16 @@ def over(fit: Fit, problem: Problem) -> float:
     return fit.chi2 / max(problem.samples, 1)
 
 
-def _offered_back(search: Search) -> None:
-    """What a richer model's fit has found is offered to the poorer one with that member, or a part of its formula,
+def _offered_back(search: Search, count: int = OFFERED) -> None:
+    """What the best models' fits have found is offered to the poorer ones with a member, or a part of its formula,
     dropped."""
-    for fit in sorted(search.fits, key=lambda f: f.cost)[:OFFERED]:
+    for fit in sorted(search.fits, key=lambda f: f.cost)[:count]:
         for member in fit.node.members:
             node = fit.node.without(member)
-            poorer = [f for f in search.fits if f.node.name == node.name]
-            if not poorer:
-                continue
-            point = joined(node, fit)
-            found = polish(search.problem, poorer[0].node, Start(point, carried(node, fit)), SHORT)
-            if found.cost < poorer[0].cost - UNIT:
+            poorer = next((f for f in search.fits if f.node.name == node.name), None)
+            node = poorer.node if poorer else node
+            found = polish(search.problem, node, Start(joined(node, fit), carried(node, fit)), SHORT)
+            if poorer is None or found.cost < poorer.cost - UNIT:
                 search.add(polish(search.problem, found.node, Start(found.point, found.nuisances), FULL))
         for node in simpler(fit.node):
             search.add(polish(search.problem, node, Start(joined(node, fit), carried(node, fit)), SHORT))
@@ -246,7 +244,7 @@ def _named(search: Search, say: Progress, best: Fit, beside: Sequence[Member] = 
     problem, short = search.problem, []
     base = next(f for f in search.fits if not f.node.members)
     offers = proposals(problem, best, paths, beside)
-    if not best.node.members:  # along a linear rig's own motion nothing is left that could promise anything
+    if over(best, problem) > NEAR_NOISE:  # along a motion that is not the recorded one promises are worth little
         offers = sorted(offers, key=lambda offer: _scored(problem, offer, best))
     offers = _varied(offers)
     for index, offer in enumerate(offers):
@@ -337,6 +335,7 @@ def _in_full(search: Search, whole: Problem, begins: Sequence[int], say: Progres
         start = Start(row.fit.point, carried(row.fit.node, found)) if chaotic else _at_begins(row.fit, begins)
         start = Start(found.point, found.nuisances) if row.fit is best else start
         new.add(polish(problem, row.fit.node, start, SHORT if row in near or not row.ids else BEGUN))
+    _offered_back(new, 1)
     return new
 
 
