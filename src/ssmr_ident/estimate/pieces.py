@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -274,8 +273,3 @@ def _single(samples: Array) -> tuple[Array, Array]:
     for side in (np.roll(off, 1), np.roll(off, -1)):
         wild &= np.abs(side / size + 2.0 / 3.0) < 0.25
     return wild, smooth
-
-
-def largest(pieces: Sequence[Piece]) -> float:
-    """Number of samples in all."""
-    return float(sum(p.y.size for p in pieces))
