@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 
 from ssmr_ident.report import style
 from ssmr_ident.signals.analysis import ChannelAnalysis
+from ssmr_ident.signals.lines import places
 
 PEAK_COLOURS = (style.ORANGE, style.BLUE, style.GREEN)
 SHOWN_TO_HZ = 70.0
@@ -110,13 +111,14 @@ def _strongest(channels: Sequence[NamedAnalysis]) -> slice:
 
 
 def _spectrum(axes: Axes, named: NamedAnalysis) -> None:
-    spectrum, peaks = named.analysis.spectrum, named.analysis.peaks
+    spectrum, peaks, lines = named.analysis.spectrum, named.analysis.peaks, named.analysis.lines
     end = min(SHOWN_TO_HZ, spectrum.frequency[-1])
     shown = (spectrum.frequency > 0) & (spectrum.frequency <= end)
     band = named.analysis.options.band_hz
     axes.axvspan(band[0], min(band[1], end), color=style.SHADE, lw=0, zorder=0)
     axes.plot(spectrum.frequency[shown], spectrum.amplitude[shown], color=style.INK, lw=0.7)
     for rank, (frequency, amplitude) in enumerate(zip(peaks.frequency, peaks.amplitude, strict=True)):
+        read = f"{lines.frequency[rank]:.{places(lines.frequency_std[rank])}f}"
         axes.plot(
             frequency,
             amplitude,
@@ -125,7 +127,7 @@ def _spectrum(axes: Axes, named: NamedAnalysis) -> None:
             mec="white",
             mew=0.5,
             ms=4.5,
-            label=f"{frequency:.2f} Hz, {amplitude:.3g} {style.unit_text(named.unit)}",
+            label=f"{read} Hz, {amplitude:.3g} {style.unit_text(named.unit)}",
         )
     searched = shown & (spectrum.frequency >= band[0]) & (spectrum.frequency <= band[1])
     # Drift below the band and hum above it may tower over all lines; the axis is for what is searched, with room

@@ -10,6 +10,7 @@ from scipy import signal
 from ssmr_ident.core.shown import Shown
 from ssmr_ident.signals import filters
 from ssmr_ident.signals.checks import checked_samples
+from ssmr_ident.signals.lines import Lines, read_lines
 from ssmr_ident.signals.noise import hum
 from ssmr_ident.signals.peaks import BAND_HZ, Peaks, find_peaks
 from ssmr_ident.signals.spectra import SWIVEL_LENGTH, SampleRange, Spectrum, amplitude_spectrum, select_range
@@ -59,6 +60,9 @@ class ChannelAnalysis(Shown):
         Of the unfiltered samples in ``part``: a line is shown with its own height up to the edge of the band,
         where the low-pass would have halved it.
     peaks : Peaks
+        On the bins of the spectrum.
+    lines : Lines
+        The same peaks between the bins, with errors.
     amplitude : float [unit of the channel]
         (max − min)/2 of ``low_passed``.
     mains : Line or None
@@ -74,6 +78,7 @@ class ChannelAnalysis(Shown):
     options: AnalysisOptions
     spectrum: Spectrum
     peaks: Peaks
+    lines: Lines
     amplitude: float
     mains: hum.Line | None
 
@@ -100,7 +105,7 @@ class ChannelAnalysis(Shown):
 
     def __str__(self) -> str:
         mains = "not visible" if self.mains is None else str(self.mains)
-        return f"amplitude {self.amplitude:.4g}, peaks {self.peaks}, mains {mains}, {self.part}"
+        return f"amplitude {self.amplitude:.4g}, peaks {self.lines}, mains {mains}, {self.part}"
 
 
 def analyse(
@@ -148,6 +153,7 @@ def analyse(
         options=options,
         spectrum=spectrum,
         peaks=peaks,
+        lines=read_lines(array[part.indices], spectrum, peaks),
         amplitude=float(np.ptp(low_passed) / 2),
         mains=mains,
     )

@@ -1,7 +1,8 @@
 """Appendix A of the thesis to the letter, beside what this package reads off the same logs.
 
 The thesis filters first: its three peaks are those of the low-passed signal, whose filter halves a line at its edge.
-Ours are those of the samples as they were logged, so a line near the edge keeps its height. Amplitudes are the same.
+Ours are those of the samples as they were logged, so a line near the edge keeps its height,
+and read between the bins. Amplitudes are the same.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ import numpy as np
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.report import style
 from ssmr_ident.report.figures_appendix_a import Trial, trials_figure
+from ssmr_ident.signals.lines import Lines
 from ssmr_ident.signals.peaks import COUNT, Peaks, find_peaks
 from ssmr_ident.signals.spectra import amplitude_spectrum
 from ssmr_ident.workflows.spectrum.run import SpectrumReport
@@ -62,7 +64,7 @@ def _row(row: SpectrumRow) -> dict[str, Any]:
         "channel": row.channel, "unit": row.unit, "low_pass_hz": one.options.low_pass_hz,
         "amplitude": one.amplitude, "band_amplitude": band_amplitude(row),
     }  # fmt: skip
-    for name, peaks in (("printed", printed_peaks(row)), ("ours", one.peaks)):
+    for name, peaks in (("printed", printed_peaks(row)), ("ours", one.lines)):
         for rank in range(COUNT):
             there = rank < len(peaks)
             found[f"{name}_peak_{rank + 1}_hz"] = float(peaks.frequency[rank]) if there else None
@@ -74,14 +76,14 @@ def _trials(rows: Sequence[SpectrumRow]) -> list[Trial]:
     return [
         Trial(
             row.channel, row.label.motion or row.label.configuration,
-            row.label.yaw_rate_deg_s, row.analysis.amplitude, _three(printed_peaks(row)), _three(row.analysis.peaks),
+            row.label.yaw_rate_deg_s, row.analysis.amplitude, _three(printed_peaks(row)), _three(row.analysis.lines),
         )
         for row in rows
         if row.unit == "m/s^2"
     ]  # fmt: skip
 
 
-def _three(peaks: Peaks) -> np.ndarray:
+def _three(peaks: Peaks | Lines) -> np.ndarray:
     three = np.full(COUNT, np.nan)
     three[: len(peaks)] = peaks.frequency
     return three

@@ -21,6 +21,7 @@ from ssmr_ident.report.html import (
     write_page,
 )
 from ssmr_ident.report.numbers import NONE, number, unit
+from ssmr_ident.signals.lines import places
 from ssmr_ident.workflows.files_read import files_read
 from ssmr_ident.workflows.spectrum.files import recording_of_rows
 from ssmr_ident.workflows.spectrum.run import SpectrumReport
@@ -63,7 +64,7 @@ def spectrum_page(report: SpectrumReport, command: str, files: Sequence[Path]) -
     strongest = max(report.rows, key=lambda row: _height(row, 0))
     facts = tuple(_fact(channel, report.rows) for channel in dict.fromkeys(r.channel for r in report.rows))[:SHOWN]
     label = f"{len(by_file)} recording{'s' if len(by_file) > 1 else ''}"
-    if len(strongest.analysis.peaks):
+    if len(strongest.analysis.lines):
         label += f", strongest line at {_hertz(strongest, 0)} Hz"
     sentence = f"The strongest line of each channel, over {len(by_file)} recordings of {report.source}:"
     if len(by_file) == 1:
@@ -111,15 +112,16 @@ def _table(report: SpectrumReport) -> Section:
     for row in report.rows:
         cells: list[Cell] = [row.label.file, row.channel]
         for rank in range(3):
-            there = rank < len(row.analysis.peaks)
-            cells.append(Number(_hertz(row, rank), float(row.analysis.peaks.frequency[rank])) if there else NONE)
+            there = rank < len(row.analysis.lines)
+            cells.append(Number(_error(row, rank), float(row.analysis.lines.frequency[rank])) if there else NONE)
             cells.append(Number(number(_height(row, rank)), _height(row, rank)) if there else NONE)
         cells += [Number(number(row.analysis.amplitude), row.analysis.amplitude), unit(row.unit) or NONE]
         rows.append((*cells, Number(number(row.analysis.spectrum.resolution, 2), row.analysis.spectrum.resolution)))
     peaks = [text for rank in ("highest", "second", "third") for text in (f"{rank} [Hz]", "height")]
     header = ("recording", "channel", *peaks, "(max − min)/2", "unit", "bin [Hz]")
     caption = (
-        "Peaks of every channel; a frequency is known to about half a bin. Heights and amplitudes in the unit named."
+        "Peaks of every channel, read between the bins; ± is one standard deviation. "
+        "Heights and amplitudes in the unit named."
     )
     return Section("All peaks", tables=(Table(caption, header, tuple(rows)),))
 
@@ -129,22 +131,28 @@ def _notes(report: SpectrumReport) -> Section:
 
 
 def _fact(channel: str, rows: Sequence[SpectrumRow]) -> Fact:
-    own = sorted((r for r in rows if r.channel == channel and len(r.analysis.peaks)), key=lambda r: -_height(r, 0))
+    own = sorted((r for r in rows if r.channel == channel and len(r.analysis.lines)), key=lambda r: -_height(r, 0))
     if not own:
         return Fact(channel, NONE, "no peak in the band searched")
     best = own[0]
-    note = f"± {number(best.analysis.spectrum.resolution / 2, 2)} Hz, {number(_height(best, 0))} {unit(best.unit)}"
+    note = (
+        f"± {number(float(best.analysis.lines.frequency_std[0]), 1)} Hz, {number(_height(best, 0))} {unit(best.unit)}"
+    )
     if len(own) > 1:
-        found = [float(r.analysis.peaks.frequency[0]) for r in own]
+        found = [float(r.analysis.lines.frequency[0]) for r in own]
         note += f", in {best.label.file}; others from {number(min(found))} to {number(max(found))} Hz"
     return Fact(channel, f"{_hertz(best, 0)} Hz", note)
 
 
 def _hertz(row: SpectrumRow, rank: int) -> str:
-    peaks = row.analysis.peaks
-    return f"{peaks.frequency[rank]:.2f}" if rank < len(peaks) else NONE
+    peaks = row.analysis.lines
+    return f"{peaks.frequency[rank]:.{places(float(peaks.frequency_std[rank]))}f}" if rank < len(peaks) else NONE
+
+
+def _error(row: SpectrumRow, rank: int) -> str:
+    return f"{_hertz(row, rank)} ± {row.analysis.lines.frequency_std[rank]:.1g}"
 
 
 def _height(row: SpectrumRow, rank: int) -> float:
-    peaks = row.analysis.peaks
+    peaks = row.analysis.lines
     return float(peaks.amplitude[rank]) if rank < len(peaks) else 0.0

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from itertools import groupby
 
 from ssmr_ident.report.figures_speed import mean_and_spread
+from ssmr_ident.signals.lines import Lines, places
 from ssmr_ident.signals.peaks import COUNT
 from ssmr_ident.workflows.spectrum.run import SpectrumReport
 from ssmr_ident.workflows.spectrum.table import SpectrumRow
@@ -23,6 +24,8 @@ def screen_text(report: SpectrumReport) -> str:
     blocks = [_table(_rows(report.rows))]
     if any(average.repeats > 1 for average in report.averages):
         blocks.append("averages over repeats (± standard deviation)\n" + _table(_averages(report)))
+    if any(row.analysis.lines.wide(rank) for row in report.rows for rank in range(len(row.analysis.lines))):
+        blocks.append("wide: the line decays within the samples analysed; its frequency is that of the decaying swing")
     notes = _notes(report)
     if notes:
         blocks.append("\n".join(notes))
@@ -51,13 +54,19 @@ def _rows(rows: Sequence[SpectrumRow]) -> list[list[str]]:
     for row in rows:
         label, analysis = row.label, row.analysis
         new = label.file != previous
-        peaks = [f"{f:.2f} ({a:.3g})" for f, a in zip(analysis.peaks.frequency, analysis.peaks.amplitude, strict=True)]
+        peaks = [_peak(analysis.lines, rank) for rank in range(len(analysis.lines))]
         peaks += ["–"] * (COUNT - len(peaks))
         mains = "–" if analysis.mains is None else f"{analysis.mains.amplitude:.2g}"
         head = [label.file, _made(row)] if new else ["", ""]
         lines.append([*head, row.channel, *peaks, f"{analysis.amplitude:.3g}", mains, row.unit or "–"])
         previous = label.file
     return lines
+
+
+def _peak(lines: Lines, rank: int) -> str:
+    frequency, std = float(lines.frequency[rank]), float(lines.frequency_std[rank])
+    broad = f", {lines.width[rank]:.2g} wide" if lines.wide(rank) else ""
+    return f"{frequency:.{places(std)}f} ± {std:.1g}{broad} ({lines.amplitude[rank]:.3g})"
 
 
 def _made(row: SpectrumRow) -> str:

@@ -125,9 +125,13 @@ class SpectrumRow:
             "resolution_hz": analysis.spectrum.resolution,
             "low_pass_hz": analysis.options.low_pass_hz,
         }
-        for rank, (frequency, amplitude) in enumerate(zip(*_padded(analysis), strict=True), start=1):
-            row[f"peak_{rank}_hz"] = _known(frequency)
-            row[f"peak_{rank}_amplitude"] = _known(amplitude)
+        lines = analysis.lines
+        for rank in range(COUNT):
+            there = rank < len(lines)
+            row[f"peak_{rank + 1}_hz"] = float(lines.frequency[rank]) if there else None
+            row[f"peak_{rank + 1}_hz_std"] = float(lines.frequency_std[rank]) if there else None
+            row[f"peak_{rank + 1}_width_hz"] = float(lines.width[rank]) if there else None
+            row[f"peak_{rank + 1}_amplitude"] = float(lines.amplitude[rank]) if there else None
         row["amplitude"] = analysis.amplitude
         row["mean"] = float(np.mean(analysis.samples[analysis.part.indices]))
         row["mains_60_hz_amplitude"] = None if analysis.mains is None else analysis.mains.amplitude
@@ -141,8 +145,8 @@ def _known(value: float) -> float | None:
 
 def _padded(analysis: ChannelAnalysis) -> tuple[np.ndarray, np.ndarray]:
     """Frequencies and heights of exactly three peaks, NaN where there are fewer."""
-    missing = np.full(COUNT - len(analysis.peaks), np.nan)
-    return np.r_[analysis.peaks.frequency, missing], np.r_[analysis.peaks.amplitude, missing]
+    missing = np.full(COUNT - len(analysis.lines), np.nan)
+    return np.r_[analysis.lines.frequency, missing], np.r_[analysis.lines.amplitude, missing]
 
 
 def write_rows(path: Path, rows: Iterable[dict[str, Any]]) -> Path:

@@ -41,9 +41,9 @@ def measured(recording: Recording, request: Request) -> tuple[dict[str, Any], di
         one = analyse(recording[axis], rate, options)
         found[f"{axis}_amplitude_m_s2"] = one.amplitude
         for rank in range(COUNT):
-            there = rank < len(one.peaks)
-            found[f"{axis}_peak_{rank + 1}_hz"] = float(one.peaks.frequency[rank]) if there else None
-            found[f"{axis}_peak_{rank + 1}_m_s2"] = float(one.peaks.amplitude[rank]) if there else None
+            there = rank < len(one.lines)
+            found[f"{axis}_peak_{rank + 1}_hz"] = float(one.lines.frequency[rank]) if there else None
+            found[f"{axis}_peak_{rank + 1}_m_s2"] = float(one.lines.amplitude[rank]) if there else None
         shown = one.spectrum.frequency <= SHOWN_HZ
         spectra["frequency"] = one.spectrum.frequency[shown].tolist()
         spectra[axis] = one.spectrum.amplitude[shown].tolist()
