@@ -131,6 +131,7 @@ def analyse(
     part = select_range(len(array), sample_rate, options.part, length=options.length, start=start)
     spectrum = amplitude_spectrum(array[part.indices], sample_rate)
     peaks = find_peaks(spectrum, band_hz=options.band_hz)
+    lines = read_lines(array[part.indices], spectrum, peaks)
     duration = len(array) / sample_rate
     shows_mains = sample_rate / 2 > hum.MAINS_HZ and duration * hum.MAINS_HZ >= 4
     mains = hum.mains_line(array, sample_rate) if shows_mains else None
@@ -141,7 +142,7 @@ def analyse(
     band_passed = None
     if len(peaks) and duration * 2 * options.half_width_hz >= 1:
         band_passed = filters.band_pass(
-            array, sample_rate, float(peaks.frequency[0]), half_width_hz=options.half_width_hz
+            array, sample_rate, float(lines.frequency[0]), half_width_hz=options.half_width_hz
         )
     return ChannelAnalysis(
         samples=array,
@@ -153,7 +154,7 @@ def analyse(
         options=options,
         spectrum=spectrum,
         peaks=peaks,
-        lines=read_lines(array[part.indices], spectrum, peaks),
+        lines=lines,
         amplitude=float(np.ptp(low_passed) / 2),
         mains=mains,
     )

@@ -1,15 +1,14 @@
 """A peak's frequency between the bins: a line, damped or not, fitted to the bins around it.
 
-Samples of A exp(-a t) cos(2 pi f t + phi) over a whole window have a transform known in closed form, a geometric sum. It
-is fitted to the bins around a peak as it is, with the mirror image at -f, so that no window function and no correction
-of its bias are needed. What lies further away (other lines, the trend, slow motion) runs smoothly through
+Samples of A exp(-a t) cos(2 pi f t + phi) over a whole window have a transform known in closed form, a geometric sum.
+It is fitted to the bins around a peak as it is, with the mirror image at -f, so that no window function and no
+correction of its bias are needed. What lies further away (other lines, the trend, slow motion) runs smoothly through
 these few bins and is a straight line there, beside the transform of a ramp; a line that lies among them is fitted too,
-where it pays for its four numbers by Akaike's criterion for few
-numbers (Hurvich and Tsai, Biometrika 76, 1989).
+where it pays for its four numbers by Akaike's criterion for few numbers (Hurvich and Tsai, Biometrika 76, 1989).
 
 In white noise this is the maximum of the likelihood of these bins. The error is that of Cramer and Rao, the curvature
-there times the noise that the same bins are left with: a quarter above that of a lone line in all samples (Rife and Boorstyn, IEEE Trans. Inf. Theory 20, 1974;
-Yoshida and others, IEEE Trans. Instrum. Meas. 30, 1981, for damped lines).
+there times the noise that the same bins are left with: a quarter above that of a lone line in all samples (Rife and
+Boorstyn, IEEE Trans. Inf. Theory 20, 1974; Yoshida and others, IEEE Trans. Instrum. Meas. 30, 1981, for damped lines).
 """
 
 from __future__ import annotations
