@@ -25,12 +25,17 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
 from small_fleet import write_fleet
 
 ALONE = """
-import sys
-from ssmr_ident import fit_session
-for name in sys.argv[1:]:
-    fit_session(name)
+import sys, time
+from pathlib import Path
+out = Path(sys.argv[1])
+from ssmr_ident import fit_session, write_parameters
+import ssmr_ident.workflows.fit.run
+begun = time.monotonic()
+for name in sys.argv[2:]:
+    write_parameters(out / f"{Path(name).name}.yaml", fit_session(name).parameters)
+print(time.monotonic() - begun)
 """
-"""The same fits, one after the other in one process, and nothing else."""
+"""The same fits, one after the other in one process, their answers written, and nothing else."""
 
 
 def batch(folder: Path, out: Path, words: list[str]) -> list[str]:
@@ -50,8 +55,26 @@ def memory_mb(parent: int) -> float:
     return max(sizes)
 
 
+def _begun(out: Path) -> int:
+    """Sessions begun so far; what asks more of the disk would take a share of what is measured."""
+    return sum(1 for _ in (out / "sessions").iterdir()) if (out / "sessions").is_dir() else 0
+
+
+def alone(folders: list[Path], out: Path, processes: int) -> tuple[float, float, float]:
+    """Seconds of the clock and of processors for processes that share sessions out beforehand and know of no other.
+
+    The third is what a session takes such a process by the clock, imports aside.
+    """
+    out.mkdir()
+    begun, used = time.monotonic(), _processor_s()
+    commands = [[sys.executable, "-c", ALONE, str(out), *map(str, folders[k::processes])] for k in range(processes)]
+    runs = [subprocess.Popen(command, stdout=subprocess.PIPE, text=True) for command in commands]
+    inside = [float(run.communicate()[0]) for run in runs]
+    return time.monotonic() - begun, _processor_s() - used, sum(inside) / len(folders)
+
+
 def watched(command: list[str], out: Path, every: float = 5.0) -> tuple[float, float, list[tuple[int, float]]]:
-    """Seconds of the clock and of processors, and over the run how many sessions were done and the memory [MB]."""
+    """Seconds of the clock and of processors, and over the run how many sessions were begun and the memory [MB]."""
     begun, used = time.monotonic(), _processor_s()
     run = subprocess.Popen(command)
     seen = []
@@ -60,7 +83,7 @@ def watched(command: list[str], out: Path, every: float = 5.0) -> tuple[float, f
             run.wait(every)
             break
         except subprocess.TimeoutExpired:
-            seen.append((sum(1 for _ in out.rglob("row.json")), memory_mb(run.pid)))
+            seen.append((_begun(out), memory_mb(run.pid)))
     return time.monotonic() - begun, _processor_s() - used, seen
 
 
@@ -162,12 +185,14 @@ def main() -> None:
         beside = f"{(wall * a.jobs - own) / a.count:.3f} s by the clock, {(used - own) / a.count:.3f} of processors"
         print(f"a session, beside its own seconds: {beside}")
         shown = seen[:: max(1, len(seen) // 8)]
-        print("sessions done, memory of the largest process [MB]:", *(f"{n}: {mb:.0f}" for n, mb in shown))
+        print("sessions begun, memory of the largest process [MB]:", *(f"{n}: {mb:.0f}" for n, mb in shown))
         if a.alone:
-            folders = [str(root / "in" / name) for name in names]
-            clock, spent, _ = watched([sys.executable, "-c", ALONE, *folders], root / "none")
-            print(f"fitted by one process without a batch: {clock:.1f} s, {spent:.1f} s of its processor")
+            folders = [root / "in" / name for name in names]
+            clock, spent, each = alone(folders, root / "alone", 1)
+            print(f"by one process without a batch: {clock:.1f} s, {spent:.1f} s of its processor")
             print(f"efficiency: {clock / wall / a.jobs:.1%} by the clock, {spent / used:.1%} of processors' seconds")
+            *_, beside = alone(folders[: max(a.jobs, a.count // 5)], root / "beside", a.jobs)
+            print(f"{a.jobs} such processes side by side, which is this machine's own limit: {each / beside:.1%}")
         if a.kills:
             killed(root / "in", root / "killed", here, a.kills, a.count)
             print(

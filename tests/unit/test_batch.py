@@ -15,7 +15,7 @@ import pytest
 from small_fleet import write_fleet
 
 from ssmr_ident.core.errors import InputError
-from ssmr_ident.report.html import Link, render_page
+from ssmr_ident.report.html import Link, Page, Section, Table, render_page
 from ssmr_ident.workflows.batch.guarded import Guarded
 from ssmr_ident.workflows.batch.outliers import farthest
 from ssmr_ident.workflows.batch.page import batch_page
@@ -157,6 +157,17 @@ def test_the_page_leads_to_each_report_and_names_the_one_that_stands_apart(tmp_p
     assert table.rows[0][0] == Link("s5", "sessions/s5/report.html")
     assert '<a href="sessions/s5/report.html">s5</a>' in render_page(page)
     assert "dry_friction" in page.verdict.sentence
+
+
+def test_a_page_takes_a_time_in_proportion_to_its_rows() -> None:
+    def spent(count: int) -> float:
+        table = Table("", ("session", "value", "why"), tuple((f"s{n}", f"{n}", "none") for n in range(count)))
+        begun = time.process_time()
+        render_page(Page("", (), (Section("", tables=(table,)),), ""))
+        return time.process_time() - begun
+
+    spent(10)
+    assert spent(1600) < 10.0 * min(spent(400), spent(400))
 
 
 def test_results_print_on_a_screen(tmp_path: Path) -> None:

@@ -53,6 +53,7 @@ def test_session_defaults(tmp_path: Path) -> None:
         ("name: test", "name: test\nname: again", "session.yaml:3", "stands twice"),
         ("name: test", "name: [", "session.yaml:", "not valid YAML"),
         ("name: test", "name: &a x\nbaseline: *a", "session.yaml:3", "aliases"),
+        ("name: test", "name: " + "[" * 50, "session.yaml:2", "deeper"),
         ("name: test", "baseline: rigid7", "baseline", "Did you mean 'rigid6'"),
     ],
 )

@@ -93,7 +93,11 @@ def load(path: str | Path, progress: Callable[[int, int], None] | None = None) -
     InputError
         Names the file and key, or the log and the place in it.
     """
-    session = read_session(path)
+    return load_logs(read_session(path), progress)
+
+
+def load_logs(session: Session, progress: Callable[[int, int], None] | None = None) -> Campaign:
+    """As ``load``, of a session whose file is read already."""
     parameters = read_parameters(session.robot)
     accelerometer = accelerometer_from_parameters(parameters)
     measurements: list[Measurement] = []

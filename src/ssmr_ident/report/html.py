@@ -7,6 +7,7 @@ import os
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from importlib import resources
 from itertools import count
 from pathlib import Path
@@ -50,14 +51,18 @@ class Table:
     header: tuple[str, ...]
     rows: tuple[tuple[Cell, ...], ...]
 
-    def numeric(self, column: int) -> bool:
-        """Whether a column is set as numbers."""
+    @cached_property
+    def numeric(self) -> tuple[bool, ...]:
+        """Which columns are set as numbers; asked of each cell, so looked for once."""
+        return tuple(column > 0 and self._mostly_numbers(column) for column in range(len(self.header)))
+
+    def _mostly_numbers(self, column: int) -> bool:
         cells = [cell for row in self.rows if (cell := row[column]) not in ("", "–")]
-        numbers = [
+        numbers = sum(
             isinstance(cell, Number) or (isinstance(cell, str) and bool(_BEGINS_WITH_NUMBER.match(cell)))
             for cell in cells
-        ]
-        return column > 0 and sum(numbers) > len(numbers) / 2
+        )
+        return numbers > len(cells) / 2
 
 
 @dataclass(frozen=True)

@@ -14,19 +14,28 @@ from ssmr_ident.core.place import Place, Way, short, shown
 
 _LARGEST_KEY = 10**18  # of a whole number; one of thousands of digits cannot be printed in an error
 _SIZE_LIMIT = 4_000_000  # bytes; a hand-written file is a thousand times smaller
+_DEEPEST = 40  # levels; a parser takes for each word a time that grows with how deep it stands, and files need six
 
 
 _QUESTION = re.compile(r"^([^#]*:\s*TODO\s*(?:[,}][^#]*)?)(?:#(.*))?$")
 
 
 class _Loader(yaml.SafeLoader):
-    """SafeLoader that refuses a key given twice and aliases (which let small files grow exponentially)."""
+    """SafeLoader that refuses a key given twice, aliases (which let small files grow exponentially) and deep nests."""
+
+    depth = 0
 
     def compose_node(self, parent: yaml.Node | None, index: int) -> yaml.Node | None:
         if self.check_event(yaml.AliasEvent):
             mark = self.peek_event().start_mark  # type: ignore[no-untyped-call]
             raise yaml.MarkedYAMLError(problem="aliases (*name) are not accepted", problem_mark=mark)
-        return super().compose_node(parent, index)
+        if self.depth == _DEEPEST:
+            mark = self.peek_event().start_mark  # type: ignore[no-untyped-call]
+            raise yaml.MarkedYAMLError(problem=f"nests deeper than {_DEEPEST} levels", problem_mark=mark)
+        self.depth += 1
+        node = super().compose_node(parent, index)
+        self.depth -= 1
+        return node
 
     def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
         seen: set[Any] = set()

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from statistics import NormalDist
+
 import pandas as pd
 
-from ssmr_ident.signals.noise.white import NORMAL
-
+NORMAL = 1.0 / NormalDist().inv_cdf(0.75)
+"""Standard deviation of normally distributed values over their median absolute deviation."""
 ENOUGH = 5
 """Sessions of one robot from which their median and spread say something."""
 

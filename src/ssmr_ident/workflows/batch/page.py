@@ -83,12 +83,12 @@ def _sessions(results: Results) -> Section:
     done = results.sessions[results.sessions.status == "done"].set_index("session")
     apart = farthest(results.parameters)
     order = apart.deviations.abs().reindex(done.index).sort_values(ascending=False, kind="stable").index[:LISTED]
+    farthest_of = {row.Index: row for row in apart.itertuples()}
     rows: list[tuple[Cell, ...]] = []
-    for name in order:
-        row = done.loc[name]
+    for row in done.loc[order].itertuples():
+        name = row.Index
         far: Cell = NONE
-        if name in apart.index:
-            a = apart.loc[name]
+        if (a := farthest_of.get(name)) is not None:
             text = f"{a.parameter} {measured(a.value, None, a.unit)}, {a.deviations:+.1f} std"
             far = Number(text.replace("-", "−"), abs(a.deviations))
         target = f"sessions/{name}/report.html"

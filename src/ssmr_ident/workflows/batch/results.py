@@ -14,6 +14,7 @@ from ssmr_ident.core.atomic import write_bytes
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.shown import Shown
 from ssmr_ident.workflows.batch.schema import COLUMNS, explanation_rows, parameter_rows, session_row
+from ssmr_ident.workflows.parquet import parquet
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,19 +88,3 @@ def read_results(folder: str | Path) -> Results:
         if not (folder / f"{name}.parquet").is_file():
             raise InputError(str(folder), f"holds no {name}.parquet", "Make it: ident batch SESSIONS -o FOLDER")
     return Results(folder, **{name: pd.read_parquet(folder / f"{name}.parquet") for name in COLUMNS})
-
-
-def parquet() -> Any:
-    """The module ``pyarrow`` with its Parquet part.
-
-    Raises
-    ------
-    InputError
-        It is not installed.
-    """
-    try:
-        import pyarrow
-        import pyarrow.parquet
-    except ModuleNotFoundError as error:
-        raise InputError("pyarrow", "is not installed", "pip install 'ssmr_ident[batch]'") from error
-    return pyarrow

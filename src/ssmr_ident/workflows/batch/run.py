@@ -5,17 +5,21 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from importlib import import_module
 from pathlib import Path
-from typing import Any
+from threading import Thread
+from typing import TYPE_CHECKING, Any
 
 from ssmr_ident.core.atomic import make_folder
 from ssmr_ident.core.shown import Shown
 from ssmr_ident.workflows.batch.cluster import run_on_cluster
 from ssmr_ident.workflows.batch.held import held
 from ssmr_ident.workflows.batch.local import run_here
-from ssmr_ident.workflows.batch.page import write_batch_page
-from ssmr_ident.workflows.batch.results import Results, parquet, write_results
 from ssmr_ident.workflows.batch.task import find_tasks
+from ssmr_ident.workflows.parquet import refuse_without_parquet
+
+if TYPE_CHECKING:
+    from ssmr_ident.workflows.batch.results import Results
 
 Progress = Callable[[dict[str, Any], int, int], None]
 
@@ -80,7 +84,7 @@ def run_batch(
     InputError
         No sessions, something that is needed is not installed, or another run holds ``out``.
     """
-    parquet()
+    refuse_without_parquet()
     folder, out = Path(folder), Path(out)
     params = str(Path(params).absolute()) if Path(params).is_file() else params
     files = tuple(str(Path(file).absolute()) for file in effects)
@@ -103,7 +107,12 @@ def run_batch(
 def _gathered(out: Path, rows: dict[str, dict[str, Any]], command: str) -> Iterator[Callable[[], Results]]:
     """Whatever ends the run, what is done by then is laid down in tables and on a page."""
 
+    Thread(target=import_module, args=("ssmr_ident.workflows.batch.page",), daemon=True).start()  # as sessions run
+
     def gather() -> Results:
+        from ssmr_ident.workflows.batch.page import write_batch_page
+        from ssmr_ident.workflows.batch.results import write_results
+
         results = write_results(out, (rows[name] for name in sorted(rows)))
         write_batch_page(results, command)
         return results

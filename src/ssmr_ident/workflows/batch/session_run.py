@@ -11,9 +11,9 @@ from ssmr_ident.core.atomic import write_text
 from ssmr_ident.core.documents import json_text
 from ssmr_ident.core.errors import InputError, SimulationError
 from ssmr_ident.core.parameter import ParameterSet
-from ssmr_ident.experiments.campaign import Campaign, load
+from ssmr_ident.experiments.campaign import Campaign, load_logs
 from ssmr_ident.physics.effects import effects_of
-from ssmr_ident.session import read_parameters, write_parameters
+from ssmr_ident.session import read_parameters, read_session, write_parameters
 from ssmr_ident.workflows.batch.task import ROW, Task
 from ssmr_ident.workflows.fit.run import fit_campaign
 
@@ -29,18 +29,21 @@ def run_session(task: Task) -> dict[str, Any]:
         ``logged``, ``parameters``, ``diagnosis``.
     """
     begun = time.process_time()
-    row: dict[str, Any] = {"session": task.name, "status": "done", "error": "", "fingerprint": task.fingerprint()}
+    row: dict[str, Any] = {"session": task.name, "status": "done", "error": "", "fingerprint": ""}
     out = Path(task.out)
     out.mkdir(parents=True, exist_ok=True)
     try:
         with effects_of(*task.effects):
-            campaign = load(task.folder)
+            session = read_session(task.folder)
+            row["fingerprint"] = task.fingerprint(session)
+            campaign = load_logs(session)
             row |= _facts(campaign)
             _answers(task, campaign, row, out)
     except (InputError, SimulationError) as error:
         row |= {"status": "failed", "error": " ".join(str(error).split())}
     except Exception as error:  # a fault of this package costs the one session, and is told as such
         row |= {"status": "failed", "error": f"{type(error).__name__}: {' '.join(str(error).split())}"}
+    row["fingerprint"] = row["fingerprint"] or task.fingerprint()
     row["seconds"] = time.process_time() - begun
     write_text(out / ROW, json_text(row))
     return row

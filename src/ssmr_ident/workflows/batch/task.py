@@ -12,6 +12,7 @@ from typing import Any
 
 from ssmr_ident import __version__
 from ssmr_ident.core.errors import InputError
+from ssmr_ident.session import Session
 from ssmr_ident.workflows.files_read import files_read
 
 ROW = "row.json"
@@ -55,11 +56,17 @@ class Task:
         values = json.loads(line)
         return cls(**{**values, "effects": tuple(values["effects"])})
 
-    def fingerprint(self) -> str:
-        """SHA-256 of everything that the answer rests on: files by their content, settings, this package's version."""
+    def fingerprint(self, session: Session | None = None) -> str:
+        """SHA-256 of everything that the answer rests on: files by their content, settings, this package's version.
+
+        Parameters
+        ----------
+        session : Session, optional
+            As its file says, where that has been read.
+        """
         digest = hashlib.sha256(f"{__version__} {self.params} {self.diagnose} {self.report} {self.seed}".encode())
         try:
-            files = files_read(self.folder, self.params)
+            files = files_read(session or self.folder, self.params)
         except (InputError, OSError):  # a session that cannot be read is told by its file, and tried again once mended
             files = [Path(self.folder) / "session.yaml"]
         for file in (*files, *map(Path, self.effects)):

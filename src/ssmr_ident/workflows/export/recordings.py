@@ -19,7 +19,7 @@ RATE_TOLERANCE = 1e-3
 
 def parquet_of(recording: Recording) -> bytes:
     """Columns ``time`` and one a channel, float64; units stand in each field's metadata."""
-    from ssmr_ident.workflows.batch.results import parquet
+    from ssmr_ident.workflows.parquet import parquet
 
     arrow = parquet()
     columns = [("time", "s", recording.time), *((c.name, c.unit, c.samples) for c in recording.channels)]
