@@ -180,7 +180,8 @@ def rolls(effect: str = "", value: float = 0.0) -> Told:
     from ssmr_ident.physics.robot import robot_from_parameters
     from ssmr_ident.physics.slots import effect_values
     from ssmr_ident.session import read_parameters
-    from ssmr_ident.workflows.simulate import Request, run_robot
+    from ssmr_ident.workflows.simulate.request import Request
+    from ssmr_ident.workflows.simulate.robot import run_robot
 
     parameters = read_parameters("p3at-extended")
     if effect:

@@ -24,7 +24,8 @@ CONSTANTS = {name.upper() for name in EXPERIMENTS} | {"EXPERIMENTS"}
 SPOKEN_OF = re.compile(rf"\b(experiment|{'|'.join([*CONSTANTS, *EXPERIMENTS])})\b")
 COMPARING = {
     "ssmr_ident/session/entry.py": "the names that session.yaml may hold: a file format, below this room",
-    "ssmr_ident/workflows/simulate.py": "the name that a person typed, looked up once",
+    "ssmr_ident/workflows/simulate/table.py": "what can be simulated in which experiment, in one table",
+    "ssmr_ident/workflows/simulate/request.py": "the name that a person typed, looked up once",
     "ssmr_ident/workflows/new/run.py": "the same of `ident new`, which does without the simulators",
     "ssmr_ident/workflows/effects/panels.py": "what a page draws of an effect in each kind of experiment",
     "ssmr_ident/diagnose/turning/anchor.py": "two runs of one kind are compared with each other, not with a name",
@@ -64,7 +65,7 @@ def test_the_robots_simulator_runs_what_is_done_to_the_robot(kind: Experiment) -
 
 def test_lists_of_names_agree() -> None:
     assert tuple(EXPERIMENTS) == entry.EXPERIMENTS
-    assert set(CHOICES.split(", ")) == {name for name, kind in EXPERIMENTS.items() if not kind.on_a_base}
+    assert set(CHOICES.split(", ")) == set(EXPERIMENTS)
 
 
 def test_a_word_in_a_files_name_hints_at_one_kind() -> None:

@@ -21,7 +21,8 @@ from ssmr_ident.physics.robot import robot_from_parameters
 from ssmr_ident.session import read_parameters, write_parameters
 from ssmr_ident.simulate.many import simulate_pulls
 from ssmr_ident.workflows.compare import compare_session
-from ssmr_ident.workflows.simulate import Request, simulate_to_file
+from ssmr_ident.workflows.simulate.request import Request
+from ssmr_ident.workflows.simulate.run import simulate_to_file
 
 RIG = """\
 schema: ssmr-ident/parameters/1

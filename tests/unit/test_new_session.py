@@ -17,7 +17,8 @@ from ssmr_ident.session.parameters_file import read_parameters
 from ssmr_ident.workflows.fit.run import fit_session
 from ssmr_ident.workflows.new.log import DIES_AWAY, guess_log
 from ssmr_ident.workflows.new.run import Told, draft_session
-from ssmr_ident.workflows.simulate import Request, simulate_to_file
+from ssmr_ident.workflows.simulate.request import Request
+from ssmr_ident.workflows.simulate.run import simulate_to_file
 
 
 def _recording(rate: float, **channels: tuple[np.ndarray, str]) -> Recording:

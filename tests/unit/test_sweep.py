@@ -18,7 +18,7 @@ from ssmr_ident.session import read_parameters
 from ssmr_ident.simulate.layout import OUTPUTS
 from ssmr_ident.simulate.simulation import Simulation
 from ssmr_ident.simulate.slips import wheel_slips
-from ssmr_ident.workflows.simulate import Request
+from ssmr_ident.workflows.simulate.request import Request
 from ssmr_ident.workflows.sweep import run as running
 from ssmr_ident.workflows.sweep.axes import axis_of
 from ssmr_ident.workflows.sweep.files import write

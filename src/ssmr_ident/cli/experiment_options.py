@@ -15,7 +15,10 @@ Params = Annotated[
     ),
 ]
 Motion = Annotated[str, typer.Option(help="Free response: roll, pitch or yaw.")]
-AmplitudeMm = Annotated[float, typer.Option(help="Free response: displacement of the wheels at the start.")]
+AmplitudeMm = Annotated[
+    float, typer.Option(help="Free response: displacement at the start, of the wheels or a rig's mass.")
+]
+AmplitudeDeg = Annotated[float, typer.Option(help="Free response of a rotary rig: angle at the start.")]
 Start = Annotated[
     str,
     typer.Option(

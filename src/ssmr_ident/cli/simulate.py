@@ -11,7 +11,7 @@ from ssmr_ident.cli import completion
 from ssmr_ident.cli import experiment_options as asked
 from ssmr_ident.cli.effect_files import EffectFiles
 
-CHOICES = "free_response, pull, swivel, straight, wheel_drag, vertical_compression, forced"
+CHOICES = "free_response, pull, swivel, straight, wheel_drag, vertical_compression, forced, base_motion"
 
 
 FIRST_RUN = "simulating (the first run on a machine compiles the simulator, some ten seconds)"
@@ -24,6 +24,8 @@ EXAMPLES = (
     "ident simulate p3at-extended -e pull --angle-deg 45 --cable rope -o pull-2.txt",
     "ident simulate p3at-extended -e free_response --effect dry_friction:F_c_N=2 -o roll-1.csv",
     "ident simulate rig.yaml -e forced --force shaker.csv -o answer.csv",
+    "ident simulate rig.yaml -e free_response --amplitude-mm 2 --duration-s 10 -o decay.csv",
+    "ident simulate block.yaml -e pull --speed-mm-s 2 --duration-s 20 -o pull.csv",
     "ident simulate rig.yaml -e forced --force shaker.csv --effects my_law.py --effect my_law -o answer.csv",
 )
 
@@ -38,6 +40,7 @@ def command(
     ),
     motion: asked.Motion = "roll",
     amplitude_mm: asked.AmplitudeMm = 0.3,
+    amplitude_deg: asked.AmplitudeDeg = 5.0,
     start: asked.Start = "tilted",
     push_n: asked.PushN = 0.0,
     direction: asked.Direction = "lateral",
@@ -50,7 +53,13 @@ def command(
     free_normal: Annotated[bool, typer.Option(help="Wheel drag: the wheel can move off the surface.")] = True,
     yaw_rate_deg_s: asked.YawRateDegS = 45.0,
     speed_m_s: asked.SpeedMS = 0.3,
-    force: Annotated[str, typer.Option(help="Forced rig: a log with columns time and force.")] = "",
+    force: Annotated[str, typer.Option(help="Forced rig: a log with columns time and force, or torque.")] = "",
+    base: Annotated[
+        str, typer.Option(help="Base motion: a log with columns time and base_acceleration, or base_position.")
+    ] = "",
+    baseline: Annotated[
+        str, typer.Option(help="rigid6, decoupled, sdof or drag; left out, what the file's keys describe.")
+    ] = "",
     contact: asked.Contact = None,
     effect: asked.EffectIds = None,
     effects: EffectFiles = None,
@@ -66,16 +75,19 @@ def command(
     from ssmr_ident.cli.progress import doing
     from ssmr_ident.core.atomic import refuse_unwritable
     from ssmr_ident.experiments import Conditions
-    from ssmr_ident.workflows.simulate import Request, experiment_of, simulate_to_file, wheels_of
+    from ssmr_ident.workflows.simulate.request import Request, experiment_of, wheels_of
+    from ssmr_ident.workflows.simulate.run import simulate_to_file
 
     conditions = Conditions(
-        motion=motion, amplitude_mm=amplitude_mm, start=start, push_N=push_n, direction=direction, angle_deg=angle_deg,
+        motion=motion, amplitude_mm=amplitude_mm, amplitude_deg=amplitude_deg, start=start, push_N=push_n,
+        direction=direction, angle_deg=angle_deg,
         speed_mm_s=speed_mm_s, height_m=height_m, wheels_gripping=wheels_of(wheels_gripping), cable=cable,
         wheel_rate_rad_s=wheel_rate_rad_s, free_normal=free_normal, yaw_rate_deg_s=yaw_rate_deg_s,
         speed_m_s=speed_m_s,
     )  # fmt: skip
     request = Request(
-        experiment_of(experiment), conditions, force=force, duration_s=duration_s, rate_hz=rate_hz, noise=noise,
+        experiment_of(experiment), conditions, force=force, base=base, baseline=baseline, duration_s=duration_s,
+        rate_hz=rate_hz, noise=noise,
         seed=seed, effects=tuple(effect or ()), contact=contact,
     )  # fmt: skip
     refuse_unwritable(output)

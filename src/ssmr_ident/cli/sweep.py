@@ -69,7 +69,7 @@ def command(
     from ssmr_ident.cli.progress import progress
     from ssmr_ident.core.errors import InputError, did_you_mean
     from ssmr_ident.experiments import Conditions
-    from ssmr_ident.workflows.simulate import Request, experiment_of, wheels_of
+    from ssmr_ident.workflows.simulate.request import Request, experiment_of, wheels_of
     from ssmr_ident.workflows.sweep.axes import axis_of
     from ssmr_ident.workflows.sweep.files import write
     from ssmr_ident.workflows.sweep.run import points_of, sweep

@@ -23,7 +23,7 @@ from ssmr_ident.signals.noise import quietest_density
 from ssmr_ident.simulate.simulation import simulate
 
 AXES = ("ax", "ay", "az")
-_SETTLING = 2.0  # s run before the record, so that motor and tires are in their steady course
+SETTLING = 2.0  # s run before the record, so that motor and tires are in their steady course
 FLOOR_HEIGHT, FLOOR_LENGTH = 3e-5, 6e-3  # m: a smooth floor, whose grain keeps runs from repeating
 _NOISE_SEED = 1
 
@@ -80,9 +80,9 @@ def wanted_rates(robot: Robot, measurement: Measurement) -> tuple[np.ndarray, fl
         return _from_log(robot, measurement.wheels, measurement.recording)
     if entry.wheel_speed_m_s is not None:
         sign = np.array(measurement.experiment.wheel_signs)
-        return np.atleast_2d(sign * entry.wheel_speed_m_s / robot.radius), 1.0, _SETTLING
+        return np.atleast_2d(sign * entry.wheel_speed_m_s / robot.radius), 1.0, SETTLING
     if entry.yaw_rate_deg_s is not None:
-        return np.atleast_2d(wheel_rates(robot, 0.0, np.deg2rad(entry.yaw_rate_deg_s))), 1.0, _SETTLING
+        return np.atleast_2d(wheel_rates(robot, 0.0, np.deg2rad(entry.yaw_rate_deg_s))), 1.0, SETTLING
     raise InputError(
         f"session entry {entry.file}",
         f"a {entry.experiment} needs yaw_rate_deg_s, wheel_speed_m_s or wheel_log",

@@ -22,7 +22,9 @@ class Conditions:
     motion : {"roll", "pitch", "yaw"}
         Into which a free response is released.
     amplitude_mm : float
-        Displacement of the wheels at the release.
+        Displacement of the wheels, or of a rig's mass, at the release.
+    amplitude_deg : float
+        Angle of a rotary rig at the release.
     start : {"tilted", "vertical"}
         Of a free response: tilted about the CoM, which strains all springs, or the thesis' push of vertical ones only.
     push_N : float
@@ -51,6 +53,7 @@ class Conditions:
 
     motion: Annotated[str, _ENTRY["motion"][0]] = "roll"
     amplitude_mm: Annotated[float, Number("mm", least=-1e4, most=1e4)] = 0.3
+    amplitude_deg: Annotated[float, Number("deg", least=-360.0, most=360.0)] = 5.0
     start: Annotated[str, Choice(("tilted", "vertical"))] = "tilted"
     push_N: Annotated[float, Number("N", least=-1e9, most=1e9)] = 0.0
     direction: Annotated[str, _ENTRY["direction"][0]] = "lateral"

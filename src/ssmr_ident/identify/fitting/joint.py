@@ -95,8 +95,9 @@ class JointFit:
 
     @cached_property
     def parts(self) -> Array:
-        """(t,) float, sum of squared whitened residuals of each trial."""
-        return np.array([float(r @ r) for r in self.residuals])
+        """(t,) float, sum of squared whitened residuals of each trial, of which rounding leaves something always."""
+        least = [float(np.sum(t.white_target**2)) * np.finfo(float).eps ** 2 for t in self.trials]
+        return np.maximum([float(r @ r) for r in self.residuals], least)
 
     @cached_property
     def counted(self) -> Array:

@@ -20,11 +20,15 @@ _TURNING = np.array([0.0, 0.0, 0.0, 1.0, 1.0, 1.0] * 2)
 
 def seen_axis(measurement: Measurement) -> str:
     """The channel that a pure rotation is read from (5.8): gravity for roll and pitch, the lever arm for yaw."""
-    axes = {"roll": "ay", "pitch": "ax", "yaw": "ay"}
     motion = measurement.entry.motion
     if motion is None:
         raise InputError(f"session entry {measurement.name}: motion", "is missing", "Give roll, pitch or yaw")
-    return axes[motion]
+    return axis_of(motion)
+
+
+def axis_of(motion: str) -> str:
+    """The axis of the accelerometer that sees a rotation."""
+    return {"roll": "ay", "pitch": "ax", "yaw": "ay"}[motion]
 
 
 @dataclass(frozen=True)

@@ -130,7 +130,7 @@ def _made(*contents: dict[str, Any]) -> Vocabulary:
     sections: dict[str, set[tuple[str, ...]]] = {section: set() for section in _SECTIONS}
     conventions: list[Convention] = []
     units: dict[str, Conversion] = {}
-    known = {*QUANTITY_OF_UNIT.values(), "date", "base_acceleration", "position_reference"}
+    known = {*QUANTITY_OF_UNIT.values(), "date", "base_acceleration", "base_position", "position_reference"}
     for content in contents:
         entries: dict[str, dict[str, Any]] = dict(content.get("quantities") or {})
         for quantity, entry in entries.items():

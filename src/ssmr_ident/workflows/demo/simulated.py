@@ -9,7 +9,8 @@ from ssmr_ident.core.atomic import write_text
 from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.experiments import FREE_RESPONSE, PULL, VERTICAL_COMPRESSION, WHEEL_DRAG, Conditions
 from ssmr_ident.session import write_parameters
-from ssmr_ident.workflows.simulate import Request, simulate_to_file
+from ssmr_ident.workflows.simulate.request import Request
+from ssmr_ident.workflows.simulate.run import simulate_to_file
 
 _LOGS: tuple[tuple[str, Request, str], ...] = (
     ("roll.lvm", Request(FREE_RESPONSE, Conditions(motion="roll", push_N=20.0)), "motion: roll"),

@@ -13,7 +13,7 @@ from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.core.place import Place
 from ssmr_ident.physics.effects import CATALOGUE
 from ssmr_ident.session.schema import KEYS
-from ssmr_ident.workflows.simulate import Request, asked_for
+from ssmr_ident.workflows.simulate.request import Request, asked_for
 
 FLOORS = {"concrete": 0.86, "carpet": 0.98}
 """µ_s of section 3.3; µ_k keeps its ratio to µ_s. Other floors come as parameter files, ``robot=A.yaml,B.yaml``."""

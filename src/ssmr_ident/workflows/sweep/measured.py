@@ -11,7 +11,7 @@ from ssmr_ident.signals.analysis import AnalysisOptions, analyse
 from ssmr_ident.signals.filters import FREE_RESPONSE_LOW_PASS_HZ, SWIVEL_LOW_PASS_HZ
 from ssmr_ident.signals.peaks import COUNT
 from ssmr_ident.signals.spectra import FREE_RESPONSE_LENGTH, SWIVEL_LENGTH, select_range
-from ssmr_ident.workflows.simulate import Request
+from ssmr_ident.workflows.simulate.request import Request
 
 AXES = ("ax", "ay", "az")
 SHOWN_HZ = 60.0

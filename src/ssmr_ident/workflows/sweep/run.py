@@ -30,7 +30,8 @@ from ssmr_ident.readers import writers
 from ssmr_ident.session import read_parameters
 from ssmr_ident.session.parameters_text import parameters_text
 from ssmr_ident.simulate.slips import wheel_slips
-from ssmr_ident.workflows.simulate import Request, asked_for, check, run_robot
+from ssmr_ident.workflows.simulate.request import Request, asked_for, check
+from ssmr_ident.workflows.simulate.robot import run_robot
 from ssmr_ident.workflows.sweep.axes import Axis, Value
 from ssmr_ident.workflows.sweep.measured import measured
 
