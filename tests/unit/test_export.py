@@ -14,6 +14,7 @@ from scipy.io import loadmat
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import Estimate
 from ssmr_ident.core.recording import Channel, Provenance, Recording
+from ssmr_ident.readers import read
 from ssmr_ident.session import read_parameters
 from ssmr_ident.workflows.export import parameters_as, write_recording_as
 
@@ -69,6 +70,15 @@ def test_a_log_comes_back_from_a_universal_file(log: Recording, tmp_path: Path) 
     sets = pyuff.UFF(str(write_recording_as(tmp_path / "log.uff", log, "uff"))).read_sets()
     np.testing.assert_allclose(sets[0]["data"], log["force"], rtol=1e-9, atol=1e-12)
     assert sets[1]["abscissa_inc"] == pytest.approx(1 / 200.0)
+
+
+@pytest.mark.parametrize("form", ["parquet", "mat", "uff"])
+def test_what_is_written_is_read_again(log: Recording, tmp_path: Path, form: str) -> None:
+    pytest.importorskip({"parquet": "pyarrow", "mat": "scipy", "uff": "pyuff"}[form])
+    (again,) = read(write_recording_as(tmp_path / f"log.{form}", log, form))
+    assert {c.name: c.unit for c in again.channels} == {c.name: c.unit for c in log.channels}
+    np.testing.assert_allclose(again["force"], log["force"], rtol=1e-9, atol=1e-12)
+    np.testing.assert_allclose(again.time, log.time, atol=1e-9)
 
 
 def test_uneven_stamps_are_no_universal_file(log: Recording, tmp_path: Path) -> None:

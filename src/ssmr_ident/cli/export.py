@@ -36,7 +36,7 @@ def command(
     forms = PARAMETER_FORMATS if parameters else RECORDING_FORMATS
     if to not in forms:
         kind = "parameters" if parameters else "a log"
-        raise InputError(f"--to {to}", f"is no form of {kind}; expected {', '.join(forms)}", did_you_mean(to, forms))
+        raise InputError(f"--to {to}", f"is no form of {kind}", did_you_mean(to, forms))
     if parameters:
         write_bytes(output, parameters_as(read_parameters(what), to))
     else:

@@ -225,6 +225,14 @@ def _sibling_units(array: NamedArray, arrays: list[NamedArray]) -> list[str]:
     if name.endswith("_Data"):
         header = NamedArray((*array.group, f"{name[:-5]}_Header", name), array.values)
         return _siblings(header, arrays, _UNIT_KEYS)
+    for one in arrays:  # a struct of units, whose fields are called as the arrays are
+        if (
+            len(one.path) > 1
+            and one.path[:-2] == array.group
+            and one.path[-1] == name
+            and one.path[-2].lower() in _UNIT_KEYS
+        ):
+            return [_text(one.values)] if isinstance(one.values, str) else []
     units = _siblings(array, arrays, _UNIT_KEYS)
     if len(units) == 1:  # one text for all: "N, m/s^2"
         units = [unit.strip() for unit in re.split(r"[,;|]", units[0])]

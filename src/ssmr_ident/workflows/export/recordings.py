@@ -15,6 +15,8 @@ from ssmr_ident.core.recording import Recording
 
 RATE_TOLERANCE = 1e-3
 """Of a step: a universal file has one rate, and stamps may be as far from it."""
+_ORDINATES = {"m": 8, "m/s": 11, "m/s^2": 12, "N": 13}
+"""What a universal file calls a quantity of that unit; 0 for unknown."""
 
 
 def parquet_of(recording: Recording) -> bytes:
@@ -60,17 +62,15 @@ def uff_of(recording: Recording) -> bytes:
         path = Path(folder) / "log.uff"
         file = pyuff.UFF(str(path))
         for number, channel in enumerate(recording.channels, 1):
-            file.write_sets(
-                pyuff.prepare_58(
-                    binary=0, func_type=1, rsp_node=number, rsp_dir=0, ref_node=0, ref_dir=0,
-                    data=channel.samples, x=recording.time, id1=channel.name, rsp_ent_name="NONE",
-                    abscissa_spacing=1, abscissa_min=float(recording.time[0]), abscissa_inc=step,
-                    abscissa_axis_units_lab="s", ordinate_axis_units_lab=channel.unit,
-                    abscissa_spec_data_type=17, ordinate_spec_data_type=0, orddenom_spec_data_type=0,
-                    z_axis_spec_data_type=0,
-                ),
-                mode="add",
+            data_set = pyuff.prepare_58(
+                binary=0, func_type=1, rsp_node=number, rsp_dir=0, ref_node=0, ref_dir=0,
+                data=channel.samples, x=recording.time, id1=channel.name, rsp_ent_name="NONE",
+                abscissa_spacing=1, abscissa_min=float(recording.time[0]), abscissa_inc=step,
+                abscissa_axis_units_lab="s", ordinate_axis_units_lab=channel.unit, abscissa_spec_data_type=17,
+                ordinate_spec_data_type=_ORDINATES.get(channel.unit, 0), orddenom_spec_data_type=0,
+                z_axis_spec_data_type=0,
             )  # fmt: skip
+            file.write_sets({**data_set, "ordinate_axis_lab": channel.name}, mode="add")
         return path.read_bytes()
 
 
