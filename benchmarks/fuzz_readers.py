@@ -4,7 +4,8 @@ Seeds are the files of the folders given, or small logs of every format that thi
 flipped, cut, doubled, swapped and replaced by what trips parsers; the parts of a workbook are mutated inside the
 zip as well, with the checksums made right again, or nothing would ever get behind the door.
 
-Time is the processor's, here and in the process that compiled libraries read in; memory is the larger of the two.
+Each log is read in a warm child, under a limit of time, and its memory is measured. Time is the processor's, there and
+in the process that compiled libraries read in; memory is the larger of the two.
 
 Run: python benchmarks/fuzz_readers.py [--count 20000] [--minutes 20] [--seed 0] [--keep FOLDER] [FOLDER...]
 """
@@ -15,7 +16,6 @@ import argparse
 import gzip
 import io
 import math
-import resource
 import sys
 import tempfile
 import time
@@ -23,19 +23,19 @@ import traceback
 import warnings
 import zipfile
 from collections import Counter
+from collections.abc import Sequence
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 
 import numpy as np
+from limited_child import MEGABYTES, Child
 
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.recording import Channel, Provenance, Recording
 from ssmr_ident.readers import read
-from ssmr_ident.readers.apart import APART
 from ssmr_ident.readers.writers import write_csv, write_labview_xlsx, write_lvm, write_mtestquattro
 
-SECONDS = 2.0
-MEGABYTES = 500
 TOKENS = (
     b"NaN", b"-1.#IND", b"1e999", b"-1e-999", b"0,5", b"1.234.567,8", b"\0", b"\xff\xfe", b"\xef\xbb\xbf", b'"',
     b"'", b"\t\t\t", b";;;", b",,,", b"\r\n\r\n", b"***End_of_Header***", b"LabVIEW Measurement", b"X_Value",
@@ -207,6 +207,28 @@ def mutated_inside(data: bytes, rng: np.random.Generator) -> bytes:
     return buffer.getvalue()
 
 
+def judged(path: Path) -> str:
+    """What reading a log came to: ``read``, ``refused``, or what must not be."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            recordings = read(path)
+    except InputError as error:
+        return "refused" if "\n" not in str(error) else "many lines"
+    except Exception:
+        return f"traceback: {traceback.format_exc(limit=-4)}"
+    good = recordings and all((np.diff(r.time) > 0).all() and len(r.time) > 1 for r in recordings)
+    return "read" if good else "bad recording"
+
+
+def warm(folder: Path, logs: Sequence[tuple[str, bytes]]) -> None:
+    """Read each log once as it is."""
+    for name, data in logs:
+        (folder / name).write_bytes(data)
+        with suppress(InputError):  # the folders given may hold malformed samples
+            read(folder / name)
+
+
 def run(
     count: int,
     seed: int,
@@ -215,82 +237,47 @@ def run(
     minutes: float = math.inf,
     keep: Path | None = None,
     progress: bool = False,
-) -> tuple[Counter, list[str]]:
+) -> tuple[Counter[str], list[str], float, float]:
     """Read ``count`` mutated logs, or as many as ``minutes`` allow; those that fail are kept in ``keep``.
 
     Returns
     -------
     outcomes : Counter
-        ``read``, ``refused`` and what must not be: ``traceback``, ``slow``, ``bad recording``.
+        ``read``, ``refused`` and what must not be: ``traceback``, ``slow``, ``large``, ``bad recording``, ``died`` …
     failures : list of str
+    slowest, largest : float
+        Processor time of one log [s], and memory [MB].
     """
     rng = np.random.default_rng(seed)
     logs = seeds(folders)
-    outcomes: Counter = Counter()
+    outcomes: Counter[str] = Counter()
     failures: list[str] = []
-    slowest, end = 0.0, time.monotonic() + 60 * minutes
+    slowest, largest, end = 0.0, 0.0, time.monotonic() + 60 * minutes
     with tempfile.TemporaryDirectory() as folder:
-        for name, data in logs:  # what is compiled or imported first is no matter of a mutation
-            Path(folder, name).write_bytes(data)
-            with suppress(InputError):  # the folders given may hold malformed samples
-                read(Path(folder, name))
-        for number in range(count):
-            if time.monotonic() > end:
-                break
-            name, data = logs[int(rng.integers(len(logs)))]
-            inside = data[:2] == b"PK" and rng.random() < 0.7
-            raw = (mutated_inside if inside else mutated)(data, rng)
-            path = Path(folder, name)
-            path.write_bytes(raw)
-            begin, known = processor_seconds(), len(failures)
-            try:
-                with warnings.catch_warnings():
-                    warnings.simplefilter("error")
-                    recordings = read(path)
-                good = recordings and all((np.diff(r.time) > 0).all() and len(r.time) > 1 for r in recordings)
-                outcome = "read" if good else "bad recording"
-            except InputError as error:
-                outcome = "refused" if "\n" not in str(error) else "many lines"
-            except BaseException as error:
-                if isinstance(error, KeyboardInterrupt):
-                    raise
-                outcome = "traceback"
-                failures.append(f"#{number} {name}: " + traceback.format_exc(limit=-4))
-            spent = processor_seconds() - begin
-            slowest = max(slowest, spent)
-            outcomes[outcome] += 1
-            if spent > SECONDS:
-                outcomes["slow"] += 1
-                failures.append(f"#{number} {name}: {spent:.1f} s")
-            if outcome in ("bad recording", "many lines"):
-                failures.append(f"#{number} {name}: {outcome}")
-            if keep is not None and len(failures) > known:
-                keep.mkdir(parents=True, exist_ok=True)
-                (keep / f"{seed}-{number}-{name}").write_bytes(raw)
-            path.unlink()
-            if progress and number % 1000 == 999:
-                print(
-                    f"{number + 1}: {dict(outcomes)}, slowest {slowest:.2f} s, {peak_megabytes():.0f} MB",
-                    flush=True,
-                )
-    return outcomes, failures
-
-
-def processor_seconds() -> float:
-    """Of this process, of the children that have ended, and (Linux) of the one that still reads for it."""
-    ended = resource.getrusage(resource.RUSAGE_CHILDREN)
-    spent = time.process_time() + ended.ru_utime + ended.ru_stime
-    child = APART.running
-    if child is not None and sys.platform == "linux":
-        with suppress(OSError):  # it has just ended, and is among the children from the next time on
-            spent += time.clock_gettime(~child << 3 | 2)  # another process' clock, as clock_getcpuclockid makes it
-    return spent
-
-
-def peak_megabytes() -> float:
-    """Largest memory of this process so far, or of a child that has ended."""
-    peaks = (resource.getrusage(who).ru_maxrss for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
-    return max(peaks) / (2**20 if sys.platform == "darwin" else 2**10)
+        child = Child(Path(folder), partial(warm, logs=logs), judged)
+        try:
+            for number in range(count):
+                if time.monotonic() > end:
+                    break
+                name, data = logs[int(rng.integers(len(logs)))]
+                inside = data[:2] == b"PK" and rng.random() < 0.7
+                raw = (mutated_inside if inside else mutated)(data, rng)
+                outcome, spent, memory = child.ask(name, raw)
+                if memory > MEGABYTES:
+                    outcome = f"large: {memory:.0f} MB, {outcome}"
+                slowest, largest = max(slowest, spent), max(largest, memory)
+                outcomes[outcome.partition(":")[0]] += 1
+                if outcome not in ("read", "refused"):
+                    failures.append(f"#{number} {name}: {outcome}, {spent:.1f} s")
+                    if keep is not None:
+                        keep.mkdir(parents=True, exist_ok=True)
+                        (keep / f"{seed}-{number}-{name}").write_bytes(raw)
+                if progress and number % 1000 == 999:
+                    told = f"slowest {slowest:.2f} s, {largest:.0f} MB"
+                    print(f"{number + 1}: {dict(outcomes)}, {told}", flush=True)
+        finally:
+            child.end()
+    return outcomes, failures, slowest, largest
 
 
 def main() -> int:
@@ -301,14 +288,13 @@ def main() -> int:
     parser.add_argument("--keep", type=Path, help="folder for the files that fail")
     parser.add_argument("folders", nargs="*", type=Path)
     choices = parser.parse_args()
-    outcomes, failures = run(
+    outcomes, failures, slowest, largest = run(
         choices.count, choices.seed, choices.folders, minutes=choices.minutes, keep=choices.keep, progress=True
     )
-    APART.close()  # what has ended tells how much memory it took
     for failure in failures[:20]:
         print(failure[-400:])
-    print(f"{dict(outcomes)}; peak {peak_megabytes():.0f} MB; {len(failures)} failures")
-    return 1 if failures or peak_megabytes() > MEGABYTES else 0
+    print(f"{dict(outcomes)}; slowest {slowest:.2f} s; peak {largest:.0f} MB; {len(failures)} failures")
+    return 1 if failures else 0
 
 
 if __name__ == "__main__":

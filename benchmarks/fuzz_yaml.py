@@ -10,9 +10,6 @@ from __future__ import annotations
 
 import argparse
 import copy
-import multiprocessing
-import resource
-import signal
 import sys
 import tempfile
 import time
@@ -21,18 +18,15 @@ import warnings
 from collections import Counter
 from collections.abc import Callable, Iterator
 from functools import cache
-from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import yaml
+from limited_child import MEGABYTES, Child
 
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.session import bundled_robots, read_parameters, read_session
-
-SECONDS, MEGABYTES = 2.0, 500
-"""Of processor per megabyte of input and at least; of memory beyond what a warm child holds."""
 
 VALUES = (
     "0", "-0", "-1", "1e308", "-1e308", "5e-324", ".nan", ".inf", "-.inf", "1e999", "0x" + "f" * 4000, "9" * 5000,
@@ -181,73 +175,12 @@ def judged(path: Path) -> str:
     return "read"
 
 
-class _Late(BaseException):
-    """The processor time of one input is over."""
-
-
-def _late(number: int, frame: Any) -> None:
-    raise _Late
-
-
-def _child(line: Connection, folder: Path) -> None:
-    """Read what comes down the line; what passes a limit of memory or of processor time is told of."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    signal.signal(signal.SIGPROF, _late)
+def _warm(folder: Path) -> None:
+    """The catalogue is loaded before anything is measured."""
     read_parameters(bundled_robots()[0])
-    for name, text in seeds():  # the catalogue is loaded before anything is measured
+    for name, text in seeds():
         (folder / name).write_text(text, encoding="utf-8")
         judged(folder / name)
-    used = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[0]) * resource.getpagesize()
-    resource.setrlimit(resource.RLIMIT_AS, (used + MEGABYTES * 2**20,) * 2)
-    line.send("warm")
-    while True:
-        name, raw = line.recv()
-        path = folder / name
-        path.write_bytes(raw)
-        begun = time.process_time()
-        signal.setitimer(signal.ITIMER_PROF, SECONDS * max(1.0, len(raw) / 1e6))
-        try:
-            outcome = judged(path)
-        except MemoryError:
-            outcome = "too large"
-        except _Late:
-            outcome = f"slow: {raw[:2000]!r}"
-        signal.setitimer(signal.ITIMER_PROF, 0.0)
-        line.send((outcome, time.process_time() - begun))
-
-
-class Reader:
-    """A warm child, begun anew when it has hung or died."""
-
-    def __init__(self, folder: Path) -> None:
-        self.folder = folder
-        self._begin()
-
-    def _begin(self) -> None:
-        self.line, theirs = multiprocessing.Pipe()
-        self.process = multiprocessing.get_context("spawn").Process(
-            target=_child, args=(theirs, self.folder), daemon=True
-        )
-        self.process.start()
-        theirs.close()
-        self.line.recv()
-
-    def ask(self, name: str, raw: bytes) -> tuple[str, float]:
-        """Outcome and processor time of one input."""
-        self.line.send((name, raw))
-        try:
-            if self.line.poll(300 * SECONDS):  # of the clock, on a machine that has others to serve
-                return self.line.recv()  # type: ignore[no-any-return]
-            told = "hung"
-        except EOFError:
-            told = "died"
-        self.end()
-        self._begin()
-        return told, 300 * SECONDS
-
-    def end(self) -> None:
-        self.process.kill()
-        self.process.join()
 
 
 def run(count: int, seed: int, progress: bool = False) -> tuple[Counter[str], list[str], float]:
@@ -261,16 +194,16 @@ def run(count: int, seed: int, progress: bool = False) -> tuple[Counter[str], li
         folder = Path(name)
         for log in "abc":
             (folder / f"{log}.csv").write_text("t,a\n0,0\n", encoding="utf-8")
-        reader = Reader(folder)
+        reader = Child(folder, _warm, judged, MEGABYTES)
         try:
             for number in range(count):
                 file, text = texts[int(random.integers(len(texts)))]
                 raw = (structured if random.random() < 0.4 else mutated)(text, random)
-                outcome, spent = reader.ask(file, raw)
+                outcome, spent, _ = reader.ask(file, raw)
                 longest = max(longest, spent)
                 outcomes[outcome.partition(":")[0]] += 1
                 if outcome not in ("read", "refused"):
-                    failures.append(f"#{number} {file}: {outcome}")
+                    failures.append(f"#{number} {file}: {outcome}: {raw[:2000]!r}")
                 if progress and number % 1000 == 999:
                     print(f"{number + 1}: {dict(outcomes)}, longest {longest:.2f} s", flush=True)
         finally:

@@ -6,6 +6,7 @@ import math
 from pathlib import Path
 
 import pandas as pd
+from matplotlib.dates import AutoDateLocator, ConciseDateFormatter
 from matplotlib.figure import Figure
 
 from ssmr_ident.report import style
@@ -94,11 +95,11 @@ def _sessions(results: Results) -> Section:
         target = f"sessions/{name}/report.html"
         link: Cell = Link(name, target) if (results.folder / target).is_file() else name
         rows.append((
-            link, row.robot, row.verdict.replace("_", " ") or NONE, row.effects or NONE,
+            link, row.robot, row.verdict.replace("_", " ") or NONE, row.effects or NONE, far,
             _number(row.confidence), _number(row.heldout_before), _number(row.heldout_after), _number(row.noise_floor),
-            far, _number(row.seconds),
+            _number(row.seconds),
         ))  # fmt: skip
-    header = ("session", "robot", "verdict", "physics", "confidence", "before", "after", "floor", "farthest", "s")
+    header = ("session", "robot", "verdict", "physics", "farthest", "confidence", "before", "after", "floor", "s")
     caption = (
         "Held-out error before and after, and what noise leaves of it (% or dB). Farthest: the fitted parameter that "
         "stands farthest from the median of the same robot's sessions; those sessions come first."
@@ -148,7 +149,9 @@ def parameters_figure(fitted: pd.DataFrame, names: list[str]) -> Figure:
                     color=colour, markersize=2.5, elinewidth=0.6, label=robot, rasterized=len(one) > 500,
                 )  # fmt: skip
         ax.set_title(f"{name} [{unit(values.unit.iloc[0]) or '1'}]", fontsize=7)
-        ax.tick_params(axis="x", labelrotation=30)
+        dates = AutoDateLocator(minticks=2, maxticks=5)
+        ax.xaxis.set_major_locator(dates)
+        ax.xaxis.set_major_formatter(ConciseDateFormatter(dates))
         if k == 0 and 1 < len(robots) <= len(style.SERIES):
             ax.legend()
     for ax in axes.flat[len(names) :]:
