@@ -149,9 +149,9 @@ def parameters_figure(fitted: pd.DataFrame, names: list[str]) -> Figure:
                     color=colour, markersize=2.5, elinewidth=0.6, label=robot, rasterized=len(one) > 500,
                 )  # fmt: skip
         ax.set_title(f"{name} [{unit(values.unit.iloc[0]) or '1'}]", fontsize=7)
-        dates = AutoDateLocator(minticks=2, maxticks=5)
+        dates = AutoDateLocator(minticks=2, maxticks=5)  # type: ignore[no-untyped-call]
         ax.xaxis.set_major_locator(dates)
-        ax.xaxis.set_major_formatter(ConciseDateFormatter(dates))
+        ax.xaxis.set_major_formatter(ConciseDateFormatter(dates))  # type: ignore[no-untyped-call]
         if k == 0 and 1 < len(robots) <= len(style.SERIES):
             ax.legend()
     for ax in axes.flat[len(names) :]:
