@@ -17,12 +17,11 @@ def main() -> None:
     os.dup2(2, 1)  # whatever else is printed is no answer
     lines: queue.SimpleQueue[str] = queue.SimpleQueue()
     threading.Thread(target=_read, args=(lines,), daemon=True).start()
-    from ssmr_ident.core.documents import json_text
     from ssmr_ident.workflows.batch.session_run import run_session
     from ssmr_ident.workflows.batch.task import Task
 
     while True:
-        print(json_text(run_session(Task.from_line(lines.get()))), file=answers, flush=True)
+        print(run_session(Task.from_line(lines.get())), file=answers, flush=True)
 
 
 def _read(lines: queue.SimpleQueue[str]) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 import signal
 import subprocess
@@ -57,7 +58,8 @@ class Guarded:
 
         timer = threading.Timer(min(self.timeout, threading.TIMEOUT_MAX), stop)
         timer.daemon = True
-        timer.start()
+        if math.isfinite(self.timeout):
+            timer.start()
         try:
             child.stdin.write(task.as_line() + "\n")
             child.stdin.flush()

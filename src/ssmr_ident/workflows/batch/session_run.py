@@ -18,15 +18,15 @@ from ssmr_ident.workflows.batch.task import ROW, Task
 from ssmr_ident.workflows.fit.run import fit_campaign
 
 
-def run_session(task: Task) -> dict[str, Any]:
-    """Fit and diagnose one session, write its files, and tell what came out as plain values.
+def run_session(task: Task) -> str:
+    """Fit and diagnose one session, write its files, and tell what came out.
 
     Returns
     -------
-    dict
-        ``session``, ``status`` (``done`` or ``failed``), ``error``, ``seconds`` (of this process), ``fingerprint``,
-        and where the session could be read: ``name``, ``robot``, ``baseline``, ``experiments``, ``recordings``,
-        ``logged``, ``parameters``, ``diagnosis``.
+    str
+        One line of JSON, as it stands in the session's folder of results: ``session``, ``status`` (``done`` or
+        ``failed``), ``error``, ``seconds`` (of this process), ``fingerprint``, and where the session could be read:
+        ``name``, ``robot``, ``baseline``, ``experiments``, ``recordings``, ``logged``, ``parameters``, ``diagnosis``.
     """
     begun = time.process_time()
     row: dict[str, Any] = {"session": task.name, "status": "done", "error": "", "fingerprint": ""}
@@ -45,8 +45,9 @@ def run_session(task: Task) -> dict[str, Any]:
         row |= {"status": "failed", "error": f"{type(error).__name__}: {' '.join(str(error).split())}"}
     row["fingerprint"] = row["fingerprint"] or task.fingerprint()
     row["seconds"] = time.process_time() - begun
-    write_text(out / ROW, json_text(row))
-    return row
+    told = json_text(row)
+    write_text(out / ROW, told)
+    return told
 
 
 def _answers(task: Task, campaign: Campaign, row: dict[str, Any], out: Path) -> None:
