@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import signal
 import subprocess
 import sys
 import threading
@@ -16,7 +17,8 @@ from small_fleet import write_fleet
 
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.report.html import Link, Page, Section, Table, render_page
-from ssmr_ident.workflows.batch.guarded import Guarded
+from ssmr_ident.workflows.batch.forked import FORKS, Forked, ForkServer
+from ssmr_ident.workflows.batch.guarded import COMMAND, Guarded, environment
 from ssmr_ident.workflows.batch.outliers import farthest
 from ssmr_ident.workflows.batch.page import batch_page
 from ssmr_ident.workflows.batch.results import Results, read_results, write_results
@@ -89,6 +91,30 @@ def test_a_process_that_dies_is_told_with_what_it_died_of(tmp_path: Path) -> Non
     assert row["status"] == "killed"
     assert "SIGTERM" in row["error"] or os.name != "posix"
     assert json.loads((Path(task.out) / ROW).read_text(encoding="utf-8")) == row
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not FORKS, reason="forks no processes here")
+def test_forked_processes_hang_and_die_as_others_and_outlive_who_forked_them(tmp_path: Path) -> None:
+    write_fleet(tmp_path / "in", 1)
+    (task,) = find_tasks(tmp_path / "in", tmp_path / "out", "", False, False, 0)
+    server = ForkServer(COMMAND, environment())
+    guarded = Guarded(300.0, server=server)
+    assert guarded.run(task)["status"] == "done"
+    guarded.timeout = 0.01
+    assert guarded.run(task)["status"] == "timeout"
+    guarded.timeout = 300.0
+    child = guarded._living()
+    assert isinstance(child, Forked)
+    os.kill(child.pid, signal.SIGSTOP)
+    threading.Timer(0.1, lambda: [os.kill(child.pid, number) for number in (signal.SIGTERM, signal.SIGCONT)]).start()
+    row = guarded.run(task)
+    assert (row["status"], "SIGTERM" in row["error"]) == ("killed", True)
+    assert guarded.run(task)["status"] == "done"
+    server.close()
+    assert guarded.run(task)["status"] == "done"
+    assert not isinstance(guarded._living(), Forked)
+    guarded.stop()
 
 
 @pytest.mark.slow

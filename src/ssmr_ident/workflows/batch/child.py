@@ -1,25 +1,31 @@
 """The process that sessions run in, one after the other: a line of JSON in is a session, a line out its row.
 
-It ends with who started it, whatever that died of: its standard input is at its end then.
+It ends with who started it, whatever that died of: its standard input is at its end then. Called with ``--fork`` it
+reads no sessions but forks processes that do.
 """
 
 from __future__ import annotations
 
 import os
 import queue
+import socket
 import sys
 import threading
 
 
 def main() -> None:
     """Answer until the input ends."""
+    from ssmr_ident.workflows.batch.session_run import run_session
+    from ssmr_ident.workflows.batch.task import Task
+
+    if sys.argv[1:] == ["--fork"]:
+        from ssmr_ident.workflows.batch.forked import serve
+
+        serve(socket.socket(fileno=os.dup(0)))
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8", buffering=1)
     os.dup2(2, 1)  # whatever else is printed is no answer
     lines: queue.SimpleQueue[str] = queue.SimpleQueue()
     threading.Thread(target=_read, args=(lines,), daemon=True).start()
-    from ssmr_ident.workflows.batch.session_run import run_session
-    from ssmr_ident.workflows.batch.task import Task
-
     while True:
         print(run_session(Task.from_line(lines.get())), file=answers, flush=True)
 

@@ -10,12 +10,21 @@ import subprocess
 import sys
 import tempfile
 import threading
+from contextlib import suppress
 from pathlib import Path
 from typing import IO, Any
 
 from ssmr_ident.core.atomic import write_text
 from ssmr_ident.core.documents import json_text
+from ssmr_ident.workflows.batch.forked import Forked, ForkServer
 from ssmr_ident.workflows.batch.task import ROW, Task
+
+COMMAND = (sys.executable, "-m", "ssmr_ident.workflows.batch.child")
+
+
+def environment() -> dict[str, str]:
+    """Of a process that sessions run in: matrices are small, and threads of their algebra only wait for each other."""
+    return {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
 
 
 class Closed(Exception):
@@ -31,11 +40,13 @@ class Guarded:
         A session may take as long; ``inf`` for any time.
     processor : int or None
         The one that the child keeps to, where the system can say so.
+    server : ForkServer or None
+        What forks the child; None to begin it anew.
     """
 
-    def __init__(self, timeout: float, processor: int | None = None) -> None:
-        self.timeout, self.processor = timeout, processor
-        self._child: subprocess.Popen[str] | None = None
+    def __init__(self, timeout: float, processor: int | None = None, server: ForkServer | None = None) -> None:
+        self.timeout, self.processor, self.server = timeout, processor, server
+        self._child: subprocess.Popen[str] | Forked | None = None
         self._said: IO[str] | None = None
         self._closed = False
 
@@ -48,6 +59,8 @@ class Guarded:
             ``close`` was called meanwhile.
         """
         child = self._living()
+        if self._closed:
+            child.kill()
         assert child.stdin is not None
         assert child.stdout is not None
         late = threading.Event()
@@ -89,22 +102,26 @@ class Guarded:
         if self._child is not None:
             self._ended(self._child)
 
-    def _living(self) -> subprocess.Popen[str]:
+    def _living(self) -> subprocess.Popen[str] | Forked:
         if self._child is not None and self._child.poll() is not None:
             self._ended(self._child)
         if self._child is None:
             self._said = tempfile.TemporaryFile("w+", encoding="utf-8", errors="replace")  # noqa: SIM115 - lives on
-            self._child = subprocess.Popen(
-                [sys.executable, "-m", "ssmr_ident.workflows.batch.child"],
-                stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self._said, text=True, encoding="utf-8",
-                env={**os.environ, "OPENBLAS_NUM_THREADS": "1"},
-                start_new_session=os.name == "posix",  # the terminal's Ctrl-C is for who waits for all of them
-            )  # fmt: skip
+            self._child = self._begun(self._said)
             if self.processor is not None and hasattr(os, "sched_setaffinity"):
                 os.sched_setaffinity(self._child.pid, {self.processor})
         return self._child
 
-    def _ended(self, child: subprocess.Popen[str]) -> tuple[int, str]:
+    def _begun(self, said: IO[str]) -> subprocess.Popen[str] | Forked:
+        if self.server is not None:
+            with suppress(OSError):  # one that has ended costs time alone
+                return self.server.fork(said)
+        return subprocess.Popen(
+            COMMAND, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=said, text=True, encoding="utf-8",
+            env=environment(), start_new_session=os.name == "posix",  # the terminal's Ctrl-C is for who waits for all
+        )  # fmt: skip
+
+    def _ended(self, child: subprocess.Popen[str] | Forked) -> tuple[int, str]:
         """Let go of a child: its exit status, and the last line that it said."""
         assert self._said is not None
         self._child = None

@@ -8,7 +8,8 @@ import threading
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from ssmr_ident.workflows.batch.guarded import Closed, Guarded
+from ssmr_ident.workflows.batch.forked import FORKS, ForkServer
+from ssmr_ident.workflows.batch.guarded import COMMAND, Closed, Guarded, environment
 from ssmr_ident.workflows.batch.task import Task
 
 
@@ -28,7 +29,8 @@ def run_here(tasks: Sequence[Task], jobs: int, timeout: float) -> Iterator[dict[
     rows: queue.SimpleQueue[dict[str, Any] | BaseException] = queue.SimpleQueue()
     for task in tasks:
         waiting.put(task)
-    children = [Guarded(timeout, allowed[k % len(allowed)]) for k in range(count)]
+    server = ForkServer(COMMAND, environment()) if FORKS and count else None
+    children = [Guarded(timeout, allowed[k % len(allowed)], server) for k in range(count)]
 
     def work(child: Guarded) -> None:
         try:
@@ -53,3 +55,5 @@ def run_here(tasks: Sequence[Task], jobs: int, timeout: float) -> Iterator[dict[
             child.close()
         for thread in threads:
             thread.join()
+        if server is not None:
+            server.close()
