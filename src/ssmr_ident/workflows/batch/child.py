@@ -11,21 +11,25 @@ import queue
 import socket
 import sys
 import threading
+from importlib import import_module
 
 
 def main() -> None:
     """Answer until the input ends."""
-    from ssmr_ident.workflows.batch.session_run import run_session
-    from ssmr_ident.workflows.batch.task import Task
-
     if sys.argv[1:] == ["--fork"]:
-        from ssmr_ident.workflows.batch.forked import serve
+        from ssmr_ident.workflows.batch.forked import serve, watched
 
-        serve(socket.socket(fileno=os.dup(0)))
+        line = socket.socket(fileno=os.dup(0))
+        with watched(line):
+            import_module("ssmr_ident.workflows.batch.session_run")
+        serve(line)
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8", buffering=1)
     os.dup2(2, 1)  # whatever else is printed is no answer
     lines: queue.SimpleQueue[str] = queue.SimpleQueue()
     threading.Thread(target=_read, args=(lines,), daemon=True).start()
+    from ssmr_ident.workflows.batch.session_run import run_session
+    from ssmr_ident.workflows.batch.task import Task
+
     while True:
         print(run_session(Task.from_line(lines.get())), file=answers, flush=True)
 

@@ -6,13 +6,14 @@ A process begun anew takes seconds to import; where a session hangs or kills its
 from __future__ import annotations
 
 import os
+import select
 import signal
 import socket
 import subprocess
 import sys
 import threading
-from collections.abc import Sequence
-from contextlib import suppress
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
 from types import TracebackType
 from typing import IO
 
@@ -105,12 +106,37 @@ class ForkServer:
             raise ConnectionResetError("the process that forks has ended")
         return line.strip()
 
-    def close(self) -> None:
-        """End the server; those that it has forked are ended before."""
+    def kill(self) -> None:
+        """End the process, from any thread; who waits for its answer gets an OSError."""
         self._process.kill()
+
+    def close(self) -> None:
+        """End the process and let go of it, once nobody asks it any more."""
+        self.kill()
         self._process.wait()
         self._answers.close()
         self._line.close()
+
+
+@contextmanager
+def watched(line: socket.socket) -> Iterator[None]:
+    """End this process with who started it, while it does not listen; no thread is left for those that it forks."""
+    done = threading.Event()
+    gone = select.poll()
+    gone.register(line, select.POLLRDHUP)
+
+    def watch() -> None:
+        while not done.is_set():
+            if gone.poll(100):
+                os._exit(0)
+
+    thread = threading.Thread(target=watch)
+    thread.start()
+    try:
+        yield
+    finally:
+        done.set()
+        thread.join()
 
 
 def serve(line: socket.socket) -> None:

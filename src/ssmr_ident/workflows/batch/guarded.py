@@ -116,6 +116,9 @@ class Guarded:
         if self.server is not None:
             with suppress(OSError):  # one that has ended costs time alone
                 return self.server.fork(said)
+        if self._closed:
+            said.close()
+            raise Closed
         return subprocess.Popen(
             COMMAND, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=said, text=True, encoding="utf-8",
             env=environment(), start_new_session=os.name == "posix",  # the terminal's Ctrl-C is for who waits for all

@@ -53,6 +53,8 @@ def run_here(tasks: Sequence[Task], jobs: int, timeout: float) -> Iterator[dict[
     finally:
         for child in children:
             child.close()
+        if server is not None:
+            server.kill()
         for thread in threads:
             thread.join()
         if server is not None:
