@@ -10,6 +10,7 @@ from ssmr_ident.experiments.campaign import Campaign
 
 ENGINES = {
     "diagnose": "ssmr_ident.workflows.diagnose:diagnose",  # what `ident diagnose` runs
+    "decays": "ssmr_ident.doctor.decays.run:diagnose",  # free responses of a robot, beside the first doctor
 }
 
 

@@ -27,7 +27,7 @@ def rest_pose(robot: Robot, cubic: float = 0.0) -> np.ndarray:
     """
     known = _FOUND.setdefault(robot, {})
     if cubic not in known:
-        known[cubic] = _newton(robot.contact_points, robot.mass, float(robot.stiffness[2]), cubic)
+        known[cubic] = resting(robot.contact_points, robot.mass, float(robot.stiffness[2]), cubic)
     return known[cubic].copy()
 
 
@@ -36,7 +36,8 @@ _FOUND: WeakKeyDictionary[Robot, dict[float, np.ndarray]] = WeakKeyDictionary()
 
 
 @kernel
-def _newton(points, mass, stiffness, cubic):
+def resting(points, mass, stiffness, cubic):
+    """``rest_pose`` of numbers: (4, 3) float [m], [kg], [N/m], [N/m^3]."""
     sink = mass * GRAVITY / (4.0 * stiffness)
     height, roll, pitch = -points[:, 2].mean() - sink, 0.0, 0.0
     for _ in range(30):

@@ -155,6 +155,16 @@ class BodyDecay:
         )
 
 
+def blocks_of(step: float, bandwidth_hz: float) -> tuple[int, int]:
+    """Samples of a log that are averaged into a block, and those after a release that its accelerometer's own transient
+    takes."""
+    block = max(1, round(1.0 / (BLOCK_RATE_HZ * step)))
+    if low_pass_coefficients(bandwidth_hz, step)[0] == 1.0:
+        return block, 0
+    # Poles of a second-order Butterworth lie at ω_c·(−1 ± i)/√2.
+    return block, math.ceil(-math.log(SETTLED) / (2 * math.pi * bandwidth_hz / math.sqrt(2.0)) / step)
+
+
 def body_decay(
     name: str, time: Array, channels: Sequence[tuple[int, Array]], bandwidth_hz: float, mains_hz: float | None = 60.0
 ) -> BodyDecay:
@@ -175,11 +185,7 @@ def body_decay(
         As ``fit_decay``.
     """
     record = prepare(time, np.column_stack([samples for _, samples in channels]), None, mains_hz, 0)
-    block = max(1, round(1.0 / (BLOCK_RATE_HZ * record.step)))
-    skip = 0
-    if low_pass_coefficients(bandwidth_hz, record.step)[0] != 1.0:
-        # Poles of a second-order Butterworth lie at ω_c·(−1 ± i)/√2.
-        skip = math.ceil(-math.log(SETTLED) / (2 * math.pi * bandwidth_hz / math.sqrt(2.0)) / record.step)
+    block, skip = blocks_of(record.step, bandwidth_hz)
     count = (len(record.samples) - skip) // block
     samples = record.samples[skip : skip + count * block].reshape(count, block, -1).mean(axis=1)
     noises = tuple(white_noise(samples[:, c]) for c in range(samples.shape[1]))

@@ -1,0 +1,177 @@
+"""Decays of a linear model fitted exactly: eigenvalues in place of time steps, states at the release eliminated.
+
+A small motion is a sum of exponentials; so is what a small change of a parameter adds to it, each also times t. One
+set of these columns per recording gives cost, slopes and curvature of all parameters. The states at the release,
+which enter linearly, are solved for at every point (variable projection; Golub and Pereyra 1973, with Kaufman's step).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ssmr_ident.doctor.decays.modes import GROWTH, SENSOR_STATES, Modes, Slopes, modes_at, slopes_of, waves
+from ssmr_ident.doctor.decays.recordings import Decay, Sensed
+from ssmr_ident.identify.fitting.coordinates import Model
+from ssmr_ident.identify.trials.decay import SCALES
+from ssmr_ident.physics.extended import BODY
+
+Array = np.ndarray
+
+SENSOR_SCALE = 30.0
+"""Prior standard deviation of what a slow sensor still has to make up for at the begin [m/s^2]."""
+
+STRIDE, EFFECT_STRIDE = 3.0, 0.6
+"""Furthest that a step moves what is known beforehand, in its standard deviations, and an effect's coordinate."""
+
+LEAST_GAIN = 0.05
+"""Fall of the cost at which a fit is at rest."""
+
+DAMPED = 6
+"""Dampings that are tried in a step, each ten times the last."""
+
+
+@dataclass(frozen=True, eq=False)
+class LinearFit:
+    """A linear model at some point.
+
+    Parameters
+    ----------
+    model : Model
+    point : (p,) float
+    cost : float
+        Of whitened residuals, priors and states at the release.
+    chi2 : float
+        Of the residuals alone.
+    states : tuple of (k,) float
+        At the release, SI: the body's twelve first.
+    """
+
+    model: Model
+    point: Array
+    cost: float
+    chi2: float
+    states: tuple[Array, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class System:
+    """Cost, half its gradient and curvature in the coordinates, all else eliminated."""
+
+    cost: float
+    chi2: float
+    gradient: Array
+    information: Array
+    states: tuple[Array, ...]
+
+
+def fit_linear(decays: Sequence[Decay], model: Model, point: Array, steps: int = 25) -> LinearFit | None:
+    """Levenberg-Marquardt from a point.
+
+    Parameters
+    ----------
+    decays : sequence of Decay
+    model : Model
+        Its effects among ``physics.extended.LINEAR``.
+    point : (p,) float
+    steps : int
+        At the most; 0 finds the states at the release alone.
+
+    Returns
+    -------
+    LinearFit or None
+        None where there is no such robot at the point, or it falls over.
+    """
+    now = system(decays, model, point)
+    if now is None:
+        return None
+    damping = 1e-3
+    stride = np.where(np.arange(len(point)) < len(model.physics), STRIDE, EFFECT_STRIDE)
+    for _ in range(steps):
+        moved = None
+        for _ in range(DAMPED):
+            curved = now.information + damping * np.diag(np.diag(now.information))
+            move = -np.linalg.solve(curved, now.gradient)
+            move *= min(1.0, float(np.min(stride / np.maximum(np.abs(move), 1e-300))))
+            if -float(move @ now.gradient) < LEAST_GAIN:
+                break
+            then = system(decays, model, point + move)
+            if then is not None and then.cost < now.cost:
+                moved = then
+                break
+            damping = max(10.0 * damping, 1e-3)
+        if moved is None:
+            break
+        gain, point, now, damping = now.cost - moved.cost, point + move, moved, 0.2 * damping
+        if gain < LEAST_GAIN:
+            break
+    return LinearFit(model, point, now.cost, now.chi2, now.states)
+
+
+def system(decays: Sequence[Decay], model: Model, point: Array) -> System | None:
+    """Normal equations at a point; None where there is no such robot, or it falls over."""
+    first = decays[0]
+    modes = modes_at(first.builder, model, point, first.log_step)
+    if modes is None or modes.poles.real.max() * max(float(d.times[-1]) for d in decays) > GROWTH:
+        return None
+    moved = slopes_of(modes, first.builder, model, point, first.log_step)
+    scales = state_scales(modes)
+    columns: dict[tuple[float, float], Array] = {}
+    sensed: dict[tuple[float, int], Sensed] = {}
+    cost, chi2 = float(point @ point), 0.0
+    gradient, information = point.copy(), np.eye(len(point))
+    states = []
+    for decay in decays:
+        grid, sampling = (decay.first, decay.step), (decay.log_step, decay.block)
+        if grid not in columns:
+            count = max(len(d.times) for d in decays if (d.first, d.step) == grid)
+            columns[grid] = waves(modes.kept, *grid, count)
+        if sampling not in sensed:
+            sensed[sampling] = decay.sensed(modes.kept, modes.bandwidth_hz, modes.of_sensor, bool(moved.by_band.any()))
+        white = decay.whitened(columns[grid][: len(decay.times)])
+        part = _of_decay(decay, white, modes, moved, sensed[sampling], scales)
+        x, rest, projected, slope = part
+        chi2 += float(rest @ rest)
+        cost += float(rest @ rest) + float(x @ x)
+        states.append(scales * x)
+        gradient -= slope.T @ rest
+        information += slope.T @ projected
+    return System(cost, chi2, gradient, information, tuple(states)) if math.isfinite(cost) else None
+
+
+def _of_decay(
+    decay: Decay, white: Array, modes: Modes, moved: Slopes, sensed: Sensed, scales: Array
+) -> tuple[Array, Array, Array, Array]:
+    """Scaled states at the release, residuals, and slopes with the states' share taken out and in."""
+    axes, k = list(decay.axes), len(modes.kept)
+    read = modes.read[axes]
+    amplitude = (read[:, modes.keep] * sensed.gain * modes.weight)[:, :, None] * (modes.into * scales)[modes.keep]
+    columns = np.concatenate([amplitude.real, -amplitude.imag], axis=1)
+    design = (white[:, :, : 2 * k] @ columns).reshape(-1, columns.shape[2])
+    factor = np.linalg.inv(np.linalg.cholesky(design.T @ design + np.eye(design.shape[1])))
+    x = factor.T @ (factor @ (design.T @ decay.trial.white_target))
+    rest = decay.trial.white_target - design @ x
+    own = modes.into @ (scales * x)
+    # what each exponential's amplitude changes by, and that of the same times t
+    change = moved.read[:, axes] * own + read * (moved.between @ own)[:, None, :] - moved.back[:, axes] * own
+    change = change + read * (moved.start @ (scales * x))[:, None, :]
+    drift = (read * own)[:, modes.keep] * modes.weight
+    pole = moved.poles[:, None, modes.keep]
+    plain = change[:, :, modes.keep] * sensed.gain * modes.weight + sensed.by_pole * drift * pole
+    plain = plain + sensed.by_band * drift * moved.by_band[:, None, None]
+    late = sensed.gain * drift * pole
+    coefficients = np.concatenate([plain.real, -plain.imag, late.real, -late.imag], axis=2)
+    slope = np.matmul(white, coefficients.transpose(1, 2, 0)).reshape(len(rest), -1)
+    return x, rest, slope - design @ (factor.T @ (factor @ (design.T @ slope))), slope
+
+
+def state_scales(modes: Modes) -> Array:
+    """Prior standard deviations of what is free at the release."""
+    parts = [SCALES[:BODY]]
+    parts += [SCALES[BODY : BODY + 4]] if modes.sways else []
+    parts += [SCALES[:6]] if modes.relaxes else []
+    parts += [np.full(SENSOR_STATES, SENSOR_SCALE)] if modes.slow else []
+    return np.concatenate(parts)

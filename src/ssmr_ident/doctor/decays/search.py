@@ -1,0 +1,282 @@
+"""The search: linear members exactly, laws by stretches that begin anew, the best of both on whole recordings."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from ssmr_ident.core.errors import InputError
+from ssmr_ident.diagnose.formulas import other_formulas
+from ssmr_ident.diagnose.scan import promising, scan
+from ssmr_ident.doctor.decays.found import Found, Search, cost_of
+from ssmr_ident.doctor.decays.laws import (
+    BEGUN,
+    FIRST_S,
+    LAST,
+    LED,
+    STRETCHES_S,
+    begun_at,
+    exact,
+    led_on,
+    left_known,
+    on_whole,
+    stretches_of,
+)
+from ssmr_ident.doctor.decays.linear import fit_linear
+from ssmr_ident.doctor.decays.members import Member, any_static, members
+from ssmr_ident.doctor.decays.recordings import Decay, thinned
+from ssmr_ident.identify.fitting.coordinates import Model
+from ssmr_ident.identify.fitting.descent import descend
+from ssmr_ident.identify.fitting.joint import JointFit, differentiate, evaluate
+from ssmr_ident.physics.effects import CATALOGUE
+
+Array = np.ndarray
+Progress = Callable[[str, int, int], None]
+
+THIN_S, EVERY = 1.5, 2
+"""Of a decay, what starts of linear members are chosen on: its first part, every so many blocks."""
+
+TRIED, CLOSER, FULL = 3, 6, 12
+"""Steps of every start of a linear member, of the chosen ones, and of the best on whole recordings."""
+
+TO_THE_END = 10
+"""Steps of the best law, at the most."""
+
+CHOSEN = 2
+"""Starts of a linear member that go on."""
+
+FIELD, LAWS = 5, 3
+"""Effects with laws that go on after their first steps, and of these to whole recordings; in two formulas at most."""
+
+HOPELESS, FAR_OFF = 30.0, 3.0
+"""Factors on the least cost, on stretches, beyond which a law does not go on."""
+
+SECOND_OVER = 1.25
+"""RMS of whitened residuals of the best from which a second effect is looked for."""
+
+FORMULA_OVER = 1.1
+"""The same from which a law is tried in other formulas."""
+
+NEAR = 1.5
+"""RMS of the baseline's whitened residuals up to which a law's releases are taken to be the baseline's."""
+
+TINY = 1e-9
+"""What has one sign begins at, where a member of any shape holds none of it."""
+
+REACH, SHARE = 50.0, 0.02
+"""Cost above the least, and share of the baseline's misfit, up to which a linear model is led on by the simulator."""
+
+
+def searched(decays: Sequence[Decay], model: Model, progress: Progress | None = None) -> Search:
+    """Fit the baseline and what may be beside it.
+
+    Parameters
+    ----------
+    decays : sequence of Decay
+    model : Model
+        The baseline.
+    progress : callable, optional
+    """
+    say = progress or (lambda stage, done, total: None)
+    decays = [d.coarse() for d in decays]
+    say("fitting the baseline", 0, 1)
+    begun = fit_linear(decays, model, np.zeros(len(model.unknowns)))
+    if begun is None:
+        raise InputError(
+            "robot file", "describes a robot that falls over on its tires", "Check stiffness, mass and height"
+        )
+    search = Search(tuple(decays), Found((), begun, exact(decays, begun, 1)))
+    say("fitting the baseline", 1, 1)
+    _beside(search, search.baseline, say)
+    _offered_back(search)
+    _settled(search, say)
+    _other_formulas(search, say)
+    _settled(search, say)
+    if search.best is not search.baseline and search.over(search.best) > SECOND_OVER:
+        for first in _firsts(search):
+            _beside(search, first, say)
+        _settled(search, say)
+    _finished(search, say)
+    return search
+
+
+def _firsts(search: Search) -> list[Found]:
+    named = [f for f in search.found if len(f.members) == 1 and not f.members[0].generic]
+    return sorted(named, key=lambda f: f.cost)[:1]
+
+
+def _beside(search: Search, first: Found, say: Progress) -> None:
+    """All members beside a fit."""
+    if first.fit is None:
+        first = _simulated(search, first)
+    assert first.fit is not None
+    follows = search.over(first) < NEAR
+    near = first.fit if follows or (first.members and not left_known(first.fit)) else None
+    ways = [m.from_nothing() if first.members or follows else m for m in members(first.fit)]
+    linear = [m for m in ways if m.linear]
+    for index, name in enumerate(names := list(dict.fromkeys(m.id for m in linear))):
+        say("linear members", index, len(names))
+        found = _linear(search, first, [m for m in linear if m.id == name])
+        if found is not None:
+            search.add(found)
+    laws = _promising(search, first, [m for m in ways if not m.linear])
+    laws += [any_static(first.fit)] if laws and not first.members else []
+    begins, stretches = (stretches_of(search.decays, seconds) for seconds in (FIRST_S, STRETCHES_S))
+    tried: list[tuple[Member, JointFit]] = []
+    for index, way in enumerate(laws):
+        say("laws at the begin", index, len(laws))
+        fit = begun_at(begins, first, way)
+        tried += [(way, fit)] if fit is not None else []
+    least = min([_cost_on(begins, search.best), *(cost_of(f) for _, f in tried)])
+    ahead = []
+    for index, (member, fit) in enumerate(field := _field(tried, FIELD, HOPELESS * least)):
+        say("laws on stretches", index, len(field))
+        ahead += [(member, led_on(stretches, fit))]
+    ahead += [pair for member, fit in ahead if member.generic for pair in _parts(member, fit, laws)]
+    least = min([_cost_on(stretches, search.best), *(cost_of(f) for _, f in ahead)])
+    for index, (member, fit) in enumerate(going := _field(ahead, LAWS, FAR_OFF * least)):
+        say("laws on whole recordings", index, len(going))
+        search.add(Found((*first.members, member), None, on_whole(search.decays, fit, near)))
+
+
+def _promising(search: Search, first: Found, laws: list[Member]) -> list[Member]:
+    """Laws that a score test beside a fit that follows the recordings speaks for, and those that begin at a threshold,
+    of which it says nothing; beside a fit that does not follow them, all."""
+    if first.fit is None or search.over(first) > NEAR:
+        return laws
+    asked = [CATALOGUE[name] for name in dict.fromkeys(m.id for m in laws)]
+    found = scan(differentiate(first.fit), [effect for effect in asked if not effect.sudden])
+    likely = {suspect.effect for group in found for suspect in group if promising(suspect)}
+    return [m for m in laws if m.id in likely or CATALOGUE[m.id].sudden]
+
+
+def _linear(search: Search, first: Found, ways: Sequence[Member]) -> Found | None:
+    """A linear member from all of its starts, beside a fit and beside what is known."""
+    thin = [thinned(d, THIN_S, EVERY) for d in search.decays]
+    count = len(first.model.physics)
+    starts = [first.point, np.concatenate([np.zeros(count), first.point[count:]])]
+    tried = [
+        (way, fit)
+        for way in ways
+        for start in starts
+        if (fit := fit_linear(thin, way.model, np.concatenate([start, way.own]), TRIED)) is not None
+    ]
+    led = [
+        (way, fit)
+        for way, begun in sorted(tried, key=lambda pair: pair[1].cost)[:CHOSEN]
+        if (fit := fit_linear(thin, way.model, begun.point, CLOSER)) is not None
+    ]
+    whole = [
+        (way, fit)
+        for way, begun in sorted(led, key=lambda pair: pair[1].cost)[:1]
+        if (fit := fit_linear(search.decays, way.model, begun.point, FULL)) is not None
+    ]
+    return Found((*first.members, whole[0][0]), whole[0][1], None) if whole else None
+
+
+def _field(tried: Sequence[tuple[Member, JointFit]], effects: int, most: float) -> list[tuple[Member, JointFit]]:
+    """Of every effect the two best formulas, each once, up to a cost; of all the first effects, and what takes any
+    shape."""
+    best: dict[tuple[str, str], tuple[Member, JointFit]] = {}
+    for member, fit in sorted(tried, key=lambda pair: cost_of(pair[1])):
+        best.setdefault((member.id, member.form), (member, fit))
+    names = list(dict.fromkeys(m.id for m, _ in best.values() if not m.generic))[:effects]
+    found: list[tuple[Member, JointFit]] = []
+    for member, fit in best.values():
+        fits = member.id in names and sum(m.id == member.id for m, _ in found) < 2 and cost_of(fit) < most
+        if member.generic or fits:
+            found.append((member, fit))
+    return found
+
+
+def _cost_on(stretches: Sequence[Decay], found: Found) -> float:
+    """What a linear model comes to on stretches."""
+    fit = fit_linear(stretches, found.model, found.point, BEGUN) if found.linear is not None else None
+    return math.inf if fit is None else fit.cost
+
+
+def _simulated(search: Search, found: Found) -> Found:
+    assert found.linear is not None
+    simulated = replace(found, fit=exact(search.decays, found.linear, LAST))
+    search.found = [simulated if f is found else f for f in search.found]
+    return simulated
+
+
+def _settled(search: Search, say: Progress) -> None:
+    """The best law to its end, and once more from what is known of the robot where that has been left."""
+    best = search.best
+    if best.fit is None or not best.members or search.over(best) < FORMULA_OVER:
+        return
+    say("the best law to its end", 0, 1)
+    fit = descend(best.fit, TO_THE_END, plain=True)
+    if left_known(fit):
+        home = replace(fit, point=fit.model.as_known(fit.point))
+        other = on_whole(search.decays, led_on(stretches_of(search.decays, STRETCHES_S), home))
+        fit = min((fit, descend(other, LED, plain=True)), key=cost_of)
+    search.add(replace(best, fit=fit))
+
+
+def _other_formulas(search: Search, say: Progress) -> None:
+    """The best law in other formulas of its effect, begun where it is."""
+    best = search.best
+    if best.fit is None or not best.members or best.members[-1].generic or search.over(best) < FORMULA_OVER:
+        return
+    member = best.members[-1]
+    for index, (model, point) in enumerate(forms := list(other_formulas(best.fit, member.id))):
+        say("other formulas", index, len(forms))
+        fit = evaluate(best.fit.trials, model, point, best.fit.nuisances)
+        held = {n: v for n, v in model.held[member.id].items() if v != best.model.held[member.id].get(n)}
+        free = [c.parameter.name for c in model.free if c.effect == member.id]
+        form = ", ".join([*free, *(f"{n} = {v:g}" for n, v in held.items() if n not in free)])
+        if np.isfinite(fit.rss):
+            new = replace(member, form=form, model=model)
+            search.add(Found((*best.members[:-1], new), None, descend(fit, LED, plain=True)))
+
+
+def _offered_back(search: Search) -> None:
+    """What the best have found without their members, offered to the baseline."""
+    base = search.baseline
+    assert base.linear is not None
+    count = len(base.point)
+    for found in sorted(search.found, key=lambda f: f.cost)[:CHOSEN]:
+        fit = fit_linear(search.decays, base.model, found.point[:count])
+        if fit is not None and fit.cost < base.linear.cost - 1.0:
+            base = Found((), fit, exact(search.decays, fit, 1))
+    search.baseline = base
+
+
+def _parts(generic: Member, fit: JointFit, laws: Sequence[Member]) -> list[tuple[Member, JointFit]]:
+    """Laws that are a part of a member of any shape, begun where that has come to."""
+    count, values = len(fit.model.physics), fit.model.split(fit.point)[1]
+    there = {(c.effect, c.parameter.name) for c in fit.model.free}
+    found = {}
+    for law in (m for m in laws if not m.generic and m.kind == generic.kind):
+        own = {c: (c.effect, c.parameter.name) for c in law.model.free}
+        if not own or not set(own.values()) <= there or law.form in found:
+            continue
+        at = [c.unknown.scaled(max(values[e][n], TINY) if c.unknown.logarithmic else values[e][n])
+              for c, (e, n) in own.items()]  # fmt: skip
+        begun = evaluate(fit.trials, law.model, np.concatenate([fit.point[:count], at]), fit.nuisances)
+        if np.isfinite(begun.rss):
+            found[law.form] = (law, descend(begun, LED, plain=True))
+    return list(found.values())
+
+
+def _finished(search: Search, say: Progress) -> None:
+    """Linear models that come near the best, by the simulator; and the best of all to its end."""
+    best = search.best
+    if best.fit is None and best.linear is not None:
+        fit = fit_linear(search.decays, best.model, best.point)
+        if fit is not None and fit.cost < best.cost:
+            search.add(replace(best, linear=fit))
+    least = search.best.cost
+    near = least + max(REACH * max(search.over(search.best), 1.0) ** 2, SHARE * (search.baseline.cost - least))
+    for index, found in enumerate(going := [f for f in search.found if f.fit is None and f.cost < near]):
+        say("near the best", index, len(going))
+        _simulated(search, found)
+    base = search.baseline
+    assert base.fit is not None
+    search.baseline = replace(base, fit=descend(base.fit, LAST, plain=True))

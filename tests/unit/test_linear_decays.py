@@ -1,0 +1,148 @@
+"""Decays of linear models fitted exactly, and the search that takes them for a start."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ssmr_ident.core.errors import InputError
+from ssmr_ident.core.recording import Channel, Provenance, Recording
+from ssmr_ident.diagnose.setup import unknowns_of
+from ssmr_ident.doctor.decays.linear import fit_linear, system
+from ssmr_ident.doctor.decays.recordings import Decay, decay_of, segmented, thinned
+from ssmr_ident.doctor.decays.run import diagnose
+from ssmr_ident.experiments import Scenario
+from ssmr_ident.experiments.campaign import Campaign, Measurement
+from ssmr_ident.identify.body.builder import RobotBuilder
+from ssmr_ident.identify.fitting.coordinates import Model
+from ssmr_ident.identify.trials.decay import decay_trial
+from ssmr_ident.physics.robot import robot_from_parameters
+from ssmr_ident.session import Entry, Session, read_parameters
+from ssmr_ident.simulate import simulate
+
+KNOWN = read_parameters("p3at-extended")
+MAST = {"f_mast_Hz": 8.0, "mass_kg": 2.0, "height_above_com_m": 0.3, "damping_ratio": 0.04}
+RELEASES = {
+    "roll": {"y": -4e-4, "roll": 2.5e-3, "x": 1e-4},
+    "pitch": {"x": -1e-3, "pitch": 2e-3, "z": 1e-4},
+    "yaw": {"yaw": 3e-3, "y": 1e-4},
+}
+AXES = ("ax", "ay", "az")
+
+
+def released(effects, trials: int = 1, seconds: float = 2.0) -> Campaign:
+    """A robot as the file has it, with effects and white noise, let go in every motion."""
+    robot, random, made = robot_from_parameters(KNOWN), np.random.default_rng(1), []
+    for motion, offset in RELEASES.items():
+        for trial in range(1, trials + 1):
+            scenario = Scenario("free_response", seconds, offset={n: v / trial for n, v in offset.items()})
+            run = simulate(robot, scenario, 500.0, step=2e-4, effects=effects)
+            name = f"{motion}-{trial}.csv"
+            noisy = [run[a] + 0.005 * random.standard_normal(len(run.time)) for a in AXES]
+            channels = tuple(Channel(a, s, "m/s^2") for a, s in zip(AXES, noisy, strict=True))
+            entry = Entry(name, "free_response", role="target", trial=trial, motion=motion)
+            made.append(Measurement(entry, Recording(run.time, channels, Provenance(name, "", "test"))))
+    entries = tuple(m.entry for m in made)
+    return Campaign(Session("test", Path("test"), "robot.yaml", "rigid6", entries), KNOWN, tuple(made))
+
+
+def prepared(campaign: Campaign) -> tuple[list[Decay], Model]:
+    builder = RobotBuilder.of(KNOWN)
+    decays = [decay_of(decay_trial(m, builder), builder) for m in campaign.measurements]
+    return decays, Model(unknowns_of(campaign, KNOWN))
+
+
+@pytest.fixture(scope="module")
+def swaying() -> tuple[list[Decay], Model]:
+    return prepared(released({"flexible_mast": MAST}))
+
+
+EVERY = {
+    "flexible_mast": {**MAST, "f_mast_Hz": 8.5},
+    "motor_belt": {"K_b_N_m": 3e4, "D_b_N_s_m": 40.0, "rim_mass_kg": 1.2},
+    "viscoelastic_relaxation": {"K_m_N_m": 2e3, "tau_s": 0.04},
+    "com_offset": {"offset_x_m": 0.01, "offset_y_m": -0.02},
+    "sensor_misalignment": {"angle_x_rad": 0.05, "angle_y_rad": -0.02, "angle_z_rad": 0.03},
+    "sensor_bandwidth": {"bandwidth_hz": 25.0},
+}
+
+
+@pytest.mark.compiles
+@pytest.mark.parametrize("effect", EVERY)
+def test_slopes_are_those_of_the_cost(swaying, effect: str) -> None:
+    decays, model = swaying
+    at = EVERY[effect]
+    model, own = model.with_effect(effect, at, {name: abs(value) for name, value in at.items()})
+    count = len(model.physics)
+    point = np.concatenate([0.2 * np.random.default_rng(3).standard_normal(count), own])
+    found = system(decays[:2], model, point)
+    assert found is not None
+    for column in (0, 2, 8, 11, count - 4, *range(count, len(point))):
+        ends = []
+        for side in (1e-4, -1e-4):
+            moved = point.copy()
+            moved[column] += side
+            end = system(decays[:2], model, moved)
+            assert end is not None
+            ends.append(end.cost)
+        slope = (ends[0] - ends[1]) / 2e-4
+        assert 2.0 * found.gradient[column] == pytest.approx(slope, rel=5e-3, abs=1e-5 * found.cost)
+
+
+@pytest.mark.compiles
+def test_a_mast_is_found_from_starts_that_are_off(swaying) -> None:
+    decays, model = swaying
+    start = {"f_mast_Hz": 9.5, "mass_kg": 0.8, "height_above_com_m": 0.4, "damping_ratio": 0.03}
+    model, own = model.with_effect("flexible_mast", start, start)
+    thin, tried = [thinned(d, 1.0, 2) for d in decays], []
+    for factor in (0.6, 0.75, 1.0, 1.3):
+        shift = [model.free[0].unknown.scaled(factor * start["f_mast_Hz"]), 0.0, 0.0, 0.0]
+        tried.append(fit_linear(thin, model, np.concatenate([np.zeros(len(model.physics)), own + shift]), 10))
+    best = min((fit for fit in tried if fit is not None), key=lambda fit: fit.cost)
+    fit = fit_linear(decays, model, best.point)
+    assert fit is not None
+    found = model.split(fit.point)[1]["flexible_mast"]
+    assert fit.chi2 < 1.2 * sum(d.trial.size for d in decays)
+    assert found["f_mast_Hz"] == pytest.approx(MAST["f_mast_Hz"], rel=0.02)
+    assert np.abs(fit.point[: len(model.physics)]).max() < 2.5
+
+
+@pytest.mark.compiles
+def test_a_mast_that_no_robot_carries_is_no_fit(swaying) -> None:
+    decays, model = swaying
+    heavy = {**MAST, "mass_kg": 100.0}
+    model, own = model.with_effect("flexible_mast", heavy, heavy)
+    assert fit_linear(decays, model, np.concatenate([np.zeros(len(model.physics)), own])) is None
+
+
+@pytest.mark.compiles
+def test_stretches_simulate_what_the_whole_does(swaying) -> None:
+    """A stretch begun at a state as long after it as a decay's release is before its first block."""
+    decay = swaying[0][0].coarse()
+    first = segmented(decay, 0.3, 0.6)[0].trial
+    values, effects = swaying[1].split(np.zeros(len(swaying[1].unknowns)))
+    nuisance = decay.trial.begin(values, effects)
+    whole = decay.trial.runs([(values, effects, nuisance)])[: len(first.times)]
+    np.testing.assert_allclose(first.runs([(values, effects, nuisance)]), whole, rtol=1e-9, atol=1e-12)
+
+
+def test_what_is_no_free_response_of_a_robot_is_refused() -> None:
+    campaign = released({}, seconds=0.5)
+    pulled = Measurement(Entry("pull.csv", "pull"), campaign.measurements[0].recording)
+    with pytest.raises(InputError, match="takes free responses"):
+        diagnose(Campaign(campaign.session, KNOWN, (pulled,)))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("effects", "named"),
+    [({}, []), ({"flexible_mast": MAST}, ["flexible_mast"]),
+     ({"nonlinear_stiffness": {"k3_N_m3": 1.5e9}}, ["nonlinear_stiffness"])],
+    ids=["nothing", "mast", "hardening"],
+)  # fmt: skip
+def test_what_is_missing_is_named(effects, named: list[str]) -> None:
+    found = diagnose(released(effects, trials=2))
+    assert [effect.id for effect in found.effects] == named
+    assert found.heldout.after < 1.4 * found.heldout.noise_floor
