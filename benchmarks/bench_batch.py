@@ -17,6 +17,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from contextlib import suppress
 from pathlib import Path
 
 from ssmr_ident.workflows.batch.results import read_results
@@ -42,17 +43,18 @@ def batch(folder: Path, out: Path, words: list[str]) -> list[str]:
     return [sys.executable, "-m", "ssmr_ident", "batch", str(folder), "-o", str(out), "-q", *words]
 
 
-def memory_mb(parent: int) -> float:
-    """Of the largest child of a process [MB]; 0 where the system does not say."""
-    sizes = [0.0]
+def memory_mb(above: int) -> float:
+    """Of the largest process below one [MB]; 0 where the system does not say."""
+    facts = {}
     for status in Path("/proc").glob("[0-9]*/status"):
-        try:
-            facts = dict(line.split(":\t", 1) for line in status.read_text().splitlines() if ":\t" in line)
-        except OSError:
-            continue
-        if facts.get("PPid", "").strip() == str(parent) and "VmRSS" in facts:
-            sizes.append(float(facts["VmRSS"].split()[0]) / 1024)
-    return max(sizes)
+        with suppress(OSError):
+            rows = dict(row.split(":\t", 1) for row in status.read_text().splitlines() if ":\t" in row)
+            facts[int(rows["Pid"])] = (int(rows["PPid"]), float(rows.get("VmRSS", "0 kB").split()[0]) / 1024)
+    below, size = {above}, 0
+    while len(below) > size:
+        size = len(below)
+        below |= {process for process, (parent, _) in facts.items() if parent in below}
+    return max((facts[process][1] for process in below - {above} if process in facts), default=0.0)
 
 
 def _begun(out: Path) -> int:

@@ -9,6 +9,7 @@ import subprocess
 import sys
 import threading
 import time
+from contextlib import suppress
 from pathlib import Path
 
 import pandas as pd
@@ -117,20 +118,36 @@ def test_forked_processes_hang_and_die_as_others_and_outlive_who_forked_them(tmp
     guarded.stop()
 
 
+def _marked(mark: dict[str, str]) -> list[Path]:
+    """Processes that live with a mark in their environment; none where the system does not say."""
+    ((name, value),) = mark.items()
+    found = []
+    for environ in Path("/proc").glob("[0-9]*/environ"):
+        with suppress(OSError):
+            if f"{name}={value}".encode() in environ.read_bytes().split(b"\0"):
+                found.append(environ.parent)
+    return found
+
+
 @pytest.mark.slow
 @pytest.mark.skipif(os.name != "posix", reason="SIGKILL")
 def test_killed_and_run_again_gives_what_one_go_gives(tmp_path: Path) -> None:
     write_fleet(tmp_path / "in", 6)
     command = [sys.executable, "-m", "ssmr_ident", "batch", str(tmp_path / "in"), "--no-diagnose", "-q", "--jobs", "1"]
-    run = subprocess.Popen([*command, "-o", str(tmp_path / "killed")])
+    mark = {"IDENT_TRIED": str(tmp_path)}
+    run = subprocess.Popen([*command, "-o", str(tmp_path / "killed")], env={**os.environ, **mark})
     rows = tmp_path / "killed" / "sessions"
     until = time.monotonic() + 300
     while len(list(rows.glob(f"*/{ROW}"))) < 2:
         assert time.monotonic() < until
         assert run.poll() is None
         time.sleep(0.02)
+    assert sys.platform != "linux" or len(_marked(mark)) > 2  # the run, what forks, and what is forked
     run.kill()
     run.wait()
+    while _marked(mark):
+        assert time.monotonic() < until
+        time.sleep(0.02)
     made = {path: path.stat().st_mtime_ns for path in rows.glob(f"*/{ROW}")}
     resumed = run_batch(tmp_path / "in", tmp_path / "killed", diagnose=False, jobs=1)
     assert resumed.kept == len(made)

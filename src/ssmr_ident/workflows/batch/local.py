@@ -50,11 +50,13 @@ def run_here(tasks: Sequence[Task], jobs: int, timeout: float) -> Iterator[dict[
             if isinstance(row, BaseException):
                 raise row
             yield row
+    except BaseException:
+        if server is not None:
+            server.kill()  # a thread may be waiting for what it still imports
+        raise
     finally:
         for child in children:
             child.close()
-        if server is not None:
-            server.kill()
         for thread in threads:
             thread.join()
         if server is not None:
