@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ssmr_ident.identify.forces.curves import block_pull, load_curve
+from ssmr_ident.identify.forces.curves import load_curve
 from ssmr_ident.identify.forces.ramps import find_ramps
 from ssmr_ident.identify.forces.sawtooth import take_apart
 from ssmr_ident.identify.forces.speed_knee import speed_knee
@@ -149,17 +149,6 @@ def test_load_curve_of_a_press() -> None:
     assert curve.zero == pytest.approx(0.0, abs=0.3)
     with pytest.raises(ValueError, match="hardly moves"):
         load_curve(np.zeros(100), force[:100])
-
-
-def test_block_pull_says_when_the_zero_is_unknown() -> None:
-    rng = np.random.default_rng(7)
-    time = np.linspace(0, 60, 6000)
-    force = np.minimum(15.0 * np.maximum(time - 0.5, 0), 4.0) + 0.02 * rng.normal(size=len(time))
-    known, unknown = block_pull(time, force), block_pull(time, force + 0.9)
-    assert known.zero_known
-    assert not unknown.zero_known
-    assert known.force_rate == pytest.approx(15.0, rel=0.05)
-    assert unknown.level - unknown.zero == pytest.approx(4.0, abs=0.05)
 
 
 @pytest.mark.slow

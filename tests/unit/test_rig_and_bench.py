@@ -172,7 +172,7 @@ def test_a_block_is_pulled_with_its_friction() -> None:
     assert stiff[10:-10] == pytest.approx(0.3 * 1.1 * 9.8)
     still = pull_block(Block(1.1, 0.4, 0.3, np.inf), np.round(head, 5), 0.01)  # an encoder with coarse steps
     assert still[10:-10] == pytest.approx(0.3 * 1.1 * 9.8)
-    soft = pull_block(Block(1.1, 0.3, 0.3, 8e4), head, 0.01)
+    soft = pull_block(Block(1.1, 0.3, 0.3, 8e4, 60.0), head, 0.01)
     rise = np.polyfit(head[3:16], soft[3:16], 1)[0]
     assert rise == pytest.approx(8e4, rel=1e-3)
     assert soft[1000:-1] == pytest.approx(0.3 * 1.1 * 9.8, rel=1e-3)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ssmr_ident.compare import turning
+from ssmr_ident.compare import block, turning
 from ssmr_ident.compare.outcome import Prediction
 from ssmr_ident.compare.recorded import follow, predicted
 from ssmr_ident.core.parameter import ParameterSet
@@ -37,6 +37,8 @@ def predict(campaign: Campaign, measurement: Measurement, parameters: ParameterS
     experiment, baseline = measurement.experiment, campaign.session.baseline
     if not experiment.repeats and baseline in experiment.baselines:
         return turning.predict(parameters, measurement)
+    if baseline == "drag" and block.FOLDED.issuperset(parameters.effects):
+        return block.predict(parameters, measurement)
     trial = trial_of(baseline, measurement, parameters)
     model = Model((), (), effect_values(parameters))
     fit = follow([trial], model, np.zeros(0))

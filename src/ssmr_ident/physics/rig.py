@@ -35,14 +35,15 @@ class Block:
     ----------
     mass : float [kg]
     mu_static, mu_kinetic : float
-    cable_stiffness : float [N/m]
-        ``inf`` for a stiff cable.
+    cable_stiffness, cable_damping : float [N/m, N s/m]
+        Of drive and cable, in parallel; ``inf`` for a stiff one.
     """
 
     mass: float
     mu_static: float
     mu_kinetic: float
     cable_stiffness: float
+    cable_damping: float = 0.0
 
 
 RIG_KEYS = {
@@ -77,6 +78,7 @@ def block_from_parameters(parameters: ParameterSet) -> Block:
         _need(parameters, "mu_static"),
         _need(parameters, "mu_kinetic"),
         parameters.number("cable.stiffness_N_m", float("inf")),
+        parameters.number("cable.damping_N_s_m", 0.0),
     )
 
 

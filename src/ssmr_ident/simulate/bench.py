@@ -23,6 +23,7 @@ from ssmr_ident.physics.slots import (
     effect_vector,
 )
 from ssmr_ident.physics.tire import contact_force, printed_force, release_share
+from ssmr_ident.simulate.pulled_block import pull
 from ssmr_ident.simulate.sensed import sensed
 
 LONGEST_STEP = 2e-4
@@ -120,13 +121,15 @@ def pull_block(block: Block, head: np.ndarray, step: float, effects: Effects | N
     stiffness = _cable(block.cable_stiffness, active)
     if math.isinf(stiffness):
         return _read(np.where(_on_the_way(head), block.mu_kinetic * weight, 0.0), step, active)
-    force = np.empty(len(head))
-    omega = math.sqrt(stiffness / block.mass)
-    substeps = max(1, math.ceil(step * omega / 0.05))
-    # a cable that rings is damped like the thesis' cable (section 4)
-    cable = (stiffness, 4.0 * math.sqrt(block.mass * stiffness))
-    limits = (block.mu_static * weight, block.mu_kinetic * weight)
-    _block(block.mass, *cable, *limits, effect_vector(active), head - head[0], step, substeps, force)
+    static, kinetic = block.mu_static * weight, block.mu_kinetic * weight
+    falling, exponent = 0.0, 2.0
+    if "stribeck" in active:
+        law = active["stribeck"]
+        kinetic, falling, exponent = static * law["kinetic_share"], law["stribeck_velocity_m_s"], law["exponent"]
+    force = pull(
+        block.mass, stiffness, block.cable_damping, np.full(len(head), kinetic), static - kinetic, head - head[0], step,
+        falling=falling, exponent=exponent,
+    )[0]  # fmt: skip
     return _read(force, step, active)
 
 
@@ -216,25 +219,3 @@ def _press(stiffness, damping, ratio, e, depth, step, out):
             beside = element_force(depth[n], rate, hidden, stiffness, ratio, 0.0, False, e)
             out[n] = max(0.0, stiffness * depth[n] + damping * rate + beside)
             element_advance(hidden, rate, step, False, e)
-
-
-@kernel
-def _block(mass, stiffness, damping, breakaway, kinetic, e, head, step, substeps, out):
-    x, v = 0.0, 0.0
-    h = step / substeps
-    falling = e[KINETIC_SHARE] != 1.0
-    for n in range(out.shape[0]):
-        rate = (head[n + 1] - head[n]) / step if n + 1 < out.shape[0] else 0.0
-        for m in range(substeps):
-            position = head[n] + rate * m * h
-            tension = max(0.0, stiffness * (position - x) + damping * (rate - v))
-            if m == 0:
-                out[n] = tension
-            if v == 0.0 and tension <= breakaway:
-                continue
-            if falling:
-                kinetic = _friction_law(breakaway, e[KINETIC_SHARE], v, e[STRIBECK_SPEED], e[STRIBECK_EXPONENT])
-            # implicit in the velocity, so that a stiff damper needs no short step
-            driving = mass * v + h * (stiffness * (position - x) + damping * rate - kinetic)
-            v = max(0.0, driving / (mass + h * damping))
-            x += h * v

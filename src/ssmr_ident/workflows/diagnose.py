@@ -14,6 +14,7 @@ from ssmr_ident.core.documents import yaml_text
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.diagnosis import Diagnosis
+from ssmr_ident.doctor.blocks import BLOCK, diagnose_block
 from ssmr_ident.doctor.run import RIG
 from ssmr_ident.doctor.run import diagnose as diagnose_rig
 from ssmr_ident.experiments.campaign import Campaign, load
@@ -72,6 +73,8 @@ def _diagnosed(
     if math.isfinite(budget):
         raise InputError("--budget", f"limits a rig's search; this session's baseline is {campaign.session.baseline}",
                          "Leave it out")  # fmt: skip
+    if campaign.session.baseline == BLOCK:
+        return diagnose_block(campaign, known, progress)
     if not all(m.experiment.repeats for m in campaign.measurements):
         from ssmr_ident.diagnose.turning import diagnose_turning
 

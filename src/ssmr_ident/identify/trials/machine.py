@@ -119,4 +119,5 @@ def _block(nominal: Block, values: Values) -> Block:
         mu_static,
         values.get("mu_kinetic", mu_static if nominal.mu_kinetic == nominal.mu_static else nominal.mu_kinetic),
         values.get("cable.stiffness_N_m", nominal.cable_stiffness),
+        nominal.cable_damping,
     )

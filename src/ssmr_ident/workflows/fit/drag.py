@@ -1,144 +1,118 @@
-"""A dragged block's session (``baseline: drag``): friction, stiffness of the drive, no false teeth."""
+"""A pulled block's session (``baseline: drag``): friction, the drive, where sliding begins, teeth."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import replace
+import itertools
+import math
 from typing import Any
 
 import numpy as np
 
-from ssmr_ident.core.errors import InputError
-from ssmr_ident.core.parameter import Estimate
+from ssmr_ident.doctor.blocks import conflicts
 from ssmr_ident.experiments.campaign import Campaign, Measurement
-from ssmr_ident.identify.forces.curves import block_pull
-from ssmr_ident.identify.forces.sawtooth import take_apart
-from ssmr_ident.identify.posterior.findings import conflicts, posterior_findings
-from ssmr_ident.identify.posterior.most_probable import Observation, Unknown, most_probable
+from ssmr_ident.identify.blocks.exported import exported
+from ssmr_ident.identify.blocks.fit import Fitted
+from ssmr_ident.identify.blocks.model import DAMPING, KINETIC, STATIC, STIFFNESS
+from ssmr_ident.identify.blocks.search import Pulls, chosen, error, known_shape, pulls_of, searched
 from ssmr_ident.physics.rig import block_from_parameters
-from ssmr_ident.physics.robot import GRAVITY
 from ssmr_ident.workflows.fit.result import SessionFit
 
 
-def fit_drag_session(campaign: Campaign, chosen: tuple[Measurement, ...]) -> SessionFit:
-    """Fit a block pulled over a surface.
+def fit_drag_session(campaign: Campaign, measurements: tuple[Measurement, ...]) -> SessionFit:
+    """Fit a block pulled over a surface by the poorest model that its pulls allow.
 
-    The level of each run counts with its wander along the stroke, and with the load cell's zero where that is not
-    known: a force that stands before the pull may be an offset or a taut cable, and the log cannot say which.
+    The file's numbers are those of that model; a stiffness of the drive or a fall of the friction that the file does
+    not have is told beside them.
     """
     parameters = campaign.parameters
     block = block_from_parameters(parameters)
-    weight = block.mass * GRAVITY
-    lines: dict[str, tuple[str, ...]] = {}
-    results: dict[str, dict[str, Any]] = {}
-    findings: list[str] = []
-    observations: list[Observation] = []
-    stiffnesses, rates = [], []
-    for measurement in chosen:
-        recording, speed = measurement.recording, measurement.entry.speed_mm_s
-        where = recording.provenance.file
-        if "force" not in recording:
-            raise InputError(where, "has no force channel", "Map the header in session.yaml under channels")
-        if speed is None:
-            raise InputError(where, "session.yaml gives no speed_mm_s", "Give speed_mm_s for this recording")
-        force = recording["force"]
-        pull = block_pull(recording.time, force)
-        try:
-            teeth = take_apart(recording.time * speed * 1e-3, force)
-        except ValueError as error:
-            raise InputError(where, f"no pull found: {error}", "Look at the log with ident inspect") from None
-        mu_begin, mu_mean = (pull.level_begin - pull.zero) / weight, (pull.level - pull.zero) / weight
-        stiffness = pull.force_rate / (speed * 1e-3)
-        text = [
-            f"mu {mu_begin:.3f} where sliding begins, {mu_mean:.3f} on average, after taking off {pull.zero:.2f} N; "
-            f"it wanders by {pull.wander / weight:.3f} along the stroke",
-            f"first rise {pull.force_rate:.3g} ± {pull.force_rate_std:.2g} N/s, so drive and cable give "
-            f"{stiffness / 1e3:.3g} N/mm at {speed:g} mm/s",
-            f"{len(teeth.teeth)} teeth: " + ("stick-slip" if teeth.stick_slip else "no stick-slip"),
-        ]
-        std = pull.level_std
-        if not pull.zero_known:
-            findings.append(
-                f"{measurement.name}: {pull.zero:.2f} N stand before the pull, so the load cell's zero is unknown and "
-                f"the level cannot be trusted to better than {abs(pull.zero) / weight:.3f} in mu"
-            )
-            std = float(np.hypot(std, pull.zero))
-        if teeth.stick_slip:
-            findings.append(f"{measurement.name}: stick-slip, {len(teeth.teeth)} teeth")
-        stiffnesses.append(stiffness)
-        rates.append(pull.force_rate)
-        lines[measurement.name] = tuple(text)
-        results[measurement.name] = {
-            "experiment": measurement.entry.experiment,
-            "mu_begin": mu_begin,
-            "mu_mean": mu_mean,
-            "mu_wander": pull.wander / weight,
-            "zero_N": pull.zero,
-            "zero_known": bool(pull.zero_known),
-            "force_rate_N_s": pull.force_rate,
-            "force_rate_std_N_s": pull.force_rate_std,
-            "rise_stiffness_N_m": stiffness,
-            "teeth": len(teeth.teeth),
-            "stick_slip": teeth.stick_slip,
-        }
-        for key in ("mu_static", "mu_kinetic"):
-            level = teeth.peak - pull.zero if key == "mu_static" and teeth.stick_slip else pull.level - pull.zero
-            observations.append(
-                Observation(
-                    measurement.name,
-                    (key,),
-                    np.array([level / weight]),
-                    np.array([[(std / weight) ** 2]]),
-                    _reads(key),
-                )
-            )
-    # Run differs from run by more than each wanders: each then counts with the scatter between them.
-    observations = _with_scatter(observations)
-    unknowns = tuple(
-        Unknown(key, parameters[key].unit, float(parameters[key].value), parameters[key].std)
-        for key in ("mu_static", "mu_kinetic")
-        if key in parameters and not parameters[key].fixed
-    )
-    observations = [o for o in observations if o.labels[0] in {u.name for u in unknowns}]
-    posterior = most_probable(unknowns, observations)
-    changes: dict[str, Estimate] = {
-        unknown.name: replace(
-            parameters[unknown.name],
-            value=float(posterior.values[index]),
-            std=float(posterior.stds[index]),
-            source="fit of the recordings" if posterior.information_share[index] > 0.19 else "prior",
-        )
-        for index, unknown in enumerate(unknowns)
-    }
-    if np.isinf(block.cable_stiffness) and np.all(np.isfinite(stiffnesses)):
-        low, high = min(stiffnesses) / 1e3, max(stiffnesses) / 1e3
-        findings.append(
-            f"the force comes up at {min(rates):.3g} to {max(rates):.3g} N/s: drive, load cell and cable stretch with "
-            f"{low:.3g} to {high:.3g} N/mm, though the file takes the cable as stiff"
-        )
-    findings += posterior_findings(posterior)
+    pulls = pulls_of(measurements, block.mass)
+    found, _ = searched(pulls, parameters, known_shape(parameters))
+    best = chosen(found)
+    after = exported(best, parameters)
+    values, stds = best.values, best.stds()
+    results = {log.name: _numbers(best, pulls, k) for k, log in enumerate(pulls.logs)}
+    for measurement in measurements:
+        results[measurement.name]["experiment"] = measurement.entry.experiment
+    clashing = [
+        {"parameter": c.parameter, "prior": c.prior, "fitted": c.fitted, "sigmas": c.sigmas, "unit": c.unit}
+        for c in conflicts(best)
+    ]
     return SessionFit(
         session=campaign.session.name,
         before=parameters,
-        parameters=parameters.updated(changes),
-        changed=tuple(unknown.name for unknown in unknowns),
-        statistics=(f"{len(chosen)} recordings, weight {weight:.4g} N",),
-        recordings=lines,
+        parameters=after,
+        changed=tuple(key for key in values if key in after and after[key] is not parameters.get(key)),
+        statistics=(f"{len(measurements)} recordings, weight {best.blocks.weight:.4g} N",),
+        recordings={name: _lines(numbers) for name, numbers in results.items()},
         results=results,
-        findings=tuple(findings),
-        conflicts=tuple(conflicts(posterior)),
+        findings=tuple(_findings(best, values, stds, found[0])),
+        conflicts=tuple(clashing),
     )
 
 
-def _reads(key: str) -> Callable[[Mapping[str, float]], np.ndarray]:
-    """A prediction that is the parameter itself."""
-    return lambda values: np.array([values[key]])
+def _numbers(best: Fitted, pulls: Pulls, index: int) -> dict[str, Any]:
+    log, own, values = pulls.logs[index], best.own[index], best.values
+    moments = own[best.blocks.let_go(index)] if best.blocks.shape.falls else pulls.moments[index][:1]
+    force = best.simulated[index]
+    numbers: dict[str, Any] = {
+        "drive_starts_s": float(log.time[0] + own[0]),
+        "slides_from_s": float(log.time[0] + moments[0]),
+        "zero_N": float(own[1]),
+        "first_peak_N": float(force.max() - own[1]),
+        "mu_kinetic": values[KINETIC],
+        "mu_static": values[STATIC] if best.blocks.shape.falls else None,
+        "rise_N_s": values[STIFFNESS] * log.speed if STIFFNESS in values else log.rise,
+        "teeth": pulls.teeth[index],
+        "stick_slip": pulls.teeth[index] > 0,
+        "nrmse_percent": error(best, index),
+    }
+    if pulls.teeth[index] and len(moments) > 2:
+        step, height, fall = log.step, [], []
+        for begin, end in itertools.pairwise(moments):
+            tooth = force[round(float(begin) / step) : round(float(end) / step) + 1]
+            if len(tooth) > 2:
+                low = int(np.argmin(tooth))
+                height.append(float(tooth[0] - tooth[low]))
+                fall.append(height[-1] / max(low * step, step))
+        numbers |= {
+            "tooth_hz": 1.0 / float(np.median(np.diff(moments))),
+            "tooth_height_N": float(np.median(height)),
+            "tooth_fall_N_s": float(np.median(fall)),
+        }
+    return numbers
 
 
-def _with_scatter(observations: list[Observation]) -> list[Observation]:
-    widened = []
-    for key in ("mu_static", "mu_kinetic"):
-        same = [o for o in observations if o.labels == (key,)]
-        scatter = float(np.var([o.values[0] for o in same], ddof=1)) if len(same) > 1 else 0.0
-        widened += [replace(o, covariance=np.maximum(o.covariance, scatter)) for o in same]
-    return widened
+def _lines(numbers: dict[str, Any]) -> tuple[str, ...]:
+    starts, slides = numbers["drive_starts_s"], numbers["slides_from_s"]
+    lines = [
+        f"the drive starts at {starts:.4g} s, the block slides from {slides:.4g} s on",
+        f"first peak {numbers['first_peak_N']:.4g} N over a zero of {numbers['zero_N']:.3g} N, after a rise of "
+        f"{numbers['rise_N_s']:.4g} N/s",
+    ]
+    if "tooth_hz" in numbers:
+        height, fall = numbers["tooth_height_N"], numbers["tooth_fall_N_s"]
+        rate = f"{numbers['teeth']} teeth at {numbers['tooth_hz']:.4g} Hz"
+        lines.append(f"{rate}, {height:.3g} N high, falling at {fall:.3g} N/s")
+    else:
+        lines.append("no stick-slip")
+    return tuple(lines)
+
+
+def _findings(best: Fitted, values: dict[str, float], stds: dict[str, float], base: Fitted) -> list[str]:
+    shape, known = best.blocks.shape, base.blocks.shape
+    said = []
+    if shape.stretches and not known.stretches:
+        stiffness = f"{values[STIFFNESS] / 1e3:.4g} ± {stds[STIFFNESS] / 1e3:.1g} N/mm"
+        said.append(f"drive, load cell and cable stretch with {stiffness}, though the file takes the cable as stiff")
+    if shape.stretches:
+        ratio = values[DAMPING] / (2.0 * math.sqrt(values[STIFFNESS] * best.blocks.mass))
+        said.append(f"the drive damps with {values[DAMPING]:.3g} ± {stds[DAMPING]:.1g} N s/m, a ratio of {ratio:.2g}")
+    if shape.falls and not known.falls:
+        fall = f"from {values[STATIC]:.3f} ± {stds[STATIC]:.1g} to {values[KINETIC]:.3f} ± {stds[KINETIC]:.1g}"
+        said.append(f"friction falls {fall} once the block slides, though the file has one")
+    if shape.drifts:
+        said.append(f"the load cell's zero drifts by {values['zero_drift_N_s']:.3g} N/s")
+    if shape.changes:
+        said.append("friction changes along the way, in every recording its own way: see ident diagnose")
+    return said

@@ -1,0 +1,120 @@
+"""One pull of a block as it was logged: what the head did, what the load cell read, and what is rest and what rise."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ssmr_ident.core.errors import InputError
+from ssmr_ident.experiments.campaign import Measurement
+from ssmr_ident.identify.forces.sawtooth import machine_moves
+from ssmr_ident.signals.grid import even_samples
+from ssmr_ident.signals.noise import force_noise
+
+Array = np.ndarray
+
+LOW, HIGH = 0.2, 0.7
+"""Shares of the first load between which the rise is taken to be straight."""
+
+STANDS = 0.05
+"""Share of a pull for which a position has to stand, after the rise, for it to say more than the speed does. It may be
+the block's own, which stands while the force comes up."""
+
+
+@dataclass(frozen=True, eq=False)
+class PulledLog:
+    """A pull on an even grid.
+
+    Parameters
+    ----------
+    name : str
+    time, force : (n,) float [s, N]
+    head : (n,) float [m]
+        Of the drive, as if the cable had no slack: from its first sample at constant speed, or as logged.
+    speed : float [m/s]
+    noise : float [N]
+        White, per sample.
+    rests : float [N]
+        Force before the drive starts.
+    starts : float [s]
+        From the first sample until the force begins to rise.
+    rise : float [N/s]
+        Rate of the first rise.
+    load : float [N]
+        That it rises by, about.
+    """
+
+    name: str
+    time: Array
+    force: Array
+    head: Array
+    speed: float
+    noise: float
+    rests: float
+    starts: float
+    rise: float
+    load: float
+
+    @property
+    def step(self) -> float:
+        return float(self.time[1] - self.time[0])
+
+    def until(self, sample: int) -> PulledLog:
+        """Its beginning."""
+        return replace(self, time=self.time[:sample], force=self.force[:sample], head=self.head[:sample])
+
+
+def pulled_log(measurement: Measurement) -> PulledLog:
+    """Read a pull.
+
+    Raises
+    ------
+    InputError
+        No force, neither position nor speed, or a force that never rises.
+    """
+    recording, entry = measurement.recording, measurement.entry
+    where = recording.provenance.file
+    if "force" not in recording:
+        raise InputError(where, "has no force channel", "Map the header in session.yaml under channels")
+    names = ["force", *(["position"] if "position" in recording else [])]
+    even = even_samples(recording.time, np.column_stack([recording[name] for name in names]))
+    force, time = even.samples[:, 0], even.time
+    step = 1.0 / even.sample_rate
+    if len(force) < 30:
+        raise InputError(where, f"has {len(force)} samples", "A pull needs 30 at least")
+    low, high, rests, load = _rise(force)
+    if not high > low + 1:
+        low, high = max(high - 1, 0), min(high + 1, len(force) - 1)
+    rise = float((force[high] - force[low]) / ((high - low) * step))
+    starts = max((low - (force[low] - rests) / max(rise * step, 1e-300)) * step, 0.0)
+    elapsed = time - time[0]
+    logged = even.samples[:, 1] - even.samples[0, 1] if "position" in recording else None
+    if logged is not None and abs(logged.min()) > abs(logged.max()):
+        logged = -logged
+    speed = entry.speed_mm_s * 1e-3 if entry.speed_mm_s else 0.0
+    head = speed * elapsed
+    if logged is not None:
+        usual = float((logged[-1] - logged[high]) / max((len(force) - 1 - high) * step, step))
+        stands = float(np.mean(~machine_moves(logged[high:]))) > STANDS
+        if stands or not speed:
+            head, speed = logged, speed or usual
+    if not speed > 0.0:
+        raise InputError(where, "has no position that moves on, and session.yaml no speed_mm_s", "Give speed_mm_s")
+    return PulledLog(
+        measurement.name, time, force, head, speed, max(force_noise(force), 1e-9 * load), rests, starts, rise, load
+    )
+
+
+def _rise(force: Array) -> tuple[int, int, float, float]:
+    """Samples between which the first rise is straight, the force before it, and what it rises by."""
+    width = max(1, len(force) // 500)
+    smooth = np.convolve(np.pad(force, width, mode="edge"), np.full(2 * width + 1, 1.0 / (2 * width + 1)), "valid")
+    top = float(np.quantile(smooth, 0.9))
+    rests = float(np.quantile(smooth[: max(int(np.argmax(smooth > 0.5 * (smooth[0] + top))), 3)], 0.25))
+    load = max(top - rests, 1e-12)
+    high = int(np.argmax(smooth > rests + HIGH * load))
+    below = np.flatnonzero(smooth[: high + 1] < rests + LOW * load)
+    quiet = int(below[-1]) if len(below) else 0
+    before = force[: max(quiet - width, 3)]
+    return quiet, high, float(np.median(before[: max(len(before) // 2, 3)])), load
