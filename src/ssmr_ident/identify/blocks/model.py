@@ -119,7 +119,7 @@ class Blocks:
 
     def _starts(self, log: PulledLog) -> float:
         """Of the drive, or where it is taken as rigid, of the force [s]."""
-        return log.starts if self.shape.stretches else log.starts + 0.5 * log.load / log.rise
+        return log.starts if self.shape.stretches else log.jumps
 
     def level_start(self, index: int) -> Array:
         """How the force goes on along the way once the block slides, (KNOTS,) float [N] about the load of all."""
@@ -141,6 +141,15 @@ class Blocks:
         level = np.full(KNOTS if self.shape.changes else 0, 0.3 * log.load)
         mean = np.concatenate([[self._starts(log), log.rests], moments, np.zeros(len(level))])
         return mean, np.r_[span, 0.3 * log.load, np.full(len(moments), usual), level]
+
+    def static_at(self, index: int, values: Mapping[str, float], own: Array) -> Array:
+        """Static friction at the moments of letting go, (k,) float [N]."""
+        log, moments = self.logs[index], own[self.let_go(index)]
+        level = np.full(len(moments), values[STATIC] * self.weight)
+        if self.shape.changes:
+            heads = np.interp(moments, log.time - log.time[0], log.head)
+            level += np.interp(heads, np.linspace(log.head[0], log.head[-1], KNOTS), own[-KNOTS:])
+        return level
 
     def let_go(self, index: int) -> slice:
         """Which of a recording's coordinates are moments of letting go."""

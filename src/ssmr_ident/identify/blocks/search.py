@@ -25,6 +25,9 @@ CERTAIN = 20.0
 ROUGH = 0.02
 """Of the load: what a model need not explain while it is looked for."""
 
+GROWING = (2, 4, 7)
+"""Teeth that are fitted first: where a block stands tells of all that was before, and a long way has many hollows."""
+
 MOST_TEETH = 12
 """That a recording is read up to: what follows tells the same again, and where it is let go, chance decides."""
 
@@ -50,6 +53,15 @@ class Pulls:
     moments: tuple[Array, ...]
     mass: float
     teeth: tuple[int, ...]
+
+    def first(self, count: int) -> Pulls:
+        """Up to so many teeth of each."""
+        logs, moments = [], []
+        for log, own in zip(self.logs, self.moments, strict=True):
+            cut = len(own) > count
+            logs.append(log.until(round(float(own[count] + own[count - 1]) / 2.0 / log.step)) if cut else log)
+            moments.append(own[:count])
+        return Pulls(tuple(logs), tuple(moments), self.mass, self.teeth)
 
     def only(self, index: int) -> Pulls:
         return Pulls(self.logs[index : index + 1], self.moments[index : index + 1], self.mass, self.teeth[index:][:1])
@@ -157,8 +169,26 @@ def _fit(
     pulls: Pulls, parameters: ParameterSet, shape: Shape, noise: Sequence[float], found: dict[Shape, Fitted]
 ) -> Fitted:
     like = [f for s, f in found.items() if s.stretches and s.parts <= shape.parts]
-    result = begun(blocks_of(pulls, parameters, shape), noise, like[-1] if like else None)
-    return with_scatter(result, noise) if shape.falls else result
+    if not shape.falls:
+        return begun(blocks_of(pulls, parameters, shape), noise, like[-1] if like else None)
+    most = max(len(own) for own in pulls.moments)
+    counts = [count for count in GROWING if count < most] + [most]
+    fit = begun(blocks_of(pulls.first(counts[0]), parameters, shape), noise, like[-1] if like else None)
+    for count in counts[1:]:
+        fit = fitted(blocks_of(pulls.first(count), parameters, shape), noise, _longer(fit, pulls.first(count)))
+    return with_scatter(fit, noise)
+
+
+def _longer(found: Fitted, pulls: Pulls) -> tuple[Array, list[Array]]:
+    """A fit of the first teeth as a start for more of them: they are let go as much before the fall as those were."""
+    blocks, starts = found.blocks, []
+    longer = replace(blocks, logs=pulls.logs, moments=pulls.moments)
+    for k, own in enumerate(found.own):
+        known = own[blocks.let_go(k)]
+        further = pulls.moments[k][len(known) :] + float(np.median(known - blocks.moments[k]))
+        level = longer.level_start(k) if blocks.shape.changes else np.zeros(0)
+        starts.append(np.concatenate([own[:2], known, further, level]))
+    return found.shared, starts
 
 
 def _again(found: Fitted, noise: Sequence[float]) -> Fitted:

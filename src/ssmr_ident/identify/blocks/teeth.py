@@ -49,7 +49,7 @@ def moments(log: PulledLog) -> Array:
     sliding = log.force[first:]
     if len(sliding) < 4 * LEAST:
         return np.array([first * log.step])
-    period = _clear_period(log, sliding) or _line_period(sliding)
+    period = _line_period(sliding) or _clear_period(log, sliding)
     if period is None:
         return np.array([first * log.step])
     width = max(2, int(period / 4))
@@ -94,15 +94,17 @@ def _maxima(values: Array) -> Array:
 
 def _clear_period(log: PulledLog, sliding: Array) -> float | None:
     """Median distance of falls that are far above chance and about as large as the largest [samples]."""
-    width = max(2, LEAST // 2)
+    widths = [2 * 2**k for k in range(12) if 2 * 2**k <= len(sliding) // (4 * FEWEST)] or [2]
+    # as wide as a fall lasts, it stands out most
+    width = max(widths, key=lambda w: float(_falls(sliding, w).max()) * np.sqrt(w))
     fall = _falls(sliding, width)
     least = max(CLEAR * log.noise * np.sqrt(2.0 / width), 0.3 * float(fall.max()))
     places = _maxima(fall)
     places = places[fall[places] > least]
     kept: list[int] = []
     for place in places:
-        if kept and place - kept[-1] < LEAST:
-            kept[-1] = place if fall[place] > fall[kept[-1]] else kept[-1]
+        if kept and place - kept[-1] < max(LEAST, 2 * width):
+            kept[-1] = int(place) if fall[place] > fall[kept[-1]] else kept[-1]
         else:
             kept.append(int(place))
     if len(kept) < FEWEST:
