@@ -85,14 +85,32 @@ def decide(rows: Sequence[Row]) -> Decision:
 
 def needed(law: Row, left: float, rows: Sequence[Row]) -> bool:
     """Whether a law that takes most of the misfit is there in another formula: its kind in any shape, as smooth as that
-    is, is certainly worse without it than beside it, and no other kind alone is better than both."""
+    is, is certainly worse without it than beside it, no other kind alone is better than both, and any shape of the
+    law's own variable takes most of what any shape at all takes beside it."""
     own = [r for r in rows if r.generic and set(r.kinds) == {law.kinds[0]}]
     other = [r.log_evidence for r in rows if r.generic and len(r.ids) == 1 and r.kinds[0] != law.kinds[0]]
     if max(other, default=-math.inf) > max(r.log_evidence for r in (law, *own)) + SECOND:
         return False
-    beside = [r.log_evidence for r in own if len(r.ids) == 2 and r.ids[0] == law.ids[0]]
+    beside = [r for r in own if len(r.ids) == 2 and r.ids[0] == law.ids[0]]
     without = [r.log_evidence for r in own if len(r.ids) == 1]
-    return left < HALVED and bool(beside) and max(beside) > max(without, default=math.inf) + SECOND
+    if (
+        left >= HALVED
+        or max((r.log_evidence for r in beside), default=-math.inf) <= max(without, default=-math.inf) + SECOND
+    ):
+        return False
+    if len(law.ids) > 1 or not (law.variables and law.variables[0]):
+        return True
+    variable = law.variables[0]
+    formulas = [
+        r.chi2 for r in rows if r.generic and len(r.ids) == 2 and r.ids[0] == law.ids[0] and _formula(r, variable)
+    ]
+    least = min((r.chi2 for r in beside), default=law.chi2)
+    return law.chi2 - min(formulas, default=law.chi2) > HALVED * (law.chi2 - least)
+
+
+def _formula(row: Row, variable: str) -> bool:
+    """Whether a pair is a law with any shape of its own variable beside it; friction may be a memory as well."""
+    return row.variables[1] == variable or (row.ids[0] == FRICTION and row.kinds[1] == MEMORY)
 
 
 def stands(row: Row, rows: Sequence[Row]) -> bool:

@@ -334,7 +334,10 @@ def _in_full(search: Search, whole: Problem, begins: Sequence[int], say: Progres
         assert row.fit is not None
         start = Start(row.fit.point, carried(row.fit.node, found)) if chaotic else _at_begins(row.fit, begins)
         start = Start(found.point, found.nuisances) if row.fit is best else start
-        new.add(polish(problem, row.fit.node, start, SHORT if row in near or not row.ids else BEGUN))
+        new.add(polish(problem, row.fit.node, start, BEGUN))
+    least = min(f.cost for f in new.fits)
+    for fit in [f for f in new.fits if f.cost < least + 2.0 * SECOND]:
+        new.add(_again(problem, fit, SHORT))
     _offered_back(new, 1)
     return new
 
@@ -387,7 +390,8 @@ def _beside(search: Search, say: Progress, first: Fit) -> None:
         if search.late:
             search.untried.append(f"{first.node.name} + {member.name}")
             continue
-        short.append(_near(problem, first, member, SHORT))
+        short.append(_near(problem, first, member, BEGUN))
+    short = [_again(problem, f, SHORT) for f in sorted(short, key=lambda f: f.cost)[:FULL_KINDS]]
     gain = max((row_of(f, problem).log_evidence - alone.log_evidence for f in short), default=0.0)
     if alone.over < OVER_NOISE_SECOND and not better and gain < UNIT:
         return

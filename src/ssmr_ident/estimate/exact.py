@@ -26,10 +26,9 @@ LEAST_GAIN, LEAST_SHARE = 0.02, 5e-6
 def _whitened(problem: Problem, index: int, columns: Array) -> Array:
     """(n, c, …) through each channel's whitening filter, in its standard deviation; uncounted samples are nought."""
     piece = problem.pieces[index]
-    out = np.where(piece.counts.reshape(*piece.counts.shape, *[1] * (columns.ndim - 2)), columns, 0.0)
-    for c, noise in enumerate(problem.noises[index]):
-        out[:, c] = noise.filtered(out[:, c])
-    return out
+    out = columns if piece.counts.all() else np.where(piece.counts[..., None], columns, 0.0)
+    filtered = [noise.filtered(out[:, c]) for c, noise in enumerate(problem.noises[index])]
+    return np.stack(filtered, axis=1)
 
 
 def _exact(problem: Problem, node: Node, point: Array, nuisances: Sequence[Array]):
@@ -41,25 +40,24 @@ def _exact(problem: Problem, node: Node, point: Array, nuisances: Sequence[Array
         start = nuisance[None, :n].copy()
         zero = float(nuisance[n]) if piece.driven else 0.0
         s = simulate(model, index, start, np.array([0, len(piece.y)]), zero)
-        c = piece.y.shape[1]
+        c, k, passed = piece.y.shape[1], len(nuisance), problem.passed_over(piece)
         gain = 1.0 + nuisance[n + 1] if piece.driven else 1.0
         course = np.linspace(-1.0, 1.0, len(piece.y))
         rest = gain * s.y + nuisance[-2 * c : -c] + course[:, None] * nuisance[-c:] - piece.y
-        rest[: problem.passed_over(piece)] = 0.0
+        rest[:passed] = 0.0
         if not np.isfinite(rest).all():
             return math.inf, [], []
-        states = start.shape[1]
-        flat = np.zeros((*piece.y.shape, len(nuisance) + len(point)))
-        flat[..., :n] = gain * s.dy[..., :n]
+        whole = np.zeros((*piece.y.shape, k + len(point) + 1))  # nuisances, coordinates, residuals
+        np.multiply(s.dy[..., :n], gain, out=whole[..., :n])
         if piece.driven:
-            flat[..., n] = gain * s.dy[..., -1]
-            flat[..., n + 1] = s.y
-        for k in range(c):
-            flat[:, k, len(nuisance) - 2 * c + k] = 1.0
-            flat[:, k, len(nuisance) - c + k] = course
-        flat[..., len(nuisance) :] = gain * s.dy[..., states:-1]
-        whole = np.concatenate([flat, rest[..., None]], axis=2)
-        whole[: problem.passed_over(piece)] = 0.0
+            np.multiply(s.dy[..., -1], gain, out=whole[..., n])
+            whole[..., n + 1] = s.y
+        for channel in range(c):
+            whole[:, channel, k - 2 * c + channel] = 1.0
+            whole[:, channel, k - c + channel] = course
+        np.multiply(s.dy[..., n:-1], gain, out=whole[..., k:-1])
+        whole[..., -1] = rest
+        whole[:passed] = 0.0
         with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is refused below
             white = _whitened(problem, index, whole).reshape(-1, whole.shape[2])
             normal = white.T @ white
@@ -67,7 +65,7 @@ def _exact(problem: Problem, node: Node, point: Array, nuisances: Sequence[Array
         if not np.isfinite(normal).all():
             return math.inf, [], []
         chi2 += float(normal[-1, -1])
-        parts.append((normal[:-1, :-1], normal[:-1, -1], len(nuisance)))
+        parts.append((normal[:-1, :-1], normal[:-1, -1], k))
     return chi2, residuals, parts
 
 

@@ -26,8 +26,11 @@ CELLS = 400
 KNOTS, SHAPES = 15, 10
 """Of the spline over deflection, and how many of its smoothest shapes are taken."""
 
-STEEP = (0.02, 0.08, 0.3)
+STEEP = (0.01, 0.05, 0.25)
 """Widths of steps in velocity, in the largest: the narrowest is as sharp as a law without memory can be seen."""
+
+SIDE = 0.1
+"""Width of a step in deflection, in the largest."""
 
 YIELDS = (0.01, 0.04, 0.12, 0.25, 0.5, 0.9)
 """Deflections at which spring-slider elements slide, in the largest."""
@@ -37,7 +40,7 @@ LOOSE = 3.0
 
 
 def static(problem: Problem, paths: Sequence[Array], variable: str = "") -> Member:
-    """f(x) + g(v) + h(x) v, x and v that the linear rig has left out.
+    """f(x) + g(v) + h(x) v + s(x) r(v), x and v that the linear rig has left out; s and r are steep.
 
     Parameters
     ----------
@@ -56,7 +59,11 @@ def static(problem: Problem, paths: Sequence[Array], variable: str = "") -> Memb
     u = low * np.sinh(top * grid) / fastest
     by_v = np.column_stack([*(np.tanh(u / width) for width in STEEP), u * np.abs(u), u**3, np.abs(u), u**2])
     by_v = _without(by_v, np.column_stack([u]), np.interp(np.arcsinh(v / low) / top, grid, np.arange(CELLS + 1.0)))
-    both = np.column_stack([grid, np.abs(grid), grid**2]) / fastest
+    side, sharp = np.tanh(grid / SIDE), np.tanh(u / STEEP[0])
+    both = np.array([
+        np.column_stack([grid, np.abs(grid), grid**2, side, side, grid, np.abs(grid)]),
+        np.column_stack([u, u, u, u, sharp, sharp, sharp]),
+    ])  # fmt: skip
     parts = {"x": Tables(by_position=by_x), "v": Tables(by_velocity=by_v), "": Tables(by_x, by_v, both)}
     tables = replace(parts[variable], reach=reach, low=low, top=top)
     member = _member("unlisted", STATIC, tables, problem)

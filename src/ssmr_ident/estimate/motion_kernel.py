@@ -13,8 +13,7 @@ import numpy as np
 
 from ssmr_ident.core.kernel import kernel
 from ssmr_ident.physics.effects import unlisted
-from ssmr_ident.physics.element import STATES, element_force, element_next
-from ssmr_ident.physics.slots import UNLISTED
+from ssmr_ident.physics.element import STATES, element_force, element_next, free_slots, inner_slots
 
 _unlisted = unlisted.force
 
@@ -23,6 +22,9 @@ TINY = 1e-6
 
 NEWTON = 4
 """Iterations for the velocity after a kick, whose force depends on it."""
+
+NEAR = 1e-5
+"""Of the largest velocity, how near the first guess is where a straight line goes the rest of the way."""
 
 BY_POSITION, BY_VELOCITY, CONSTANT, BY_INERTIA = range(4)
 """What a course over time multiplies."""
@@ -39,8 +41,8 @@ def _cell(table, place):
 
 @kernel
 def law_force(x, v, z, time, stiffness, e, terms):
-    f = element_force(x, v, z, stiffness, 1.0, 1.0, True, e)
-    return f + _unlisted(x, v, time, 1.0, e[UNLISTED:]) if terms else f
+    f = element_force(x, v, z, stiffness, 1.0, 1.0, True, inner_slots(e))
+    return f + _unlisted(x, v, time, 1.0, free_slots(e)) if terms else f
 
 
 @kernel
@@ -65,12 +67,12 @@ def _force(x, v, z, time, row, drive, g, slopes, with_slopes):
             if with_slopes:
                 slopes[first + at] = value
             at += 1
-    n = tab_v.shape[1]
-    if n:
+    n, products = tab_v.shape[1], tab_xv.shape[2]
+    if n or products:
         low, top, _ = steep
         place = math.asinh(v / low) / top
         change = 1.0 / (top * math.sqrt(v * v + low * low))
-        i, share, per = _cell(tab_v, place)
+        i, share, per = _cell(tab_v if n else tab_xv[1], place)
         for k in range(n):
             slope = tab_v[i + 1, k] - tab_v[i, k]
             value = tab_v[i, k] + share * slope
@@ -79,18 +81,19 @@ def _force(x, v, z, time, row, drive, g, slopes, with_slopes):
             if with_slopes:
                 slopes[first + at] = value
             at += 1
-    n = tab_xv.shape[1]
-    if n:
-        i, share, per = _cell(tab_xv, x / reach)
-        for k in range(n):
-            slope = tab_xv[i + 1, k] - tab_xv[i, k]
-            value = tab_xv[i, k] + share * slope
-            f += c[at] * value * v
-            fv += c[at] * value
-            fx += c[at] * slope * per / reach * v
-            if with_slopes:
-                slopes[first + at] = value * v
-            at += 1
+        if products:
+            i_x, share_x, per_x = _cell(tab_xv[0], x / reach)
+            for k in range(products):
+                slope_x = tab_xv[0, i_x + 1, k] - tab_xv[0, i_x, k]
+                slope_v = tab_xv[1, i + 1, k] - tab_xv[1, i, k]
+                of_x = tab_xv[0, i_x, k] + share_x * slope_x
+                of_v = tab_xv[1, i, k] + share * slope_v
+                f += c[at] * of_x * of_v
+                fv += c[at] * of_x * slope_v * per * change
+                fx += c[at] * slope_x * per_x / reach * of_v
+                if with_slopes:
+                    slopes[first + at] = of_x * of_v
+                at += 1
     for k in range(courses.shape[1]):
         psi = courses[row, k]
         kind = course_kind[k]
@@ -183,7 +186,7 @@ def _advance(z, tangents, change, change_slopes, step, first, by_v, g):
             if q >= 3:
                 e[law_index[q - 3]] = was + difference
             begun = (h[0] + dx, h[1] + dx, h[2] + dx) if q == 2 else h
-            other = element_next(begun, v + dv if q == 1 else v, step, True, e)
+            other = element_next(begun, v + dv if q == 1 else v, step, True, inner_slots(e))
             if q == 0:
                 new = other
             elif q == 1:
@@ -262,7 +265,7 @@ def run(
         for k in range(hidden):
             z[k] = starts[stretch, n_lin + k]
             dz[k, n_lin + k] = 1.0
-        f = 0.0
+        f, fx, fv, x_was, v_was = 0.0, 0.0, 0.0, 0.0, 0.0
         first, after = borders[stretch], borders[stretch + 1]
         total = (after - first) * every
         for n in range(total + 1):
@@ -273,18 +276,26 @@ def run(
                 row = min(at // every, y.shape[0] - 1)
                 time = begin + at * step
                 half = 1.0 if n else 0.0
-                v = moved - half * kick[1] * f
-                slopes[:] = 0.0
-                fx, fv = 0.0, 0.0
-                turn = NEWTON if n == 0 else 0
+                v = moved
+                if n:  # as the last force goes on, to first order
+                    f += (fx * (s[0] - x_was) + fv * (moved - kick[1] * f - v_was)) / max(1.0 + kick[1] * fv, 0.1)
+                    v -= kick[1] * f
+                turn = 0
                 while True:
-                    f, fx, fv = _force(s[0], v, z, time, row, here, g, slopes, turn == NEWTON)
+                    slopes[:] = 0.0
+                    f, fx, fv = _force(s[0], v, z, time, row, here, g, slopes, turn == 0 or turn == NEWTON)
+                    away = half * (v - moved + kick[1] * f) / max(1.0 + kick[1] * fv, 0.1)
                     if turn == NEWTON:
                         break
-                    better = v - (v - moved + kick[1] * f) / max(1.0 + kick[1] * fv, 0.1)
+                    flat = fv == 0.0 and v * (v - away) > 0.0  # a force of this velocity's sign alone
+                    if turn == 0 and (flat or abs(away) <= NEAR * g[15]):
+                        f -= fv * away
+                        v -= away
+                        break
                     # once it has settled, a last turn takes the slopes as well
-                    turn = NEWTON if abs(better - v) <= 1e-7 * g[15] else turn + 1
-                    v = better
+                    turn = NEWTON if abs(away) <= 1e-7 * g[15] else turn + 1
+                    v -= away
+                v_was = v
                 denominator = 1.0 + half * kick[1] * fv
                 for j in range(columns):
                     own = fx * ds[0, j]
@@ -370,7 +381,9 @@ def run(
                 _advance(z, dz, s[0] - x_was, change, step, zero - len(g[12]), by_v, g)
         for k in range(n_lin):
             ends[stretch, k] = s[k]
-            dends[stretch, k] = ds[k]
+            for j in range(columns):
+                dends[stretch, k, j] = ds[k, j]
         for k in range(hidden):
             ends[stretch, n_lin + k] = z[k]
-            dends[stretch, n_lin + k] = dz[k]
+            for j in range(columns):
+                dends[stretch, n_lin + k, j] = dz[k, j]

@@ -70,8 +70,10 @@ class Tables:
 
     Parameters
     ----------
-    by_position, by_velocity, by_both : (g, k) float
-        Over -1 … 1 of x/reach; of asinh(v/low)/top; of x/reach, times v.
+    by_position, by_velocity : (g, k) float
+        Over -1 … 1 of x/reach; of asinh(v/low)/top.
+    by_both : (2, g, k) float
+        Over the one and the other, to be multiplied.
     reach, low, top : float
     courses : callable
         ``courses(piece)``: (n, k) float over a piece's samples.
@@ -83,7 +85,7 @@ class Tables:
 
     by_position: Array = field(default_factory=lambda: np.zeros((2, 0)))
     by_velocity: Array = field(default_factory=lambda: np.zeros((2, 0)))
-    by_both: Array = field(default_factory=lambda: np.zeros((2, 0)))
+    by_both: Array = field(default_factory=lambda: np.zeros((2, 2, 0)))
     reach: float = 1.0
     low: float = 1.0
     top: float = 1.0
@@ -93,7 +95,7 @@ class Tables:
 
     @property
     def size(self) -> int:
-        tables = self.by_position.shape[1] + self.by_velocity.shape[1] + self.by_both.shape[1]
+        tables = self.by_position.shape[1] + self.by_velocity.shape[1] + self.by_both.shape[2]
         return tables + len(self.kinds) + len(self.yields)
 
     @property
@@ -113,14 +115,14 @@ class Tables:
         mass : float [kg]
         """
         x, v = path[:, 0], path[:, 1]
-        columns = [np.zeros((len(path), 0))]
-        for table, place, times in (
-            (self.by_position, x / self.reach, np.ones(len(x))),
-            (self.by_velocity, np.arcsinh(v / self.low) / self.top, np.ones(len(x))),
-            (self.by_both, x / self.reach, v),
-        ):
+        places = (x / self.reach, np.arcsinh(v / self.low) / self.top)
+
+        def read(table: Array, place: Array) -> Array:
             grid = np.linspace(-1.0, 1.0, len(table))
-            columns += [(np.interp(place, grid, c) * times)[:, None] for c in table.T]
+            return np.array([np.interp(place, grid, c) for c in table.T]).reshape(-1, len(path)).T
+
+        columns = [read(self.by_position, places[0]), read(self.by_velocity, places[1])]
+        columns.append(read(self.by_both[0], places[0]) * read(self.by_both[1], places[1]))
         factors = (x, v, np.ones(len(x)), -mass * path[:, 2])
         columns += [(courses[:, i] * factors[kind])[:, None] for i, kind in enumerate(self.kinds.tolist())]
         return np.hstack(columns)

@@ -54,7 +54,13 @@ class AutoregressiveNoise:
         """All samples through the whitening filter, which begins at rest, in units of its standard deviation."""
         if not self.order:
             return samples / self.std
-        result: Array = lfilter(self.filter, self.moving_average, samples, axis=0) / self.std
+        result: Array
+        if len(self.moving_average) == 1:  # no feedback: a sum of shifted copies, at the speed of memory
+            result = self.filter[0] / self.std * samples
+            for lag in range(1, len(self.filter)):
+                result[lag:] += self.filter[lag] / self.std * samples[:-lag]
+            return result
+        result = lfilter(self.filter, self.moving_average, samples, axis=0) / self.std
         return result
 
     def louder(self, factor: float) -> AutoregressiveNoise:
