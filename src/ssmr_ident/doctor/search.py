@@ -11,7 +11,7 @@ import numpy as np
 
 from ssmr_ident.doctor.decide import FRICTION
 from ssmr_ident.doctor.laws import Proposal, proposals, simpler
-from ssmr_ident.doctor.rules import FORMULA, SECOND, TIE, UNIT
+from ssmr_ident.doctor.rules import FORMULA, HALVED, SECOND, TIE, UNIT
 from ssmr_ident.doctor.table import Row, row_of
 from ssmr_ident.estimate.coarser import coarser
 from ssmr_ident.estimate.exact import polish
@@ -129,7 +129,7 @@ def searched(problem: Problem, budget: float = math.inf, progress: Progress | No
     _offered_back(search)
     search = _with_own_noise(search)
     _second(search, say)
-    _offered_back(search)
+    _exchanged(search, say)
     return search if problem is whole else _in_full(search, whole, begins, say)
 
 
@@ -233,7 +233,8 @@ def _named_along(search: Search, say: Progress, beside: Sequence[Member] = (), b
     while not search.late:
         _named(search, say, near, beside)
         best = min((f for f in search.fits if set(beside) <= set(f.node.members)), key=lambda f: f.cost, default=near)
-        if best.cost > near.cost - 2.0 * SECOND:
+        excess = max(near.cost - search.problem.samples, 0.0)
+        if best.cost > near.cost - max(2.0 * SECOND, HALVED * excess):
             return
         near = best
 
@@ -358,17 +359,44 @@ def _judges(row: Row, rows: Sequence[Row], near: Sequence[Row]) -> bool:
 
 def _second(search: Search, say: Progress) -> None:
     """A second effect beside the best named ones, where something in any shape is certainly better than these."""
-    rows = search.rows()
-    named = [r for r in rows if len(r.ids) == 1 and not r.generic]
-    if not named or rows[0].log_evidence < SECOND:
-        return
-    firsts = {r.ids: r for r in reversed(named)}  # of each effect its best formula
-    for row in sorted(firsts.values(), key=lambda r: -r.log_evidence)[:FIRSTS]:
+    tried: set[tuple[str, ...]] = set()
+    while len(tried) < FIRSTS and not search.late:
+        rows = search.rows()
+        firsts = [r for r in rows if len(r.ids) == 1 and not r.generic and r.ids not in tried]
+        if not firsts or rows[0].log_evidence < SECOND:
+            return
+        row = firsts[0]
         assert row.fit is not None
+        tried.add(row.ids)
         _beside(search, say, row.fit)
+        _offered_back(search)
         best = search.rows()[0]
         if row.over < OVER_NOISE_SECOND or (not best.generic and best.over < OVER_NOISE_SECOND):
             return
+
+
+def _exchanged(search: Search, say: Progress) -> None:
+    """Other laws in place of the first of two, which was chosen before the second was known; where one of them is
+    better, others in place of the second."""
+    pair = _best_pair(search)
+    if pair is None:
+        return
+    _named(search, say, pair, pair.node.members[1:])
+    _offered_back(search)
+    found = _best_pair(search)
+    assert found is not None
+    laws = [m.id for m in pair.node.members]
+    for law in (m for m in found.node.members if m.id not in laws and m.law is not None):
+        alone = next(f for f in search.fits if [m.id for m in f.node.members] == [law.id] and not f.node.generic)
+        _beside(search, say, alone)
+        _offered_back(search)
+
+
+def _best_pair(search: Search) -> Fit | None:
+    """Two named effects, where these are certainly better than any model with fewer."""
+    pair = next((r.fit for r in search.rows() if len(r.ids) == 2 and not r.generic), None)
+    fewer = min(f.cost for f in search.fits if len(f.node.members) < 2)
+    return pair if pair is not None and pair.cost < fewer - 2.0 * SECOND else None
 
 
 def _beside(search: Search, say: Progress, first: Fit) -> None:
@@ -390,7 +418,7 @@ def _beside(search: Search, say: Progress, first: Fit) -> None:
         if search.late:
             search.untried.append(f"{first.node.name} + {member.name}")
             continue
-        short.append(_near(problem, first, member, BEGUN))
+        short.append(_near(problem, first, member, BEGUN if member.tables else SHORT))
     short = [_again(problem, f, SHORT) for f in sorted(short, key=lambda f: f.cost)[:FULL_KINDS]]
     gain = max((row_of(f, problem).log_evidence - alone.log_evidence for f in short), default=0.0)
     if alone.over < OVER_NOISE_SECOND and not better and gain < UNIT:
