@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from scipy.special import ellipk
 
 from ssmr_ident.core.errors import InputError, SimulationError
 from ssmr_ident.identify.trials.pull import QUICK
@@ -92,6 +94,21 @@ def test_a_mass_without_a_spring_obeys_newton() -> None:
     t = np.arange(1000) / RATE
     assert motion[:, 0] == pytest.approx(t**2, abs=1e-12)
     assert motion[:, 2] == pytest.approx(2.0)
+
+
+def test_a_pendulum_has_the_period_of_the_elliptic_integral() -> None:
+    """T = 4 K(sin²(A/2))/ω for a swing to A; at 160 degrees twice that of a small one."""
+    omega, rate, top = 5.0, 2000.0, math.radians(160.0)
+    rig = Rig(1.0, 0.0, omega**2, rotary=True)
+    run = simulate_rig(rig, np.zeros(int(8.0 * rate)), rate, top, effects={"nonlinear_stiffness": {"sine_share": 1.0}})
+    angle = run[:, 0]
+    up = np.flatnonzero((angle[:-1] < 0.0) & (angle[1:] >= 0.0))
+    crossing = up - angle[up] / (angle[up + 1] - angle[up])
+    expected = 4.0 * ellipk(math.sin(0.5 * top) ** 2) / omega
+    assert np.diff(crossing).mean() / rate == pytest.approx(expected, rel=1e-5)
+    assert expected > 2.0 * 2.0 * math.pi / omega
+    with pytest.raises(InputError, match="of a rig that turns"):
+        simulate_rig(Rig(1.0, 0.0, omega**2), np.zeros(9), rate, effects={"nonlinear_stiffness": {"sine_share": 1.0}})
 
 
 def test_an_effect_that_no_rig_has_is_refused() -> None:

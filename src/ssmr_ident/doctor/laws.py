@@ -27,6 +27,9 @@ VARIABLES = {"nonlinear_stiffness": "x", "free_play": "x", "quadratic_damping": 
 LEAST = 1e-3
 """Of an amplitude's usual size, what a coordinate's unit is at the least: of less data would seem to know nothing."""
 
+SINE = "sine"
+"""Of what turns alone."""
+
 Shape = Mapping[str, float]
 _OnPath = tuple[float, Shape, float, float, Shape]
 
@@ -94,6 +97,8 @@ FORMS = (
          _grid("knee_m", 0.3, 0.6, 0.85),
          lambda s, k, x, v, f: {"knee_share": 1.0, "k3_N_m3": 0.3 * k / x**2, **s}, _scaled("knee_share", "k3_N_m3"),
          {"knee_share": False, "knee_m": True, "k3_N_m3": False}),
+    Form("nonlinear_stiffness", STATIC, SINE, _none,
+         lambda s, k, x, v, f: {"sine_share": 1.0}, _scaled("sine_share"), {"sine_share": False}),
     Form("free_play", STATIC, "", _grid("gap_m", 0.05, 0.15, 0.3, 0.5, 0.8, 1.2),
          lambda s, k, x, v, f: {"rounding": 0.1, **s}, lambda c, unit, k: unit, {"gap_m": True, "rounding": True}),
     Form("quadratic_damping", STATIC, "", _none, lambda s, k, x, v, f: {"d2_N_s2_m2": f / v**2}, _scaled("d2_N_s2_m2"),
@@ -170,7 +175,8 @@ def proposals(problem: Problem, found: Fit, paths: Sequence[Array], beside: Sequ
     result = []
     taken = {m.id for m in beside}
     sizes = reach, fastest, 0.3 * size
-    for form in (f for f in FORMS if f.effect not in taken):
+    turns = any(unit.startswith("rad") for unit in problem.pieces[0].units)
+    for form in (f for f in FORMS if f.effect not in taken and (turns or f.name != SINE)):
         along = partial(_on_path, form, partial(_along, problem, paths, first), plain, force, stiff, sizes)
         rest, shape, k, d, values = best_shape(along, form.shapes(*sizes))
         member = member_of(form, values, form.unit(shape, stiff, *sizes), reach)

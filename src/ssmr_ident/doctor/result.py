@@ -168,7 +168,7 @@ def named_effects(decision: Decision, chosen: Row, after: ParameterSet) -> tuple
     found = []
     for member in chosen.fit.node.members:
         effect = member.id if decision.listed else "unlisted"
-        values = {} if member.tables else _shown(member.id, after)
+        values = {} if member.tables else _shown(member, after)
         if effect == "unlisted":
             values = {name: e for name, e in values.items() if not e.fixed}
         text = law(effect, values) if values else "F = f(s, v), drawn"
@@ -183,10 +183,10 @@ def named_effects(decision: Decision, chosen: Row, after: ParameterSet) -> tuple
     return tuple({e.id: e for e in reversed(found)}.values())[::-1]
 
 
-def _shown(effect: str, after: ParameterSet) -> dict[str, Estimate]:
-    """Its parameters but those that were not fitted and switch a part of it off."""
-    off = {p.name: p.off for p in CATALOGUE[effect].parameters}
-    return {n: e for n, e in after.effects[effect].items() if not (e.fixed and e.value == off[n])}
+def _shown(member: Member, after: ParameterSet) -> dict[str, Estimate]:
+    """What its formula has: what was fitted, and what the formula holds."""
+    own = {c.name for c in member.coordinates} | set(member.law or {})
+    return {name: e for name, e in after.effects[member.id].items() if name in own}
 
 
 def element_of(member: Member) -> str:

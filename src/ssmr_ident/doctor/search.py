@@ -339,6 +339,8 @@ def _in_full(search: Search, whole: Problem, begins: Sequence[int], say: Progres
     least = min(f.cost for f in new.fits)
     for fit in [f for f in new.fits if f.cost < least + 2.0 * SECOND]:
         new.add(_again(problem, fit, SHORT))
+    for fit in sorted(new.fits, key=lambda f: f.cost)[:FIRSTS]:
+        new.add(_again(problem, fit, FULL))
     _offered_back(new, 1)
     return new
 

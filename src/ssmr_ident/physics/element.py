@@ -32,12 +32,14 @@ from ssmr_ident.physics.slots import (
     QUADRATIC,
     RELAXATION_STIFFNESS,
     RELAXATION_TIME,
+    SINE_SHARE,
     SLIDER,
     UNLISTED,
     YIELD,
 )
 
 _cubic, _beyond = nonlinear_stiffness.force, nonlinear_stiffness.beyond
+_pendulum = lanewise(nonlinear_stiffness.pendulum)
 _quadratic = quadratic_damping.force
 _friction, _friction_advance = dry_friction.force, dry_friction.advance
 _loop, _loop_advance = hysteresis.force, lanewise(hysteresis.advance)
@@ -81,6 +83,8 @@ def element_force(s, v, z, stiffness, ratio, gap_share, tangential, e):
     if tangential:
         if first(e[KNEE_SHARE]) != 0.0:
             f += _beyond(s, stiffness, e[KNEE_SHARE], e[KNEE])
+        if first(e[SINE_SHARE]) != 0.0:
+            f += _pendulum(s, stiffness, e[SINE_SHARE])
         if first(e[QUADRATIC]) != 0.0:
             f += _quadratic(v, e[QUADRATIC])
         if first(e[FRICTION_FORCE]) != 0.0:
@@ -132,7 +136,7 @@ def inner_slots(e):
     return (
         e[0], e[1], e[2], e[3], e[4], e[5], e[6], e[7], e[8], e[9],
         e[10], e[11], e[12], e[13], e[14], e[15], e[16], e[17], e[18], e[19], e[20], e[21], e[22], e[23], e[24],
-        e[25], e[26],
+        e[25], e[26], e[27],
     )  # fmt: skip
 
 

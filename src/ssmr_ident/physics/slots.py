@@ -15,6 +15,7 @@ SLOTS = (
     "nonlinear_stiffness.knee_share",
     "nonlinear_stiffness.knee_m",
     "nonlinear_stiffness.k3_share_1_m2",
+    "nonlinear_stiffness.sine_share",
     "quadratic_damping.d2_N_s2_m2",
     "dry_friction.F_c_N",
     "dry_friction.element_stiffness_N_m",
@@ -50,14 +51,14 @@ SLOTS = (
     "motor_belt.rim_mass_kg",
     *(f"unlisted.{parameter.name}" for parameter in unlisted.EFFECT.parameters),
 )
-CUBIC, KNEE_SHARE, KNEE, CUBIC_SHARE, QUADRATIC = range(5)
-FRICTION_FORCE, FRICTION_STIFFNESS, SLIDER, FRICTION_ROUNDING = range(5, 9)
-ALPHA, YIELD, LOOP_EXPONENT, LOOP_SHAPE = range(9, 13)
-RELAXATION_STIFFNESS, RELAXATION_TIME, GAP, GAP_ROUNDING, GAP_SHARE_X = range(13, 18)
-KINETIC_SHARE, STRIBECK_SPEED, STRIBECK_EXPONENT, LOAD_EXPONENT, ROLLING = range(18, 23)
-JOINT_DEPTH, JOINT_PITCH, JOINT_WIDTH, ECCENTRICITY, ROUGHNESS = range(23, 28)
-LIFT, CORIOLIS, MAST_HZ, MAST_MASS, MAST_HEIGHT, MAST_DAMPING = range(28, 34)
-BELT_STIFFNESS, BELT_DAMPING, RIM_MASS, UNLISTED = range(34, 38)
+CUBIC, KNEE_SHARE, KNEE, CUBIC_SHARE, SINE_SHARE, QUADRATIC = range(6)
+FRICTION_FORCE, FRICTION_STIFFNESS, SLIDER, FRICTION_ROUNDING = range(6, 10)
+ALPHA, YIELD, LOOP_EXPONENT, LOOP_SHAPE = range(10, 14)
+RELAXATION_STIFFNESS, RELAXATION_TIME, GAP, GAP_ROUNDING, GAP_SHARE_X = range(14, 19)
+KINETIC_SHARE, STRIBECK_SPEED, STRIBECK_EXPONENT, LOAD_EXPONENT, ROLLING = range(19, 24)
+JOINT_DEPTH, JOINT_PITCH, JOINT_WIDTH, ECCENTRICITY, ROUGHNESS = range(24, 29)
+LIFT, CORIOLIS, MAST_HZ, MAST_MASS, MAST_HEIGHT, MAST_DAMPING = range(29, 35)
+BELT_STIFFNESS, BELT_DAMPING, RIM_MASS, UNLISTED = range(35, 39)
 """First of what no list holds; these are the last slots."""
 
 Effects = Mapping[str, Mapping[str, float]]
@@ -102,6 +103,8 @@ def checked_for_robot(effects: Effects) -> dict[str, dict[str, float]]:
         raise InputError(
             "effects: unlisted.rider_share", "is a part of a rig's mass", "On a robot this is flexible_mast"
         )
+    if active.get("nonlinear_stiffness", {}).get("sine_share"):
+        raise InputError("effects: nonlinear_stiffness.sine_share", "is of a rig that turns: a pendulum's moment")
     return active
 
 

@@ -73,6 +73,9 @@ def simulate_rig(
         if not CATALOGUE[effect_id].rig:
             known = ", ".join(name for name, effect in CATALOGUE.items() if effect.rig)
             raise InputError(f"effects: {effect_id}", "does not act on a rig with one mass", f"Those that do: {known}")
+    if active.get("nonlinear_stiffness", {}).get("sine_share") and not rig.rotary:
+        where = "effects: nonlinear_stiffness.sine_share"
+        raise InputError(where, "is of a rig that turns", "Give the rig inertia_kg_m2 in place of its mass")
     if "sensor_bandwidth" in active:
         bandwidth_hz = min(bandwidth_hz, active["sensor_bandwidth"]["bandwidth_hz"])
     if math.isfinite(bandwidth_hz) and not fine:  # the bilinear low-pass is true to 0.1 % in phase from here on

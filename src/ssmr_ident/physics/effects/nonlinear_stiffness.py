@@ -1,10 +1,13 @@
 """Stiffness that changes with deflection: hardening or softening.
 
 A robot's axes have springs of their own, and what a cubic is on one of them says nothing of the others: ``k3_N_m3`` is
-the same on all, ``k3_share_1_m2`` in proportion to K.
+the same on all, ``k3_share_1_m2`` in proportion to K. What turns under its own weight is a pendulum, whose moment is a
+sine.
 """
 
 from __future__ import annotations
+
+import math
 
 from ssmr_ident.core.kernel import kernel
 from ssmr_ident.core.parameter import Parameter
@@ -25,10 +28,17 @@ def beyond(s, stiffness, share, knee):
     return share * stiffness * further
 
 
+@kernel
+def pendulum(s, stiffness, share):
+    """Further moment [N m] of a spring of which ``share`` is a weight on an arm: K (sin s - s); s : float [rad]."""
+    return share * stiffness * (math.sin(s) - s)
+
+
 EFFECT = Effect(
     id="nonlinear_stiffness",
     sentence="The tires (or the rig's spring) stiffen or soften as they are pressed.",
-    equation=r"F = K s + k_3 s^3 + a K\,\mathrm{sign}(s)\,\max(|s| - s_k, 0) + b K s^3",
+    equation=r"F = K s + k_3 s^3 + a K\,\mathrm{sign}(s)\,\max(|s| - s_k, 0) + b K s^3"
+    r" + p K (\sin s - s)",
     source="Thesis section 3.3; Kovacic and Brennan, The Duffing Equation, Wiley 2011",
     signature="natural frequency rises (hardening) or falls (softening) with amplitude; third harmonic",
     parameters=(
@@ -36,6 +46,7 @@ EFFECT = Effect(
         Parameter("knee_share", "1", 0.0, -0.95, 20.0, "a: slope beyond the knee over K, less one", off=0.0),
         Parameter("knee_m", "m", 5e-4, 1e-10, 10.0, "deflection at which the slope changes"),
         Parameter("k3_share_1_m2", "1/m^2", 0.0, -1e14, 1e14, "b: cubic stiffness over K, on every axis", off=0.0),
+        Parameter("sine_share", "1", 0.0, -2.0, 2.0, "p: share of K that is a pendulum's; rotary rigs", off=0.0),
     ),
     experiments=("free_response", "pull", "wheel_drag", "vertical_compression", "forced"),
     acts={Site.ELEMENT: force},
