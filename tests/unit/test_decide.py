@@ -85,6 +85,18 @@ def test_friction_in_another_formula_is_friction_where_its_kind_needs_it() -> No
     assert not decide([BASE, law, shape, smooth]).listed
 
 
+def test_friction_on_one_side_of_the_travel_is_no_formula_of_friction() -> None:
+    law = row("dry_friction", "static_force", 20_000.0, 8000.0, 1.8, variables=("v",))
+    alone = row("unlisted", "static_force", 21_000.0, 5900.0, 1.2, generic=True, variables=("",))
+    kinds = "static_force static_force"
+    beside = row("dry_friction unlisted", kinds, 21_050.0, 5700.0, 1.1, True, ("v", ""))
+    of_speed = row("dry_friction unlisted", kinds, 20_040.0, 7850.0, 1.8, True, ("v", "v"))
+    found = decide([BASE, law, alone, beside, of_speed])
+    assert not found.listed
+    formula = replace(of_speed, log_evidence=21_040.0, chi2=5750.0, over=1.1)
+    assert decide([BASE, law, alone, beside, formula]).chosen is law
+
+
 def test_a_second_effect_has_to_beat_the_first_in_any_shape() -> None:
     law = row("dry_friction", "static_force", 20_000.0, 9000.0, 1.34)
     shape = row("unlisted", "static_force", 22_300.0, 5200.0, 1.02, generic=True)

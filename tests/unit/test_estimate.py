@@ -192,6 +192,28 @@ def test_any_shape_takes_a_cubic_and_leaves_noise() -> None:
     assert plain.chi2 > 20.0 * found.chi2
 
 
+def test_any_shape_is_steep_on_one_side_alone() -> None:
+    """Friction where x > 0 only: of the force along a path no more than a tenth is left, of a sum f(x) + g(v) half."""
+    phase = np.linspace(0.0, 40.0 * math.pi, 8000)
+    size = np.linspace(1.0, 0.3, len(phase))
+    path = np.column_stack([size * np.sin(phase), size * np.cos(phase), -size * np.sin(phase)])
+    own = driven(0.0, 1e-3)
+    member = static(problem(own), [path])
+    assert member.tables is not None
+    columns = member.tables.along(path, np.zeros((len(path), 0)), 1.0)
+    force = 0.5 * (1.0 + np.tanh(path[:, 0] / 0.1)) * np.tanh(path[:, 1] / 0.01)
+    plain = np.column_stack([path[:, :2], np.ones(len(path))])
+
+    def left(*blocks: np.ndarray) -> float:
+        design = np.hstack(blocks)
+        rest = force - design @ np.linalg.lstsq(design, force, rcond=None)[0]
+        return float(np.std(rest) / np.std(force))
+
+    products = member.tables.by_both.shape[2]
+    assert left(plain, columns) < 0.15
+    assert left(plain, columns[:, :-products]) > 0.4
+
+
 def test_releases_are_found() -> None:
     rate, random = 500.0, np.random.default_rng(4)
     time = np.arange(3000) / rate
