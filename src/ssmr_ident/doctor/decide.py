@@ -115,8 +115,8 @@ def _formula(row: Row, variable: str) -> bool:
 
 def stands(row: Row, rows: Sequence[Row]) -> bool:
     """Whether each of two effects beats the other one in any shape, and halves what that leaves beyond white noise, or
-    leaves nothing that goes with the motion and ``FORMULA`` less; and both any one law, by evidence in sizes of what
-    they themselves leave."""
+    leaves nothing that goes with the motion or that another model explains, and ``FORMULA`` less; and both any one law,
+    by evidence in sizes of what they themselves leave."""
     if len(row.ids) < 2:
         return True
     found = [_alone(row, k, rows) for k in (0, 1)]
@@ -127,7 +127,8 @@ def stands(row: Row, rows: Sequence[Row]) -> bool:
         best = max(alone, key=lambda r: r.log_evidence)
         least = min(r.over for r in alone)
         halved = row.over**2 - 1.0 < HALVED * max(least**2 - 1.0, 0.0)
-        only_noise = row.left.follows < FOLLOWS and row.left.uneven < UNEVEN
+        explained = HALVED * row.over**2 < min(r.over for r in rows if math.isfinite(r.over)) ** 2
+        only_noise = explained and row.left.follows < FOLLOWS and row.left.uneven < UNEVEN
         takes = halved or (only_noise and row.chi2 < (1.0 - FORMULA) * best.chi2)
         if not takes or row.log_evidence < best.log_evidence + SECOND:
             return False

@@ -207,6 +207,16 @@ def _finished(search: Search, near: Fit, base: Fit, paths: Sequence[Array], poin
     return far if far.cost < full.cost else full
 
 
+def _offered_up(search: Search) -> None:
+    """A model with a member of any shape that is worse than the one without, which it contains, begins again there."""
+    for fit in [f for f in search.fits if len(f.node.members) > 1]:
+        for member in (m for m in fit.node.members if m.tables):
+            poorer = next((f for f in search.fits if f.node.name == fit.node.without(member).name), None)
+            if poorer is not None and poorer.cost < fit.cost - UNIT:
+                node = replace(poorer.node, members=(*poorer.node.members, member))
+                search.add(polish(search.problem, node, Start(joined(node, poorer), carried(node, poorer)), SHORT))
+
+
 def over(fit: Fit, problem: Problem) -> float:
     """Mean square of the whitened residuals: 1 for noise alone."""
     return fit.chi2 / max(problem.samples, 1)
@@ -335,13 +345,11 @@ def _in_full(search: Search, whole: Problem, begins: Sequence[int], say: Progres
         assert row.fit is not None
         start = Start(row.fit.point, carried(row.fit.node, found)) if chaotic else _at_begins(row.fit, begins)
         start = Start(found.point, found.nuisances) if row.fit is best else start
-        new.add(polish(problem, row.fit.node, start, BEGUN))
-    least = min(f.cost for f in new.fits)
-    for fit in [f for f in new.fits if f.cost < least + 2.0 * SECOND]:
-        new.add(_again(problem, fit, SHORT))
+        new.add(polish(problem, row.fit.node, start, SHORT if row in near or not row.ids else BEGUN))
     for fit in sorted(new.fits, key=lambda f: f.cost)[:FIRSTS]:
         new.add(_again(problem, fit, FULL))
     _offered_back(new, 1)
+    _offered_up(new)
     return new
 
 
@@ -386,12 +394,12 @@ def _exchanged(search: Search, say: Progress) -> None:
     _named(search, say, pair, pair.node.members[1:])
     _offered_back(search)
     found = _best_pair(search)
-    assert found is not None
     laws = [m.id for m in pair.node.members]
-    for law in (m for m in found.node.members if m.id not in laws and m.law is not None):
-        alone = next(f for f in search.fits if [m.id for m in f.node.members] == [law.id] and not f.node.generic)
-        _beside(search, say, alone)
-        _offered_back(search)
+    for law in (m for m in (found.node.members if found else ()) if m.id not in laws and m.law is not None):
+        single = [r.fit for r in search.rows() if r.ids == (law.id,) and not r.generic]
+        if single and single[0] is not None:
+            _beside(search, say, single[0])
+            _offered_back(search)
 
 
 def _best_pair(search: Search) -> Fit | None:
