@@ -41,6 +41,14 @@ def _ready(folder: Path, told: Told):
     return draft
 
 
+def test_what_a_log_lacks_is_told_with_what_was_found(tmp_path: Path) -> None:
+    time, wave = _swing(0.0, 0.004, 5.0, 0.02, 2.0, 0)
+    kept = np.arange(len(time)) != 300
+    _write(tmp_path / "decay.csv", "time [s],position [m]", time[kept], wave[kept])
+    _ready(tmp_path, Told(mass=2.5))
+    assert any("decay.csv" in text and "missing" in text for text in load(tmp_path).found)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("hertz", [3.0, 9.0])
 def test_plucked_and_quiet_before(tmp_path: Path, hertz: float) -> None:

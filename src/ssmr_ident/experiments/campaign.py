@@ -136,7 +136,8 @@ def _measure(session: Session, entry: Entry, accelerometer: Accelerometer) -> Me
     if entry.wheel_log:
         wheels = read_one(session.folder / entry.wheel_log, ReadOptions())
     clocks = tuple(note.text for note in recording.notes if entry.files and "its clock reads" in note.text)
-    return Measurement(entry, recording, wheels, found=clocks)
+    doubts = tuple(f"{Path(recording.provenance.file).name}: {note.text}" for note in recording.warnings)
+    return Measurement(entry, recording, wheels, found=(*clocks, *doubts))
 
 
 def _changes(samples: np.ndarray) -> bool:
