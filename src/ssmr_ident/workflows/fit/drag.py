@@ -17,6 +17,9 @@ from ssmr_ident.identify.blocks.search import Pulls, chosen, error, known_shape,
 from ssmr_ident.physics.rig import block_from_parameters
 from ssmr_ident.workflows.fit.result import SessionFit
 
+UNEXPLAINED = 10.0
+"""Percent of a force beyond which its friction is no one number. Set by judgement: a load cell's noise is far less."""
+
 
 def fit_drag_session(campaign: Campaign, measurements: tuple[Measurement, ...]) -> SessionFit:
     """Fit a block pulled over a surface by the poorest model that its pulls allow.
@@ -46,9 +49,18 @@ def fit_drag_session(campaign: Campaign, measurements: tuple[Measurement, ...]) 
         statistics=(f"{len(measurements)} recordings, weight {best.blocks.weight:.4g} N",),
         recordings={name: _lines(numbers) for name, numbers in results.items()},
         results=results,
-        findings=tuple(_findings(best, values, stds, found[0])),
+        findings=(*campaign.found, *_findings(best, values, stds, found[0]), *_doubts(results)),
         conflicts=tuple(clashing),
     )
+
+
+def _doubts(results: dict[str, dict[str, Any]]) -> list[str]:
+    """Pulls whose force one friction does not explain."""
+    return [
+        f"{name}: the fit leaves {numbers['nrmse_percent']:.0f} % of the force: its level of friction cannot be trusted"
+        for name, numbers in results.items()
+        if numbers["nrmse_percent"] > UNEXPLAINED
+    ]
 
 
 def _numbers(best: Fitted, pulls: Pulls, index: int) -> dict[str, Any]:

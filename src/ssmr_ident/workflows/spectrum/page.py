@@ -65,7 +65,7 @@ def spectrum_page(report: SpectrumReport, command: str, files: Sequence[Path]) -
     facts = tuple(_fact(channel, report.rows) for channel in dict.fromkeys(r.channel for r in report.rows))[:SHOWN]
     label = f"{len(by_file)} recording{'s' if len(by_file) > 1 else ''}"
     if len(strongest.analysis.lines):
-        label += f", strongest line at {_hertz(strongest, 0)} Hz"
+        label += f", strongest line at {float(_hertz(strongest, 0)):.4g} Hz"
     sentence = f"The strongest line of each channel, over {len(by_file)} recordings of {report.source}:"
     if len(by_file) == 1:
         sentence = f"The strongest line of each channel of {report.source}:"
