@@ -17,9 +17,9 @@ from ssmr_ident.diagnose.evidence import Evidence
 from ssmr_ident.diagnose.words import law, missing, nothing, told, undetermined
 from ssmr_ident.diagnose.worth import overlays, worth
 from ssmr_ident.doctor.decide import MISSING, NOTHING, UNDETERMINED, Decision
+from ssmr_ident.doctor.fitted import Search
 from ssmr_ident.doctor.held import held_fit
 from ssmr_ident.doctor.rules import OVER_NOISE, UNEVEN
-from ssmr_ident.doctor.search import Search
 from ssmr_ident.doctor.table import Row
 from ssmr_ident.estimate.node import Member, effects_of
 from ssmr_ident.estimate.problem import natural_hz

@@ -1,0 +1,103 @@
+"""A second effect beside named ones, and two that stand exchanged one by one."""
+
+from __future__ import annotations
+
+from ssmr_ident.doctor.decide import FRICTION
+from ssmr_ident.doctor.fitted import BEGUN, FULL, SHORT, Progress, Search, again, carried, joined, offered_back
+from ssmr_ident.doctor.kinds import kinds
+from ssmr_ident.doctor.named import named, named_along
+from ssmr_ident.doctor.rules import SECOND, TIE, UNIT
+from ssmr_ident.doctor.table import row_of
+from ssmr_ident.estimate.exact import polish
+from ssmr_ident.estimate.generic import STATIC, memory, static
+from ssmr_ident.estimate.motion import motion
+from ssmr_ident.estimate.node import Member
+from ssmr_ident.estimate.values import Fit, Problem, Start
+
+OVER_NOISE_SECOND = 1.25
+"""What a first effect leaves, in sizes of white noise, from which a second one is looked for."""
+
+FULL_KINDS = 4
+"""Members that get a full fit, those that a short one has brought farthest."""
+
+FIRSTS = 2
+"""Named effects, the best ones, beside which a second is looked for."""
+
+
+def second(search: Search, say: Progress) -> None:
+    """A second effect beside the best named ones, where something in any shape is certainly better than these."""
+    tried: set[tuple[str, ...]] = set()
+    while len(tried) < FIRSTS and not search.late:
+        rows = search.rows()
+        firsts = [r for r in rows if len(r.ids) == 1 and not r.generic and r.ids not in tried]
+        if not firsts or rows[0].log_evidence < SECOND:
+            return
+        row = firsts[0]
+        assert row.fit is not None
+        tried.add(row.ids)
+        _beside(search, say, row.fit)
+        offered_back(search)
+        best = search.rows()[0]
+        if row.over < OVER_NOISE_SECOND or (not best.generic and best.over < OVER_NOISE_SECOND):
+            return
+
+
+def exchanged(search: Search, say: Progress) -> None:
+    """Other laws in place of the first of two, which was chosen before the second was known; where one of them is
+    better, others in place of the second."""
+    pair = _best_pair(search)
+    if pair is None:
+        return
+    named(search, say, pair, pair.node.members[1:])
+    offered_back(search)
+    found = _best_pair(search)
+    laws = [m.id for m in pair.node.members]
+    for law in (m for m in (found.node.members if found else ()) if m.id not in laws and m.law is not None):
+        single = [r.fit for r in search.rows() if r.ids == (law.id,) and not r.generic]
+        if single and single[0] is not None:
+            _beside(search, say, single[0])
+            offered_back(search)
+
+
+def _best_pair(search: Search) -> Fit | None:
+    """Two named effects, where these are certainly better than any model with fewer."""
+    pair = next((r.fit for r in search.rows() if len(r.ids) == 2 and not r.generic), None)
+    fewer = min(f.cost for f in search.fits if len(f.node.members) < 2)
+    return pair if pair is not None and pair.cost < fewer - 2.0 * SECOND else None
+
+
+def _beside(search: Search, say: Progress, first: Fit) -> None:
+    """Every kind in any shape beside a named effect, and named ones along the best of these."""
+    law, problem = first.node.members[0], search.problem
+    paths = motion(problem, first)
+    offers = kinds(problem, paths)
+    own = [m for m in offers if m.tables and m.kind == law.kind]
+    own += [static(problem, paths, law.variable)] if law.variable else []
+    if law.id == FRICTION:
+        own += [memory(problem, paths)] if law.kind == STATIC else [static(problem, paths, "v")]
+    shaped = [search.add(_near(problem, first, m, FULL)) for m in own]
+    alone, beside = row_of(first, problem), [row_of(f, problem) for f in shaped]
+    better = [r for r in beside if r.log_evidence > alone.log_evidence + TIE]
+    short = []
+    others = [m for m in offers if not (m.tables and m.kind == law.kind)]
+    for index, member in enumerate(others):
+        say("second effects", index, len(others))
+        if search.late:
+            search.untried.append(f"{first.node.name} + {member.name}")
+            continue
+        short.append(_near(problem, first, member, BEGUN if member.tables else SHORT))
+    short = [again(problem, f, SHORT) for f in sorted(short, key=lambda f: f.cost)[:FULL_KINDS]]
+    gain = max((row_of(f, problem).log_evidence - alone.log_evidence for f in short), default=0.0)
+    if alone.over < OVER_NOISE_SECOND and not better and gain < UNIT:
+        return
+    full = [
+        search.add(polish(problem, fit.node, Start(fit.point, fit.nuisances), FULL))
+        for fit in sorted(short, key=lambda f: f.cost)[:2]
+    ]
+    if not search.late:
+        named_along(search, say, [law], [*full, *shaped, first])
+
+
+def _near(problem: Problem, fit: Fit, member: Member, steps: int) -> Fit:
+    node = fit.node.with_member(member)
+    return polish(problem, node, Start(joined(node, fit), carried(node, fit)), steps)
