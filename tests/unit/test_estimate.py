@@ -14,7 +14,7 @@ from ssmr_ident.estimate.coarser import coarser
 from ssmr_ident.estimate.exact import polish
 from ssmr_ident.estimate.generic import static
 from ssmr_ident.estimate.node import Coordinate, Member, Node
-from ssmr_ident.estimate.pieces import Piece, before_low_pass, stretches
+from ssmr_ident.estimate.pieces import Piece, before_low_pass, fastest_part, stretches
 from ssmr_ident.estimate.regression import regressed
 from ssmr_ident.estimate.shoot_kernel import eliminate
 from ssmr_ident.estimate.shooting import shot
@@ -212,6 +212,16 @@ def test_any_shape_is_steep_on_one_side_alone() -> None:
     products = member.tables.by_both.shape[2]
     assert left(plain, columns) < 0.15
     assert left(plain, columns[:, :-products]) > 0.4
+
+
+def test_the_fastest_part_of_a_force() -> None:
+    time = np.arange(4000) / 400.0
+    force = np.sin(2.0 * math.pi * 3.0 * time) + 0.1 * np.sin(2.0 * math.pi * 28.0 * time)
+    assert fastest_part(force, 400.0) == pytest.approx(28.0, abs=0.2)
+    assert fastest_part(np.zeros(100), 400.0) == 0.0
+    blow = np.zeros(4000)
+    blow[100] = 1.0
+    assert fastest_part(blow, 400.0) > 190.0
 
 
 def test_releases_are_found() -> None:

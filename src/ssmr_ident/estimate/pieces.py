@@ -30,6 +30,13 @@ FINEST = 60
 STEPS = 60
 """Least integration steps a period: kicks err by (2 pi / steps)^2 / 24, half a per mille."""
 
+STRAIGHT, FINER = 0.25, 4
+"""Radians of a drive's fastest part in a step: straight lines between err by their square over 12, half a per cent of
+that part; and at most so many steps a sample, for a blow goes up to half the rate."""
+
+FASTEST = 1e-3
+"""Share of a drive's variance that may lie above its fastest part."""
+
 RAISED = 3.0
 """Largest factor by which a known low-pass is undone: beyond it the log holds noise."""
 
@@ -150,6 +157,10 @@ def pieces_of(measurement: Measurement, index: int, frequency: float, bandwidth_
             part[:, slow] = before_low_pass(part[:, slow], rate, bandwidth_hz)
         averaged, kept = (_blocks(x, block) for x in (part, counts))
         every = max(1, math.ceil(STEPS * frequency * block / rate))
+        if drive_name:
+            every = max(
+                every, min(FINER, math.ceil(2.0 * math.pi * fastest_part(force, rate) * block / rate / STRAIGHT))
+            )
         fine = _between(force, block, every, len(averaged)) if drive_name else np.zeros(2)
         white = np.maximum([third_difference_std(column) for column in averaged.T], least)
         middle = even.start + (first + np.arange(len(averaged)) * block + 0.5 * (block - 1)) / rate
@@ -173,6 +184,13 @@ def pieces_of(measurement: Measurement, index: int, frequency: float, bandwidth_
             )
         )
     return tuple(found)
+
+
+def fastest_part(force: Array, rate: float) -> float:
+    """Frequency above which next to nothing of a force is [Hz]; (n,) float, rate [Hz]."""
+    power = np.abs(np.fft.rfft(force - force.mean())) ** 2
+    above = np.cumsum(power[::-1])[::-1]
+    return float(np.count_nonzero(above > FASTEST * above[0]) * rate / len(force))
 
 
 def _blocks(samples: Array, block: int) -> Array:
