@@ -25,7 +25,7 @@ from ssmr_ident.doctor.fitted import (
 from ssmr_ident.doctor.kinds import kinds
 from ssmr_ident.doctor.named import named_along
 from ssmr_ident.doctor.rules import FORMULA
-from ssmr_ident.doctor.second import FIRSTS, FULL_KINDS, exchanged, second
+from ssmr_ident.doctor.second import FULL_KINDS, exchanged, second
 from ssmr_ident.doctor.table import Row
 from ssmr_ident.estimate.coarser import coarser
 from ssmr_ident.estimate.exact import polish
@@ -40,6 +40,10 @@ from ssmr_ident.estimate.values import Fit, Problem, Start, with_noises
 NEAR = 200.0
 """Log evidence below the best one, on every sample, up to which a model is fitted to every sample; so is what leaves
 ``FORMULA`` of the misfit at the most, for means over several samples are a little off themselves."""
+
+
+ENDED = 2
+"""Models, the best ones on every sample, that are fitted to their end."""
 
 
 def searched(problem: Problem, budget: float = math.inf, progress: Progress | None = None) -> Search:
@@ -133,7 +137,7 @@ def _in_full(search: Search, whole: Problem, begins: Sequence[int], say: Progres
         start = Start(row.fit.point, carried(row.fit.node, found)) if chaotic else _at_begins(row.fit, begins)
         start = Start(found.point, found.nuisances) if row.fit is best else start
         new.add(polish(problem, row.fit.node, start, SHORT if row in near or not row.ids else BEGUN))
-    for fit in sorted(new.fits, key=lambda f: f.cost)[:FIRSTS]:
+    for fit in sorted(new.fits, key=lambda f: f.cost)[:ENDED]:
         new.add(again(problem, fit, FULL))
     offered_back(new, 1)
     offered_up(new)
