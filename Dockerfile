@@ -5,6 +5,5 @@ WORKDIR /source
 COPY pyproject.toml README.md LICENSE ./
 COPY src src
 RUN pip install --no-cache-dir .
-COPY data /data
 ENTRYPOINT ["ident"]
-CMD ["demo", "--data", "/data", "-o", "/out"]
+CMD ["demo", "-o", "/out"]

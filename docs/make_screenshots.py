@@ -101,12 +101,12 @@ def photograph(browser: Any, page: str, name: str, width: int = 1000, height: in
 
 
 def progress(browser: Any) -> None:
-    """The demo, when it is comparing."""
+    """The demo on a campaign, when it is comparing."""
     with tempfile.TemporaryDirectory() as out:
-        command = ["demo", "-o", out]
+        command = ["demo", "--campaign", str(ROOT / "data"), "-o", out]
         for screen in frames(command, 14):
             if any("simulation against" in line for line in screen.display) and "━━" in screen.display[2]:
-                last = page_of(screen, ["demo", "-o", "out"])
+                last = page_of(screen, ["demo", "--campaign", "data", "-o", "out"])
                 if sum("simulation against" in line for line in screen.display) >= 2:
                     break
         photograph(browser, last, "terminal-progress")

@@ -10,12 +10,14 @@ from typing import Any
 import jsonschema
 import pytest
 import yaml
-from made_diagnoses import EVERY
+from made_diagnoses import EVERY, hardening
 from small_fleet import write_fleet
 from typer.testing import CliRunner
 
 from ssmr_ident import cli
+from ssmr_ident.core.parameter import Estimate
 from ssmr_ident.diagnose import Diagnosis
+from ssmr_ident.workflows.demo.hidden import Hidden
 from ssmr_ident.workflows.demo.table import DemoRow, DemoTable
 from thesis2012.rows import Row, Scoreboard
 
@@ -129,7 +131,9 @@ def test_effects(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_demo() -> None:
-    """The two forms that the verb prints, from the values that it prints (the whole job takes half a minute)."""
+    """The three forms that the verb prints, from the values that it prints (the whole job takes half a minute)."""
+    hidden = Hidden({"dry_friction": {"F_c_N": Estimate(0.4)}}, hardening(), Path("rig"), Path("report.html"))
+    check("demo", hidden.as_dict())
     table = DemoTable((DemoRow("roll: natural frequency", "rad/s", "38.0", 38.8, None, 38.8),))
     check("demo", {"table": table.as_list(), "report": "out/report.html"})
     board = Scoreboard((Row("a", "2.1", "s", "1", "1", True), Row("b", "2.2", "s", "1", "1", None)))

@@ -13,7 +13,7 @@ from ssmr_ident.cli.called import called
 from ssmr_ident.cli.effect_files import EffectFiles
 
 EXAMPLES = (
-    "ident compare data/raw/free_response --params out/parameters.yaml -o out/compare",
+    "ident compare data/raw/free_response --params out/campaign/parameters.yaml -o out/compare",
     "ident compare my-session --json",
 )
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from ssmr_ident.report.comparison_page import comparison_section, distance
 from ssmr_ident.report.html import Page, Section, Table, Verdict, file_hashes, write_page
-from ssmr_ident.workflows.demo.run import COMPARED, SWIVELS, Demo
+from ssmr_ident.workflows.demo.campaign import COMPARED, SWIVELS, Demo
 from ssmr_ident.workflows.files_read import files_read
 from ssmr_ident.workflows.spectrum.page import speed_section
 

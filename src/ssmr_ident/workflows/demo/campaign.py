@@ -54,23 +54,17 @@ class Demo:
     output: Path
 
 
-def find_data(data: Path | None) -> Path:
-    """The folder that holds ``raw`` and ``published``: as given, here, or beside the source.
+def check_data(data: Path) -> None:
+    """Whether a folder holds the reference campaign.
 
     Raises
     ------
     InputError
-        None of them is there.
+        It does not.
     """
-    places = [data] if data else [Path("data"), Path(__file__).resolve().parents[4] / "data"]
-    for place in places:
-        if (place / "raw" / "free_response" / "session.yaml").is_file():
-            return place
-    raise InputError(
-        ", ".join(str(place) for place in places),
-        "holds no reference campaign (raw/free_response/session.yaml)",
-        "Run it in the checkout, or name the folder with --data",
-    )
+    if not (data / "raw" / "free_response" / "session.yaml").is_file():
+        problem = "holds no reference campaign (raw/free_response/session.yaml)"
+        raise InputError(str(data), problem, "In a checkout the folder is data")
 
 
 def run_demo(data: Path, output: Path, progress: Progress) -> Demo:
