@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import hashlib
 import re
 from collections.abc import Callable
@@ -17,9 +18,10 @@ from made_diagnoses import EVERY, hardening, nothing, swivel, undetermined
 from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.diagnose.diagnosis import Conflict, Diagnosis, PredictionQuality, Tried
 from ssmr_ident.diagnose.evidence import Evidence, ForceSurface, SpeedMap
+from ssmr_ident.report.chart import packed
 from ssmr_ident.report.curves import busiest_part, thinned
 from ssmr_ident.report.diagnosis_page import diagnosis_page, render_report, write_report
-from ssmr_ident.report.diagnosis_pictures import scalar
+from ssmr_ident.report.diagnosis_sections import scalar
 from ssmr_ident.report.html import Number, Page, Table
 from ssmr_ident.report.svg import inline
 
@@ -62,9 +64,10 @@ def parsed(made: Callable[[], Diagnosis]) -> _Elements:
 def test_figures_have_words_and_ids_are_unique(made: Callable[[], Diagnosis]) -> None:
     tags = parsed(made).tags
     figures = [attributes for tag, attributes in tags if tag == "svg"]
-    assert figures
     assert all(f["role"] == "img" and len(f["aria-label"] or "") > 20 for f in figures)
-    assert sum(tag == "figcaption" for tag, _ in tags) == sum(tag == "figure" for tag, _ in tags)
+    charts = [attributes for tag, attributes in tags if tag == "div" and attributes.get("class") == "plot"]
+    assert figures or charts
+    assert all(c["tabindex"] == "0" and len(c["aria-label"] or "") > 20 for c in charts)
     ids = [attributes["id"] for _, attributes in tags if "id" in attributes]
     assert len(ids) == len(set(ids))
     referred = {
@@ -85,25 +88,78 @@ def test_page_loads_nothing(made: Callable[[], Diagnosis]) -> None:
 @pytest.mark.parametrize(
     ("made", "label", "tone"),
     [
-        (hardening, "Missing physics: nonlinear stiffness", "found"),
+        (hardening, "Missing: nonlinear stiffness (cubic)", "found"),
         (nothing, "Nothing is missing", "clear"),
-        (undetermined, "Undetermined: these recordings cannot tell what is missing", "open"),
-        (swivel, "Missing physics: wheel eccentricity", "found"),
+        (undetermined, "Undetermined: these recordings cannot name it", "open"),
+        (swivel, "Missing: wheel eccentricity", "found"),
     ],
 )
-def test_verdict_says_what_was_found(made: Callable[[], Diagnosis], label: str, tone: str) -> None:
+def test_first_screen_answers_what_where_how_sure_how_much_and_what_next(
+    made: Callable[[], Diagnosis], label: str, tone: str
+) -> None:
     verdict = page_of(made).verdict
     assert verdict is not None
-    assert (verdict.label, verdict.tone, verdict.sentence) == (label, tone, made().summary)
+    assert (verdict.label, verdict.tone) == (label, tone)
+    assert [fact.label.split(" on ")[0] for fact in verdict.facts] == ["Error", "Where", "How sure", "Record next"]
+    assert all(fact.value for fact in verdict.facts)
 
 
-def test_verdict_holds_before_after_noise_and_interval() -> None:
+def test_before_after_and_noise_are_bars_beside_each_other() -> None:
     verdict = page_of(hardening).verdict
     assert verdict is not None
-    assert [fact.value for fact in verdict.facts[:3]] == ["22.0 %", "3.4 %", "2.9 %"]
-    assert "17.1 … 20.2 %" in verdict.facts[1].note
-    assert "(3.10 ± 0.21)·10⁸ N/m³" in verdict.equation
-    assert [round(fact.share or 0, 3) for fact in verdict.facts[:3]] == [1.0, 0.155, 0.132]
+    better, where, sure, following = verdict.facts
+    assert better.value == "22.0 → 3.4 %"
+    assert [(b.value, round(b.share, 3)) for b in better.bars] == [("22.0 %", 1.0), ("3.4 %", 0.155), ("2.9 %", 0.132)]
+    assert "17.1 … 20.2 %" in better.note
+    assert (where.value, where.note) == ("ay of roll-2.xlsx", "81 % of the misfit, |roll| > 1.5 deg")
+    assert (sure.value, following.value) == ("99 %", "Nothing more")
+
+
+def test_the_law_is_set_as_mathematics_with_what_was_measured_of_it() -> None:
+    verdict = page_of(hardening).verdict
+    assert verdict is not None
+    (law,) = verdict.equations
+    assert "<msup><mrow><mi>s</mi></mrow><mrow><mn>3</mn></mrow></msup>" in law
+    assert '<msub><mi>k</mi><mi mathvariant="normal">3</mi></msub></math> = (3.10 ± 0.21)·10⁸ N/m³' in law
+
+
+def test_a_rotary_rig_has_moments_and_angles() -> None:
+    """Symbols, and units as the workflow hands them over."""
+    torsion = ParameterSet("rig", {"inertia_kg_m2": Estimate(0.1, None, "kg m^2")})
+    effect = replace(hardening().effects[0], parameters={"k3_N_m3": Estimate(6.2, 0.1, "N m/rad^3")})
+    page = diagnosis_page(replace(hardening(), before=torsion, effects=(effect,)), "")
+    assert page.verdict is not None
+    assert "<mi>M</mi>" in page.verdict.equations[0]
+    assert "<mi>θ</mi>" in page.verdict.equations[0]
+    assert "N m/rad³" in page.verdict.equations[0]
+
+
+def test_a_force_of_any_shape_is_drawn_with_its_band() -> None:
+    (chart,) = next(s for s in page_of(undetermined).sections if s.title == "What it could be").charts
+    assert (chart.x_label, chart.x_unit, chart.y_unit, chart.band) == ("displacement", "m", "N", True)
+    assert chart.lines[2].y - chart.lines[1].y == pytest.approx(2 * 1.96 * np.array([0.0, 0.1]))
+
+
+def test_where_much_is_left_over_larger_and_smaller_motions_are_advised() -> None:
+    left = replace(hardening(), heldout=PredictionQuality(22.0, 9.0, 2.9, ("roll-3.xlsx",)))
+    verdict = diagnosis_page(left, "").verdict
+    assert verdict is not None
+    assert (verdict.facts[3].value, verdict.facts[3].note[:23]) == ("Other amplitudes", "3.1 times the noise is ")
+
+
+@pytest.mark.parametrize(
+    "values",
+    [np.linspace(0, 2, 401), np.array([1.0, 1.5, 1.4, np.nan, -3.0]), np.array([2.0]), np.array([np.nan, np.nan])],
+)
+def test_packed_numbers_come_back(values: np.ndarray) -> None:
+    made = packed(values)
+    if "data" not in made:
+        back = made["low"] + made["step"] * np.arange(made["n"])
+    else:
+        words = np.frombuffer(base64.b64decode(made["data"]), "<u2")
+        back = np.where(words == 2**16 - 1, np.nan, made["low"] + made["step"] * words.astype(float))
+    span = np.nanmax(values) - np.nanmin(values) if np.isfinite(values).any() else 0.0
+    np.testing.assert_allclose(back, values, atol=span / 2**16 + 1e-12)
 
 
 def test_nothing_missing_shows_one_model_and_claims_no_gain() -> None:
@@ -114,24 +170,25 @@ def test_nothing_missing_shows_one_model_and_claims_no_gain() -> None:
         assert word not in text
 
 
-def test_tie_names_all_and_puts_the_next_experiment_first() -> None:
+def test_tie_names_all_and_says_what_to_record() -> None:
     verdict = page_of(undetermined).verdict
     assert verdict is not None
-    assert verdict.advice.startswith("Sweep the force")
-    assert "quadratic damping, dry friction, hysteresis" in verdict.facts[-1].note
-    assert "one held-out recording gives no interval" in verdict.facts[1].note
+    better, _, sure, following = verdict.facts
+    assert following.note.startswith("Sweep the force")
+    assert (sure.value, sure.note) == ("3 candidates", "quadratic damping, dry friction, hysteresis")
+    assert better.note == ""  # one held-out recording gives no interval
 
 
 def test_parameters_carry_interval_and_unit() -> None:
-    table = page_of(hardening).sections[0].tables[0]
-    assert [getattr(cell, "text", cell) for cell in table.rows[0]] == [
-        "nonlinear stiffness", "k3_N_m3", "(3.10 ± 0.21)·10⁸", "(2.69 … 3.52)·10⁸", "N/m³",
+    table = next(s for s in page_of(hardening).sections if s.title == "What was added").tables[0]
+    assert [getattr(cell, "text", cell) for cell in table.rows[0][1:4]] == [
+        "(3.10 ± 0.21)·10⁸", "(2.69 … 3.52)·10⁸", "N/m³",
     ]  # fmt: skip
 
 
-def test_absorption_account_shows_where_a_parameter_came_back_to() -> None:
+def test_a_parameter_that_stood_in_shows_where_it_came_back_to() -> None:
     sections = {section.title: section for section in page_of(hardening).sections}
-    row = [getattr(cell, "text", cell) for cell in sections["What it had been hidden in"].tables[0].rows[0]]
+    row = [getattr(cell, "text", cell) for cell in sections["Parameters that stood in for it"].tables[0].rows[0]]
     assert row == ["inertia_kg_m2.xx", "1.210 ± 0.050", "1.940 ± 0.020", "1.220 ± 0.020", "kg m²", "+14.6"]
 
 
@@ -161,7 +218,6 @@ def test_the_end_tells_command_version_seed_and_hashes(tmp_path: Path) -> None:
         assert f"{hashlib.sha256(log.read_bytes()).hexdigest()}  {name}" in end
     assert str(tmp_path) not in text
     figures = sorted(figure.name for figure in (out / "figures").iterdir())
-    assert "overlay-1.svg" in figures
     assert "residual-map-1-before.svg" in figures
     assert len(figures) == text.count("<svg ")
 
@@ -219,7 +275,7 @@ def test_poor_evidence_is_drawn_as_it_is() -> None:
 
 def test_text_from_outside_is_escaped() -> None:
     page = render_report(
-        replace(nothing(), summary="<script>alert(1)</script>", session='"><img src=x>'), "a && b <c>", 0
+        replace(nothing(), notes=("<script>alert(1)</script>",), session='"><img src=x>'), "a && b <c>", 0
     )
     assert "<script>alert" not in page
     assert "<img" not in page

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from made_diagnoses import hardening
+from made_diagnoses import hardening, undetermined
 
 from ssmr_ident.diagnose.diagnosis import Diagnosis
 from ssmr_ident.session.parameters_text import parameters_text
@@ -32,3 +32,11 @@ def test_the_page_says_them_too() -> None:
 
     page = render_report(found(), "ident diagnose rig", 0)
     assert "N m/rad³" in page.replace("\u202f", " ").replace("\u00a0", " ").replace("·", " ")
+
+
+def test_a_curve_of_a_rotary_rig_is_over_an_angle() -> None:
+    straight = undetermined()
+    (effect,) = in_rig_units(straight).effects
+    assert effect.curve is not None
+    assert effect.curve["variable"] == "angle [rad]"
+    assert effect.curve["points"] == straight.effects[0].curve["points"]  # type: ignore[index]

@@ -17,7 +17,7 @@ EXAMPLES = (
 
 BEFORE = """\
 Six recordings of a made-up rig, 2 kg on a spring, let go from 2 to 7 mm, with physics in them that the model is not
-told of; then a search for what the model lacks. Half a minute of one processor; the first time up to two minutes.
+told of; then a search for what the model lacks. 15 s of one processor; the first time, when loops are compiled, 50 s.
 """
 AFTER = """
 Logs of your own, in a folder:

@@ -1,20 +1,25 @@
-"""The page of a diagnosis: the verdict and its numbers first, then proof, place, explanations, what had hidden it."""
+"""The page of a diagnosis: what, where, how sure, how much better and what next on the first screen; then the rest."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from ssmr_ident.core.atomic import make_folder, write_text
 from ssmr_ident.diagnose.diagnosis import MISSING, NOTHING, UNIT, Diagnosis, NamedEffect
-from ssmr_ident.report.diagnosis_pictures import after_name
-from ssmr_ident.report.diagnosis_sections import needed, sections
+from ssmr_ident.physics.effects import CATALOGUE
+from ssmr_ident.report.diagnosis_charts import after_name, overlay_charts
+from ssmr_ident.report.diagnosis_sections import needed, quantity, sections, turning
 from ssmr_ident.report.figures_diagnosis import readable
-from ssmr_ident.report.html import Fact, Page, Verdict, file_hashes, render_page, write_page
+from ssmr_ident.report.html import Bar, Fact, Page, Verdict, file_hashes, render_page, write_page
+from ssmr_ident.report.mathml import symbol, typeset
 from ssmr_ident.report.numbers import alike, interval, measured, number, share
 
 FIGURES = "figures"
+
+NEAR = 1.6
+"""Times the noise floor up to which an answer leaves nothing to look for."""
 
 
 def write_report(diagnosis: Diagnosis, path: Path, command: str, seed: int, files: Sequence[Path]) -> Path:
@@ -32,12 +37,11 @@ def write_report(diagnosis: Diagnosis, path: Path, command: str, seed: int, file
         What was read; printed with its SHA-256.
     """
     page = diagnosis_page(diagnosis, command, seed, file_hashes(files))
-    folder = Path(path).parent / FIGURES
-    make_folder(folder)
-    for section in page.sections:
-        for figure in section.figures:
-            for item in figure.drawings:
-                write_text(folder / f"{item.name}.svg", item.svg)
+    drawings = [item for section in page.sections for figure in section.figures for item in figure.drawings]
+    if drawings:
+        make_folder(Path(path).parent / FIGURES)
+    for item in drawings:
+        write_text(Path(path).parent / FIGURES / f"{item.name}.svg", item.svg)
     return write_page(path, page)
 
 
@@ -75,112 +79,115 @@ def diagnosis_page(
 
 def verdict(diagnosis: Diagnosis) -> Verdict:
     """What stands first."""
+    names = " and ".join(_name(effect) for effect in diagnosis.effects)
     if diagnosis.verdict == MISSING:
-        names = " and ".join(_name(effect.id) for effect in diagnosis.effects)
-        label, tone = f"Missing physics: {names}", "found"
-        equation = "\n".join(_law(effect) for effect in diagnosis.effects)
-        facts = _found(diagnosis)
+        label, tone = f"Missing: {names}", "found"
+        sentence = " ".join(_sentence(effect) for effect in diagnosis.effects)
     elif diagnosis.verdict == NOTHING:
-        label, tone, equation = "Nothing is missing", "clear", ""
-        facts = _clear(diagnosis)
+        label, tone = "Nothing is missing", "clear"
+        sentence = "What the model leaves over on recordings that it has not seen is noise."
     else:
-        label, tone, equation = "Undetermined: these recordings cannot tell what is missing", "open", ""
-        facts = _open(diagnosis)
-    advice = diagnosis.next_experiment if diagnosis.verdict != MISSING or _tied(diagnosis) else ""
-    return Verdict(label, tone, diagnosis.summary, facts, equation, advice)
+        label, tone = "Undetermined: these recordings cannot name it", "open"
+        sentence = "More than noise is left over, and no explanation stands clear of the others."
+        if names:
+            sentence = f"More than noise is left over. The likeliest explanation is {names}; it is not certain."
+    facts = (_better(diagnosis), _where(diagnosis), _sure(diagnosis), _next(diagnosis))
+    law = tuple(_law(effect, turning(diagnosis)) for effect in diagnosis.effects) if tone == "found" else ()
+    charts = overlay_charts(diagnosis)
+    return Verdict(label, tone, sentence, facts, law, charts[0] if charts else None)
 
 
-def _found(diagnosis: Diagnosis) -> tuple[Fact, ...]:
-    sure = [f"{_name(e.id)}: {share(e.confidence)}" for e in diagnosis.effects]
-    ties = sorted({_name(id) for e in diagnosis.effects for id in e.indistinguishable_from})
-    facts = [*_before_after(diagnosis), *_kind(diagnosis)]
-    if sure:
-        one = len(sure) == 1
-        facts.append(
-            Fact(
-                "How sure of the name",
-                share(diagnosis.effects[0].confidence) if one else "; ".join(sure),
-                f"fits as well: {', '.join(ties)}" if ties else "among the explanations tried",
-            )
-        )
-    return tuple(facts)
+def _name(effect: NamedEffect) -> str:
+    name = "a force that no listed law makes" if effect.id == "unlisted" else readable(effect.id)
+    return f"{name} ({effect.form})" if effect.form and effect.id != "unlisted" else name
 
 
-def _clear(diagnosis: Diagnosis) -> tuple[Fact, ...]:
-    quality, unit = diagnosis.heldout, UNIT[diagnosis.metric]
-    tried = [t for t in diagnosis.tried if t.id != "baseline"]
-    largest = max(quality.before, quality.noise_floor)
-    left, floor = alike((quality.before, quality.noise_floor))
-    facts = [
-        Fact("Model, on held-out recordings", f"{left} {unit}", _spread(diagnosis), _bar(quality.before, largest)),
-        Fact("Noise alone would leave", f"{floor} {unit}", "the noise floor", _bar(quality.noise_floor, largest)),
-        Fact("Explanations tried", f"{len(tried)}", "none earns its place"),
+def _sentence(effect: NamedEffect) -> str:
+    known = CATALOGUE.get(effect.id)
+    return f"{known.sentence.rstrip('.')}." if known else effect.sentence
+
+
+def _law(effect: NamedEffect, turns: bool) -> str:
+    """The formula, and what was measured of it; three values at most, the table below holds all."""
+    turns = turns and effect.kind != "sensor_chain"
+    values = [
+        f"<span>{symbol(quantity(effect.id, name), turns)} = {measured(float(e.value), e.std, e.unit)}</span>"
+        for name, e in needed(effect).items()
+        if isinstance(e.value, int | float) and e.std is not None
     ]
-    moved = max((abs(c.sigmas) for c in diagnosis.conflicts), default=None)
-    if moved is not None:
-        facts.append(Fact("Parameter moved farthest", f"{number(moved, 2)} std", "of what was known of it"))
-    return tuple(facts)
+    return f'{typeset(effect.equation, turns)} &ensp;<span class="values">{", ".join(values[:3])}</span>'
 
 
-def _open(diagnosis: Diagnosis) -> tuple[Fact, ...]:
-    candidates = [_name(e.id) for e in diagnosis.effects]
-    candidates += [_name(id) for e in diagnosis.effects for id in e.indistinguishable_from]
-    facts = [*_before_after(diagnosis), *_kind(diagnosis)]
-    if candidates:
-        facts.append(Fact("Still possible", str(len(set(candidates))), ", ".join(dict.fromkeys(candidates))))
-    return tuple(facts)
-
-
-def _kind(diagnosis: Diagnosis) -> tuple[Fact, ...]:
-    """Which kind of physics in any shape takes most of the misfit, and where it acts."""
-    if not diagnosis.kinds:
-        return ()
-    first, *others = (f"{_name(k.kind)} at {_name(k.element)}: {share(k.share)}" for k in diagnosis.kinds[:3])
-    beside = f"of the misfit by itself; {', '.join(others)}" if others else "of the misfit by itself"
-    return (Fact("Kind of physics", first, beside),)
-
-
-def _before_after(diagnosis: Diagnosis) -> tuple[Fact, ...]:
-    quality, unit = diagnosis.heldout, UNIT[diagnosis.metric]
-    largest = max(quality.before, quality.after, quality.noise_floor)
-    before, after, floor = alike((quality.before, quality.after, quality.noise_floor))
-    gain = "one held-out recording gives no interval" if len(quality.recordings) == 1 else ""
-    if quality.improvement is not None:
-        gain = f"improved by {interval(*quality.improvement, unit)} (95 %)"
-    count = len(quality.recordings)
-    on = f"on {count} recording{'s' if count > 1 else ''} never fitted" if count else "on recordings never fitted"
-    facts = [Fact("Model before", f"{before} {unit}", on, _bar(quality.before, largest), "before")]
-    if name := after_name(diagnosis):
-        facts.append(Fact(name.capitalize(), f"{after} {unit}", gain, _bar(quality.after, largest), "after"))
-    facts.append(
-        Fact("Noise alone would leave", f"{floor} {unit}", "the noise floor", _bar(quality.noise_floor, largest))
+def _better(diagnosis: Diagnosis) -> Fact:
+    """Before, after and noise on recordings never fitted."""
+    unit, after = UNIT[diagnosis.metric], after_name(diagnosis)
+    held = not math.isnan(diagnosis.heldout.before)
+    quality = diagnosis.heldout if held else diagnosis.training
+    values = [quality.before, *([quality.after] if after else []), quality.noise_floor]
+    largest = max(values)
+    texts = alike(values) if largest < 100 * min(values) else [number(value) for value in values]
+    names = (("before", "after", "noise") if after else ("model", "noise"), ("before", "after", "floor"))
+    roles = names[1] if after else ("after", "floor")
+    bars = tuple(
+        Bar(name, f"{text} {unit}", value / largest if math.isfinite(value) and largest > 0 else 0.0, role)
+        for name, text, value, role in zip(names[0], texts, values, roles, strict=True)
     )
-    return tuple(facts)
+    count = len(quality.recordings)
+    on = f"{count} recording{'s' if count > 1 else ''} never fitted" if count else "recordings never fitted"
+    label = f"Error on {on}" if held else "Error on the recordings that were fitted"
+    note = f"95 % of the gain: {interval(*quality.improvement, unit)}" if after and quality.improvement else ""
+    return Fact(label, f"{texts[0]} → {texts[1]} {unit}" if after else f"{texts[0]} {unit}", note, bars)
 
 
-def _bar(value: float, largest: float) -> float:
-    return value / largest if math.isfinite(value) and largest > 0 else 0.0
+def _where(diagnosis: Diagnosis) -> Fact:
+    if diagnosis.verdict == NOTHING:
+        return Fact("Where", "Nowhere", "no recording, channel, time or band stands out of the noise")
+    place = diagnosis.located[0] if diagnosis.located else None
+    elements = dict.fromkeys(readable(e.element) for e in diagnosis.effects if e.element)
+    elements = elements or dict.fromkeys(readable(k.element) for k in diagnosis.kinds[:1])
+    seen = ""
+    if place is not None:
+        ends = interval(*place.time_s, "s") if all(map(math.isfinite, place.time_s)) else ""
+        seen = f"{number(100 * place.share, 2)} % of the misfit: {place.channel} of {place.recording}, {ends}".rstrip(
+            ", "
+        )
+    if place is None:
+        spread = "the misfit is spread over recordings and channels"
+        return Fact("Where", _parts(elements), "") if elements else Fact("Where", "Not told", spread)
+    most, seen = f"{number(100 * place.share, 2)} % of the misfit", f"{place.channel} of {place.recording}"
+    when = place.region or (interval(*place.time_s, "s") if all(map(math.isfinite, place.time_s)) else "")
+    after = f", {when}" if when else ""
+    if elements:
+        return Fact("Where", _parts(elements), f"{most}: {seen}{after}")
+    return Fact("Where", seen, f"{most}{after}")
 
 
-def _spread(diagnosis: Diagnosis) -> str:
-    """Range over held-out recordings."""
-    values = {o.recording: o.metric[0] for o in diagnosis.evidence.overlays if o.heldout}
-    if len(values) < 2:
-        return "distance from the recordings"
-    unit = UNIT[diagnosis.metric]
-    return f"{interval(min(values.values()), max(values.values()), unit)} over {len(values)} recordings"
+def _parts(elements: Iterable[str]) -> str:
+    return f"The {' and the '.join(elements)}"
 
 
-def _tied(diagnosis: Diagnosis) -> bool:
-    return any(effect.indistinguishable_from for effect in diagnosis.effects)
+def _sure(diagnosis: Diagnosis) -> Fact:
+    tried = sum(t.id != "baseline" for t in diagnosis.tried)
+    among = f"among {tried} explanation{'s' if tried > 1 else ''} tried" if tried else ""
+    ties = [readable(id) for e in diagnosis.effects for id in e.indistinguishable_from]
+    if diagnosis.verdict == NOTHING:
+        return Fact("How sure", f"{tried} tried", "explanations, of which none earns its place")
+    if diagnosis.verdict != MISSING:
+        candidates = list(dict.fromkeys([*(readable(e.id) for e in diagnosis.effects), *ties]))
+        if not candidates:
+            return Fact("How sure", "No name", f"{among}, none is certain" if among else "none is certain")
+        return Fact("How sure", f"{len(candidates)} candidates", ", ".join(candidates))
+    least = min(diagnosis.effects, key=lambda e: e.confidence)
+    return Fact("How sure", share(least.confidence), f"fits as well: {', '.join(ties)}" if ties else among)
 
 
-def _law(effect: NamedEffect) -> str:
-    """Formula and values; three of them at most, the table below holds all."""
-    scalars = [(name, e) for name, e in needed(effect).items() if isinstance(e.value, int | float)][:3]
-    values = [f"{name} = {measured(float(e.value), e.std, e.unit)}" for name, e in scalars]
-    return ",   ".join((effect.equation, *values))
-
-
-def _name(id: str) -> str:
-    return "physics that is in no list" if id == "unlisted" else readable(id)
+def _next(diagnosis: Diagnosis) -> Fact:
+    """The advice of the diagnosis; where it has none, whether anything is left to look for."""
+    if diagnosis.next_experiment:
+        return Fact("Record next", "One more recording", diagnosis.next_experiment)
+    quality = diagnosis.training if math.isnan(diagnosis.heldout.before) else diagnosis.heldout
+    left = quality.after if diagnosis.verdict == MISSING else quality.before
+    if diagnosis.verdict == NOTHING or (diagnosis.verdict == MISSING and left <= NEAR * quality.noise_floor):
+        return Fact("Record next", "Nothing more", "for motions of this size the model is complete: use after.yaml")
+    over = f"{number(left / quality.noise_floor, 2)} times the noise is left; " if quality.noise_floor > 0 else ""
+    return Fact("Record next", "Other amplitudes", f"{over}record a third and three times as much motion")

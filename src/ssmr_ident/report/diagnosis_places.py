@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ssmr_ident.diagnose.diagnosis import Diagnosis
 from ssmr_ident.diagnose.evidence import SpeedMap
-from ssmr_ident.report.diagnosis_pictures import after_name, before_name
+from ssmr_ident.report.diagnosis_charts import after_name, before_name
 from ssmr_ident.report.figures_diagnosis import drift_panel
 from ssmr_ident.report.figures_residual import cut_panel, residual_map_panel, surface_panel
 from ssmr_ident.report.figures_waterfall import level_panel, many, stacked_panel, waterfall_panel

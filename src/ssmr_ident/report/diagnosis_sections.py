@@ -1,71 +1,92 @@
-"""What stands below the verdict: one section per question that a reader asks."""
+"""What stands below the first screen: one section per question that a reader asks next."""
 
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Sequence
+from dataclasses import replace
 
-from ssmr_ident.core.parameter import Estimate
-from ssmr_ident.diagnose.diagnosis import MISSING, NOTHING, UNIT, Conflict, Diagnosis, NamedEffect, PredictionQuality
-from ssmr_ident.report.diagnosis_pictures import after_name, explained, known_std, moved, proof, scalar
+import numpy as np
+
+from ssmr_ident.core.parameter import Estimate, ParameterSet
+from ssmr_ident.diagnose.diagnosis import MISSING, NOTHING, UNIT, Conflict, Diagnosis, NamedEffect
+from ssmr_ident.physics.effects import CATALOGUE
+from ssmr_ident.report.diagnosis_charts import after_name, curve_charts, overlay_charts
 from ssmr_ident.report.diagnosis_places import places
 from ssmr_ident.report.figures_diagnosis import evidence_text, readable
-from ssmr_ident.report.html import Cell, Number, Section, Table
+from ssmr_ident.report.html import Cell, Formula, Number, Section, Table
+from ssmr_ident.report.mathml import symbol
 from ssmr_ident.report.numbers import NONE, alike, interval, measured, number, share
 from ssmr_ident.report.numbers import unit as printed
+
+SHOWN_TRIED = 15
+"""As many explanations as a reader looks at."""
 
 
 def sections(diagnosis: Diagnosis) -> tuple[Section, ...]:
     """All sections that have something to say, in reading order."""
     made = (
-        _effects(diagnosis),
         _proof(diagnosis),
+        _effects(diagnosis),
         _where(diagnosis),
         _which(diagnosis),
         _moved(diagnosis),
-        _next(diagnosis),
         Section("What limits this answer", points=diagnosis.notes),
     )
-    return tuple(s for s in made if s.paragraphs or s.points or s.tables or s.figures)
+    return tuple(s for s in made if s.paragraphs or s.points or s.tables or s.figures or s.charts)
 
 
-def _effects(diagnosis: Diagnosis) -> Section:
-    title = "What was left out" if diagnosis.verdict == MISSING else "What it could be"
-    paragraphs: list[str] = []
-    rows: list[tuple[Cell, ...]] = []
-    for effect in diagnosis.effects:
-        paragraphs.append(_described(effect))
-        for name, estimate in needed(effect).items():
-            rows.append((readable(effect.id), name, *_estimated(estimate)))
-    header = ("effect", "parameter", "value ± std", "95 % interval", "unit")
-    caption = (
-        "Fitted parameters of the physics added, ± their standard deviation; the interval is ±1.96 standard deviations."
-    )
-    if any(len(needed(effect)) < len(effect.parameters) for effect in diagnosis.effects):
-        caption += " Terms that the recordings do not need are zero and not listed."
-    if any(estimate.std is None for effect in diagnosis.effects for estimate in needed(effect).values()):
-        caption += " None stands where the fit leaves structure behind, so that one would promise too much."
-    return Section(title, tuple(paragraphs), (Table(caption, header, tuple(rows)),) if rows else ())
+def turning(diagnosis: Diagnosis) -> bool:
+    """Whether it is of a rotary rig."""
+    return "inertia_kg_m2" in diagnosis.before
+
+
+def quantity(effect: str, name: str) -> str:
+    """A parameter's name without the unit that it ends in.
+
+    >>> quantity("dry_friction", "F_c_N"), quantity("nonlinear_stiffness", "k3_N_m3")
+    ('F_c', 'k3')
+    """
+    known = CATALOGUE.get(effect)
+    units = {p.name: p.unit for p in known.parameters} if known else {}
+    ending = re.sub(r"\W+", "_", units.get(name, "1").replace("^", ""))
+    return name.removesuffix(f"_{ending}")
 
 
 def needed(effect: NamedEffect) -> dict[str, Estimate]:
-    """Its parameters without terms set to zero, as a search for an unlisted law leaves them."""
+    """Its parameters without terms set to zero, and without what the recordings were not asked for."""
 
-    def zero(estimate: Estimate) -> bool:
-        return estimate.std is None and isinstance(estimate.value, int | float) and estimate.value == 0
+    def silent(estimate: Estimate) -> bool:
+        return estimate.std is None and (estimate.fixed or estimate.value == 0)
 
-    return {name: e for name, e in effect.parameters.items() if not zero(e)}
+    return {name: e for name, e in effect.parameters.items() if not silent(e)}
 
 
-def _described(effect: NamedEffect) -> str:
-    text = f"{readable(effect.id).capitalize()}: {effect.sentence} Law: {effect.equation}."
-    if effect.form:
-        text += f" Formula that fits best: {effect.form}."
-    text += f" Share of the probability among the explanations tried: {share(effect.confidence)}."
-    if effect.indistinguishable_from:
-        names = ", ".join(readable(id) for id in effect.indistinguishable_from)
-        text += f" These recordings cannot tell it from: {names}."
-    return text
+def _effects(diagnosis: Diagnosis) -> Section:
+    rows: list[tuple[Cell, ...]] = []
+    several = len(diagnosis.effects) > 1
+    for effect in diagnosis.effects:
+        known = CATALOGUE.get(effect.id)
+        meanings = {p.name: p.meaning for p in known.parameters} if known else {}
+        turns = turning(diagnosis) and effect.kind != "sensor_chain"
+        for name, estimate in needed(effect).items():
+            first: tuple[Cell, ...] = (readable(effect.id),) if several else ()
+            named = Formula(symbol(quantity(effect.id, name), turns))
+            rows.append((*first, named, *_estimated(estimate), meanings.get(name) or NONE))
+    header = (*(("effect",) if several else ()), "parameter", "value ± std", "95 % interval", "unit", "meaning")
+    title = "What was added" if diagnosis.verdict == MISSING else "What it could be"
+    text = [] if diagnosis.verdict == MISSING else [_sentence(effect) for effect in diagnosis.effects]
+    caption = ""
+    if any(estimate.std is None for effect in diagnosis.effects for estimate in needed(effect).values()):
+        caption = "No interval stands where the fit leaves structure behind, so that one would promise too much."
+    tables = (Table(caption, header, tuple(rows)),) if rows else ()
+    return Section(title, tuple(text), tables, charts=curve_charts(diagnosis))
+
+
+def _sentence(effect: NamedEffect) -> str:
+    share_ = f"{share(effect.confidence)} of the probability among the explanations tried"
+    return f"{readable(effect.id).capitalize()}: {effect.sentence.rstrip('.')}; {share_}."
 
 
 def _estimated(estimate: Estimate) -> tuple[Cell, Cell, Cell]:
@@ -81,42 +102,26 @@ def _estimated(estimate: Estimate) -> tuple[Cell, Cell, Cell]:
 
 
 def _proof(diagnosis: Diagnosis) -> Section:
+    """Every recording's error, and the charts that the first screen has no room for."""
     unit = UNIT[diagnosis.metric]
     measure = {
-        "%": "The distance is the size of what is left over, in per cent of the size of the recording itself.",
-        "dB": "The distance is the root mean square difference between the levels of two spectra, 1 to 50 Hz.",
+        "%": "Error: the size of what is left over, in per cent of the size of the recording itself.",
+        "dB": "Error: the root mean square difference between the levels of two spectra, 1 to 50 Hz.",
     }[unit]
     # Without physics added there is one model, and one column for it.
     columns = (f"before [{unit}]", f"after [{unit}]") if after_name(diagnosis) else (f"model [{unit}]",)
-    columns = (*columns, f"noise alone [{unit}]")
-    header = ("recordings", *columns)
-    both = (diagnosis.training, diagnosis.heldout)
-    metrics = _metrics([(w.before, w.after, w.noise_floor) for w in both], diagnosis)
-    names = ("fitted", "held out, never fitted")
-    rows: list[tuple[Cell, ...]] = [(name, *cells) for name, cells in zip(names, metrics, strict=True)]
-    if diagnosis.heldout.improvement is not None and after_name(diagnosis):
-        header = (*header, f"improvement, 95 % [{unit}]")
-        rows = [(*row, _gain(w)) for row, w in zip(rows, both, strict=True)]
-    tables = [Table(f"{measure} Means over recordings.", header, tuple(rows))]
+    header = ("recording", "role", *columns, f"noise alone [{unit}]")
     single = {o.recording: o for o in diagnosis.evidence.overlays}
-    if len(single) > 1:
-        metrics = _metrics([o.metric for o in single.values()], diagnosis)
-        roles = ["held out" if o.heldout else "fitted" for o in single.values()]
-        rows = [(*words, *cells) for *words, cells in zip(single, roles, metrics, strict=True)]
-        tables.append(Table("The same for each recording.", ("recording", "role", *columns), tuple(rows)))
-    title = {
-        MISSING: "Does it hold on recordings that were never fitted?",
-        NOTHING: "Does the model hold on recordings that were never fitted?",
-    }.get(diagnosis.verdict, "How far the model is from recordings that were never fitted")
-    kept = diagnosis.heldout.recordings
-    text = (f"Kept back from the fit: {', '.join(kept)}.",) if kept else ()
-    return Section(title, text, tuple(tables), proof(diagnosis))
-
-
-def _gain(quality: PredictionQuality) -> Cell:
-    if quality.improvement is None:
-        return Number(NONE, math.nan)
-    return Number(interval(*quality.improvement), quality.improvement[0])
+    values = [diagnosis.training, *((diagnosis.heldout,) if len(diagnosis.heldout.recordings) > 1 else ())]
+    words = [("mean", "fitted"), ("mean", "never fitted")][: len(values)]
+    measured_ = [(w.before, w.after, w.noise_floor) for w in values]
+    if len(single) > 1 or not diagnosis.heldout.recordings:
+        words += [(o.recording, "never fitted" if o.heldout else "fitted") for o in single.values()]
+        measured_ += [o.metric for o in single.values()]
+    cells = _metrics(measured_, diagnosis)
+    rows: list[tuple[Cell, ...]] = [(*name, *row) for name, row in zip(words, cells, strict=True)]
+    return Section("Recording by recording", (), (Table(measure, header, tuple(rows)),),
+                   charts=overlay_charts(diagnosis)[1:])  # fmt: skip
 
 
 def _metrics(values: Sequence[tuple[float, float, float]], diagnosis: Diagnosis) -> list[list[Number]]:
@@ -129,39 +134,58 @@ def _metrics(values: Sequence[tuple[float, float, float]], diagnosis: Diagnosis)
 
 def _where(diagnosis: Diagnosis) -> Section:
     rows: list[tuple[Cell, ...]] = []
+    regions = any(place.region for place in diagnosis.located)
     for place in diagnosis.located:
+        seen: tuple[Cell, ...] = (place.region or NONE,) if regions else ()
         rows.append(
             (
                 place.recording,
                 place.channel,
                 Number(interval(*place.time_s), place.time_s[0]),
                 Number(interval(*place.band_hz), place.band_hz[0]),
-                place.region or NONE,
-                Number(number(100 * place.share), place.share),
+                *seen,
+                Number(number(100 * place.share), place.share, place.share),
             )
         )
-    header = ("recording", "channel", "time [s]", "band [Hz]", "where in the motion", "share of the misfit [%]")
-    tables = (Table("Places in which the mismatch sits, largest first.", header, tuple(rows)),) if rows else ()
-    sentences = tuple(place.sentence for place in diagnosis.located if place.sentence)
-    opening: tuple[str, ...] = ()
-    quiet = diagnosis.verdict == NOTHING
-    title = "Where a mismatch was looked for" if quiet else "Where the mismatch sits"
-    if quiet and not sentences:
-        opening = ("No channel, time, band or state stands out of the noise.",) if diagnosis.evidence.maps else ()
-    return Section(title, opening, tables, places(diagnosis), points=sentences)
+    where = ("where in the motion",) if regions else ()
+    header = ("recording", "channel", "time [s]", "band [Hz]", *where, "share of the misfit [%]")
+    tables = (Table("Largest first.", header, tuple(rows)),) if rows else ()
+    title = "Where a misfit was looked for" if diagnosis.verdict == NOTHING else "Where the misfit sits"
+    return Section(title, (), tables, places(diagnosis))
 
 
 def _which(diagnosis: Diagnosis) -> Section:
     unit = UNIT[diagnosis.metric]
-    distances = alike([t.heldout_metric for t in diagnosis.tried])
+    tried = sorted(diagnosis.tried, key=lambda t: -t.log_evidence)
+    ranked = tried[:SHOWN_TRIED] + [t for t in tried[SHOWN_TRIED:] if t.id == "baseline"]
+    distances = alike([t.heldout_metric for t in ranked])
+    largest = max((t.log_evidence for t in ranked if math.isfinite(t.log_evidence)), default=0.0)
     rows = tuple(
-        (readable(t.id), Number(evidence_text(t.log_evidence), t.log_evidence), Number(text, t.heldout_metric))
-        for t, text in zip(diagnosis.tried, distances, strict=True)
+        (readable(t.id), Number(evidence_text(t.log_evidence), t.log_evidence, _part(t.log_evidence, largest)),
+         Number(text, t.heldout_metric))
+        for t, text in zip(ranked, distances, strict=True)
+    )  # fmt: skip
+    header = ("explanation", "log evidence above the baseline [–]", f"error, never fitted [{unit}]")
+    caption = (
+        "Each was fitted in full, as a listed law or as its kind in any shape. Log evidence weighs the fit against the "
+        "number of parameters; three more is twenty times likelier."
     )
-    header = ("explanation", "log evidence above the baseline [–]", f"distance from held-out recordings [{unit}]")
-    caption = "Every explanation that was fitted in full. Evidence: three more is twenty times likelier."
-    tables = (Table(caption, header, rows),) if rows else ()
-    return Section("Which explanations were tried", (), tables, explained(diagnosis))
+    if len(ranked) < len(tried):
+        caption += f" The {len(tried) - len(ranked)} least likely stand in diagnosis.yaml."
+    kinds = tuple(
+        (readable(k.kind), readable(k.element), Number(number(100 * k.share), k.share, k.share))
+        for k in diagnosis.kinds
+    )
+    tables = (
+        *((Table("What each kind of physics in any shape takes of the misfit, alone.",
+                 ("kind", "at", "share of the misfit [%]"), kinds),) if kinds else ()),
+        *((Table(caption, header, rows),) if rows else ()),
+    )  # fmt: skip
+    return Section("Explanations against each other", (), tables)
+
+
+def _part(value: float, largest: float) -> float:
+    return min(max(value / largest, 0.0), 1.0) if math.isfinite(value) and largest > 0 else 0.0
 
 
 def _moved(diagnosis: Diagnosis) -> Section:
@@ -177,10 +201,25 @@ def _moved(diagnosis: Diagnosis) -> Section:
     fitted = ("model before", after) if after else ("model",)
     header = ("parameter", "known", *fitted, "unit", f"moved{' before' if after else ''} [std]")
     caption = "Value ± standard deviation; moved: distance from what was known, in its standard deviations."
-    title = (
-        "What it had been hidden in" if diagnosis.verdict == MISSING else "Parameters against what was known of them"
-    )
-    return Section(title, (), (Table(caption, header, tuple(rows)),) if rows else (), moved(diagnosis))
+    title = "Parameters that stood in for it" if diagnosis.verdict == MISSING else "Parameters against what was known"
+    return Section(title, (), (Table(caption, header, tuple(rows)),) if rows else ())
+
+
+def scalar(parameters: ParameterSet, name: str) -> Estimate | None:
+    """What a set knows of a scalar, which may be a component of an array (``accelerometer.position_m.z``)."""
+    estimate = parameters.get(name)
+    if estimate is not None:
+        return estimate if isinstance(estimate.value, int | float) else None
+    whole, _, axis = name.rpartition(".")
+    estimate = parameters.get(whole)
+    if estimate is None or np.ndim(estimate.value) != 1 or axis not in ("x", "y", "z"):
+        return None
+    return replace(estimate, value=float(np.asarray(estimate.value)["xyz".index(axis)]))
+
+
+def known_std(conflict: Conflict) -> float | None:
+    """Standard deviation of what was known, from how far the fit moved."""
+    return abs((conflict.fitted - conflict.prior) / conflict.sigmas) if conflict.sigmas else None
 
 
 def _after(conflict: Conflict, diagnosis: Diagnosis) -> Number:
@@ -188,7 +227,3 @@ def _after(conflict: Conflict, diagnosis: Diagnosis) -> Number:
     if after is None:
         return Number(NONE, math.nan)
     return Number(measured(float(after.value), after.std), float(after.value))
-
-
-def _next(diagnosis: Diagnosis) -> Section:
-    return Section("What to record next", (diagnosis.next_experiment,) if diagnosis.next_experiment else ())

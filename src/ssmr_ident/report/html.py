@@ -18,6 +18,7 @@ from matplotlib.figure import Figure
 
 from ssmr_ident import __version__
 from ssmr_ident.core.atomic import write_text
+from ssmr_ident.report.chart import Chart
 from ssmr_ident.report.dark import declarations
 from ssmr_ident.report.svg import colours, drawn, inline
 
@@ -26,10 +27,18 @@ _BEGINS_WITH_NUMBER = re.compile(r"^\(?[−+-]?(\d|∞)|^–$")
 
 @dataclass(frozen=True)
 class Number:
-    """A cell that is sorted by ``value`` and reads as ``text``."""
+    """A cell that is sorted by ``value`` and reads as ``text``; ``share`` (0 … 1) draws a bar below it."""
 
     text: str
     value: float
+    share: float | None = None
+
+
+@dataclass(frozen=True)
+class Formula:
+    """A cell that holds a name or a law as MathML, as :mod:`ssmr_ident.report.mathml` makes it."""
+
+    mathml: str
 
 
 @dataclass(frozen=True)
@@ -40,7 +49,7 @@ class Link:
     target: str
 
 
-Cell = str | Number | Link
+Cell = str | Number | Link | Formula
 
 
 @dataclass(frozen=True)
@@ -94,43 +103,50 @@ class Picture:
 
 @dataclass(frozen=True)
 class Section:
-    """A heading with what stands below it; ``points`` are set as a list."""
+    """A heading with what stands below it; ``points`` are set as a list, charts before figures."""
 
     title: str
     paragraphs: tuple[str, ...] = ()
     points: tuple[str, ...] = field(default=(), kw_only=True)
     tables: tuple[Table, ...] = ()
+    charts: tuple[Chart, ...] = field(default=(), kw_only=True)
     figures: tuple[Picture, ...] = ()
     listings: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
-class Fact:
-    """A number that belongs to the verdict: what it is, itself with its unit, and what stands beside it.
+class Bar:
+    """A number drawn as a bar beside others: what it is, itself with its unit, its share (0 … 1), its colour's role."""
 
-    ``share`` (0 … 1) draws a bar below it; facts with bars are read against each other.
-    """
+    label: str
+    value: str
+    share: float
+    role: str
+
+
+@dataclass(frozen=True)
+class Fact:
+    """A number that belongs to the verdict: what it is, itself with its unit, what stands beside it, bars below it."""
 
     label: str
     value: str
     note: str = ""
-    share: float | None = None
-    tone: str = ""
+    bars: tuple[Bar, ...] = ()
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Verdict:
-    """What stands first: a few words, one sentence, and the numbers it rests on.
+    """What stands first: a few words, one sentence, one picture, and the numbers it rests on.
 
-    ``tone`` is ``found``, ``clear`` or ``open``; ``equation`` is plain text.
+    ``tone`` is ``found``, ``clear`` or ``open``; ``equations`` are MathML.
     """
 
     label: str
     tone: str
     sentence: str
     facts: tuple[Fact, ...] = ()
-    equation: str = ""
-    advice: str = ""
+    equations: tuple[str, ...] = ()
+    chart: Chart | None = None
 
 
 @dataclass(frozen=True)
@@ -187,12 +203,17 @@ def render_page(page: Page) -> str:
         autoescape=True, finalize=_as_text, undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
     numbered = count(1)
+    environment.filters["payload"] = lambda chart: Markup(chart.payload(lambda text: str(_as_text(text))))
+    environment.filters["math"] = Markup
     environment.filters["inline"] = lambda d: Markup(inline(d.svg, f"d{next(numbered)}", d.alt, d.white))
-    inside = {name: Markup((folder / f"report.{name}").read_text(encoding="utf-8")) for name in ("css", "js")}
+    parts = {"css": "report.css", "js": "report.js", "plot_css": "uplot/uPlot.min.css",
+             "plot_js": "uplot/uPlot.iife.min.js", "charts_js": "charts.js"}  # fmt: skip
+    inside = {name: Markup((folder / file).read_text(encoding="utf-8")) for name, file in parts.items()}
     template = environment.from_string((folder / "report.html").read_text(encoding="utf-8"))
     drawings = [item for section in page.sections for figure in section.figures for item in figure.drawings]
-    own = {"#0072b2", "#d55e00"}.union(*(colours(item.svg) for item in drawings))  # the bars of the verdict, too
-    return template.render(page=page, dark=Markup(declarations(own)), **inside)
+    own = set().union(*(colours(item.svg) for item in drawings))
+    charted = bool((page.verdict and page.verdict.chart) or any(section.charts for section in page.sections))
+    return template.render(page=page, charted=charted, dark=Markup(declarations(own)), **inside)
 
 
 def write_page(path: Path, page: Page) -> Path:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from threadpoolctl import threadpool_limits
 
@@ -60,9 +61,18 @@ def diagnose(
 
 def in_rig_units(found: Diagnosis) -> Diagnosis:
     """The diagnosis of a rotary rig with its effects' parameters in moments and angles, on the page and in files."""
-    named = tuple(replace(effect, parameters=in_rotary_units(effect.parameters)) for effect in found.effects)
+    named = tuple(
+        replace(effect, parameters=in_rotary_units(effect.parameters), curve=_over_angle(effect.curve))
+        for effect in found.effects
+    )
     after = {name: in_rotary_units(estimates) for name, estimates in found.after.effects.items()}
     return replace(found, effects=named, after=replace(found.after, effects=after))
+
+
+def _over_angle(curve: Mapping[str, Any] | None) -> Mapping[str, Any] | None:
+    """A curve of a rotary rig, over an angle or a turning speed."""
+    turned = {"displacement [m]": "angle [rad]", "velocity [m/s]": "turning speed [rad/s]"}
+    return {**curve, "variable": turned.get(curve["variable"], curve["variable"])} if curve else curve
 
 
 def _diagnosed(

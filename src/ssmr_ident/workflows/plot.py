@@ -16,7 +16,7 @@ from ssmr_ident.experiments.campaign import Measurement
 from ssmr_ident.experiments.experiment import ACCELERATIONS
 from ssmr_ident.physics.effect import Effect
 from ssmr_ident.report.courses import courses_figure
-from ssmr_ident.report.diagnosis_pictures import after_name
+from ssmr_ident.report.diagnosis_charts import after_name
 from ssmr_ident.report.effect_figure import effect_figure
 from ssmr_ident.report.figures_diagnosis import overlay_panel
 from ssmr_ident.report.figures_fit import backbone_figure, sawtooth_figure

@@ -10,7 +10,20 @@ from matplotlib.dates import AutoDateLocator, ConciseDateFormatter
 from matplotlib.figure import Figure
 
 from ssmr_ident.report import style
-from ssmr_ident.report.html import Cell, Fact, Link, Number, Page, Picture, Section, Table, Verdict, picture, write_page
+from ssmr_ident.report.html import (
+    Bar,
+    Cell,
+    Fact,
+    Link,
+    Number,
+    Page,
+    Picture,
+    Section,
+    Table,
+    Verdict,
+    picture,
+    write_page,
+)
 from ssmr_ident.report.numbers import NONE, measured, number, unit
 from ssmr_ident.workflows.batch.outliers import farthest
 from ssmr_ident.workflows.batch.results import Results
@@ -35,10 +48,10 @@ def batch_page(results: Results, command: str) -> Page:
     lost = sessions[sessions.status != "done"]
     missing = counts.get("missing_physics", 0)
     facts = (
-        Fact("physics missing", f"{missing}", share=_share(missing, told)),
-        Fact("nothing missing", f"{(n := counts.get('nothing_missing', 0))}", share=_share(n, told)),
-        Fact("undetermined", f"{(n := counts.get('undetermined', 0))}", share=_share(n, told)),
-        Fact("not done", f"{len(lost)}", share=_share(len(lost), sessions), tone="found" if len(lost) else ""),
+        Fact("physics missing", f"{missing}", bars=_bar(_share(missing, told))),
+        Fact("nothing missing", f"{(n := counts.get('nothing_missing', 0))}", bars=_bar(_share(n, told))),
+        Fact("undetermined", f"{(n := counts.get('undetermined', 0))}", bars=_bar(_share(n, told))),
+        Fact("not done", f"{len(lost)}", bars=_bar(_share(len(lost), sessions), "before")),
     )
     often = told[told.effects != ""].effects.value_counts()
     sentence = (
@@ -52,6 +65,10 @@ def batch_page(results: Results, command: str) -> Page:
     sections = (_often(told), _not_done(lost), _sessions(results), _over_time(results.parameters))
     kept = tuple(s for s in sections if s.tables or s.figures)
     return Page(f"Sessions of {results.folder.name}", (), kept, command, verdict=verdict)
+
+
+def _bar(share: float, role: str = "floor") -> tuple[Bar, ...]:
+    return (Bar("", f"{100 * share:.0f} %", share, role),)
 
 
 def _share(count: int, of: pd.DataFrame) -> float:

@@ -18,7 +18,7 @@ from ssmr_ident.experiments import FREE_RESPONSE, Conditions
 from ssmr_ident.experiments.campaign import load
 from ssmr_ident.physics.sensor import Noise
 from ssmr_ident.readers.writers import write_csv
-from ssmr_ident.report.diagnosis_pictures import after_name
+from ssmr_ident.report.diagnosis_charts import after_name
 from ssmr_ident.report.figures_diagnosis import readable
 from ssmr_ident.report.numbers import alike, measured, number, share
 from ssmr_ident.workflows.diagnose import diagnose, write_diagnosis
