@@ -129,6 +129,13 @@ def test_effects(tmp_path: Path) -> None:
     check("effects", answer_of("effects", "dry_friction"))
 
 
+def test_two_parameter_sets(tmp_path: Path) -> None:
+    for name in ("a", "b"):
+        text = "schema: ssmr-ident/parameters/1\nmass_kg: {value: 8.0, std: 0.1, unit: kg}\n"
+        (tmp_path / f"{name}.yaml").write_text(text)
+    check("compare", answer_of("compare", str(tmp_path / "a.yaml"), str(tmp_path / "b.yaml")))
+
+
 @pytest.mark.slow
 def test_demo() -> None:
     """The three forms that the verb prints, from the values that it prints (the whole job takes half a minute)."""
