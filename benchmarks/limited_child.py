@@ -112,6 +112,7 @@ def _child(
             APART.close()
             return
         path = folder / name
+        path.unlink(missing_ok=True)  # a file that is written over is flushed to the disk when it is closed
         path.write_bytes(raw)
         _forget_peaks()
         begun = processor_seconds()
