@@ -126,7 +126,7 @@ def through_libraries(folder: Path) -> None:
 
 def as_strangers_write(folder: Path) -> None:
     """Text in the forms of loggers, phones and monitors."""
-    rows = [(k, 1_650_000_000 + k / 200, np.sin(k / 9)) for k in range(120)]
+    rows = [(k, 1_650_000_000 + k / 200, np.sin(k / 9)) for k in range(60)]
     blanks = [f"{k / 200:.4f},{v:.4f},{'' if k % 4 else f'{v:.3f}'}\n" for k, _, v in rows]
     dates = [f"01.03.2024 12:00:00,{5 * k:03d};{v:.3f};x\n" for k, _, v in rows]
     counts = [f"{int(t * 1e9)},a,{v:.5f}\n" for _, t, v in rows]

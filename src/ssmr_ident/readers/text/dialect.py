@@ -143,7 +143,8 @@ def _elsewhere(text: Text, dialect: Dialect, width: int) -> list[list[str]]:
 
 def _longest_run(lines: list[str], dialect: Dialect) -> tuple[list[list[str]], float]:
     """Longest run of rows with one count of columns of which some hold numbers throughout, and what it is worth."""
-    best: tuple[list[list[str]], float] = ([], 0.0)
+    best: list[list[str]] = []
+    rows, most = 0, 0.0  # of the best run, which grows on
     run: list[list[str]] = []
     numeric: frozenset[int] = frozenset()
     words: frozenset[int] = frozenset()
@@ -167,9 +168,9 @@ def _longest_run(lines: list[str], dialect: Dialect) -> tuple[list[list[str]], f
         run.append(cells)
         numeric, words = numeric | numbers, words | text
         worth = len(run) * len(numeric) ** 2 / max(len(run[0]), len(cells))
-        if worth > best[1]:
-            best = (list(run), worth)
-    return best
+        if worth > most:
+            best, rows, most = run, len(run), worth
+    return best[:rows], most
 
 
 def _without_words(run: list[list[str]], dialect: Dialect) -> bool:

@@ -72,7 +72,8 @@ def text_of(source: Source) -> Text:
 
 def _words_known(source: Source, head: bytes, page: str) -> int:
     """How many words beyond ASCII of a text in a code page the vocabulary has."""
-    words = {w for line in head.decode(page, errors="replace").split("\n")[:200] for w in words_of(line)}
+    lines = head.decode(page, errors="replace").split("\n")[:200]
+    words = {w for line in lines if not line.isascii() for w in words_of(line)}
     known = {w for phrase in source.vocabulary.phrases for w in phrase} | {
         w for (w, *_) in source.vocabulary.words["counters"]
     }
