@@ -240,7 +240,7 @@ def test_a_vocabulary_beside_the_log_adds_words_and_units(tmp_path: Path) -> Non
     )
     np.testing.assert_allclose(log(tmp_path, text)["position"], 201.168 * np.arange(12))
     (tmp_path / "vocabulary.yaml").write_text("quantity: {}\n")
-    with pytest.raises(InputError, match="unknown key 'quantity'"):
+    with pytest.raises(InputError, match="quantity: is not a known key"):
         log(tmp_path, text)
 
 

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import difflib
+import errno
 import importlib
 import io
 import logging
 import os
+import re
 import sys
 from typing import Annotated, Any, NoReturn
 
@@ -23,6 +25,12 @@ VERBS = (
     *("inspect", "spectrum", "geometry", "new", "fit", "simulate", "sweep", "compare", "diagnose", "batch", "export"),
     *("effects", "demo", "proof"),
 )
+
+_OF_THE_CALL = (errno.ENAMETOOLONG, errno.ENOENT, errno.ENOTDIR, errno.EISDIR, errno.EACCES, errno.ELOOP)
+"""What is wrong with a name that was given, or with its permissions."""
+
+_TOO_LONG = re.compile(r"(\S{100})\S{400,}(\S{100})")
+"""A word that no line needs whole."""
 
 UsageError: type[Exception] = typer.BadParameter.__bases__[0]
 """Of the click that typer brings along, whichever that is."""
@@ -86,8 +94,9 @@ def main() -> None:
     except BrokenPipeError:  # who read has read enough
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         sys.exit(1)
-    except OSError as error:  # a disk that is full, a file that may not be read
-        _complain(f"{error.filename or 'standard output'}: {error.strerror or error}", status=1)
+    except OSError as error:  # a disk that is full, a name that no file can have
+        status = 2 if error.errno in _OF_THE_CALL else 1
+        _complain(f"{error.filename or 'standard output'}: {error.strerror or error}", status=status)
     except MemoryError:
         _complain("out of memory: give it fewer or shorter recordings", status=1)
 
@@ -109,7 +118,8 @@ def _usage(error: Any) -> tuple[str, str]:
 
 def _complain(*parts: str, status: int = 2) -> NoReturn:
     """One line on standard error, and the end; what is left for standard output goes nowhere if it cannot."""
-    print(f"ident: {' '.join(' '.join(parts).split())}", file=sys.stderr)
+    words = " ".join(" ".join(parts).split())
+    print(f"ident: {_TOO_LONG.sub(lambda word: f'{word[1]}…{word[2]}', words)}", file=sys.stderr)
     try:
         sys.stdout.flush()
     except (OSError, AttributeError):

@@ -26,7 +26,7 @@ def command(
     quiet: Annotated[bool, typer.Option("-q", "--quiet", help="Print nothing but errors.")] = False,
 ) -> None:
     """Identified parameters, or a log, as a file of another tool."""
-    from ssmr_ident.core.atomic import write_bytes
+    from ssmr_ident.core.atomic import refuse_overwriting, write_bytes
     from ssmr_ident.core.errors import InputError, did_you_mean
     from ssmr_ident.readers import read
     from ssmr_ident.session import bundled_robots, read_parameters
@@ -37,6 +37,7 @@ def command(
     if to not in forms:
         kind = "parameters" if parameters else "a log"
         raise InputError(f"--to {to}", f"is no form of {kind}", did_you_mean(to, forms))
+    refuse_overwriting(output, [what])
     if parameters:
         write_bytes(output, parameters_as(read_parameters(what), to))
     else:

@@ -44,14 +44,17 @@ def command(
     from ssmr_ident.cli.answer import print_json
     from ssmr_ident.cli.called import called
     from ssmr_ident.cli.progress import stages
-    from ssmr_ident.core.atomic import make_folder, refuse_unwritable
+    from ssmr_ident.core.atomic import make_folder, refuse_overwriting, refuse_unwritable
     from ssmr_ident.session import write_parameters
+    from ssmr_ident.workflows.files_read import files_read
     from ssmr_ident.workflows.fit.page import write_fit_page
     from ssmr_ident.workflows.fit.run import fit_session
 
     for wanted in (output, figures):
         if wanted is not None:
             refuse_unwritable(wanted)
+    if output is not None:
+        refuse_overwriting(output, files_read(session))
     with stages(hidden=quiet or as_json) as step:
         fit = fit_session(session, seed=seed, coulomb=coulomb, method=method, progress=step)
         if output is not None:

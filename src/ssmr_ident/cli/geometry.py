@@ -28,13 +28,14 @@ def command(
     import numpy as np
 
     from ssmr_ident.cli.answer import print_json
-    from ssmr_ident.core.atomic import refuse_unwritable
+    from ssmr_ident.core.atomic import refuse_overwriting, refuse_unwritable
     from ssmr_ident.identify.geometry.sheet import robot_geometry
     from ssmr_ident.session import write_parameters
     from ssmr_ident.session.yaml_file import load_mapping
 
     if output is not None:
         refuse_unwritable(output)
+        refuse_overwriting(output, [measurements])
     geometry = robot_geometry(load_mapping(measurements), str(measurements), seed)
     parameters = geometry.parameters()
     if output is not None:

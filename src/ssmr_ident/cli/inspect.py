@@ -75,24 +75,21 @@ def command(
     from ssmr_ident.readers.folder import logs_in
     from ssmr_ident.workflows.clocks import clocks_of
 
-    try:
-        options = ReadOptions(
-            reader=reader,
-            fs=fs,
-            units=pairs("--units", units),
-            columns=pairs("--columns", columns),
-            skip=int(skip) if skip.isascii() and skip.isdigit() else skip,
-            sheets=pairs("--sheets", sheets),
-            time_unit=time_unit,
-            on_bad=on_bad,
-            stamps=stamps,
-            trim=trim,
-            load_scale=load_scale,
-            sample=sample,
-            decimal=decimal,
-        )
-    except ValueError as error:
-        raise InputError("ident inspect", str(error), "See ident inspect --help.") from error
+    options = ReadOptions(
+        reader=reader,
+        fs=fs,
+        units=pairs("--units", units),
+        columns=pairs("--columns", columns),
+        skip=int(skip[:9]) if skip.isascii() and skip.isdigit() else skip,
+        sheets=pairs("--sheets", sheets),
+        time_unit=time_unit,
+        on_bad=on_bad,
+        stamps=stamps,
+        trim=trim,
+        load_scale=load_scale,
+        sample=sample,
+        decimal=decimal,
+    )
     if not 0 < mains < float("inf"):
         raise InputError("--mains", f"{mains} is no frequency", "Give 50 or 60.")
     files, unread = logs_in(paths, below=True)

@@ -10,7 +10,10 @@ import yaml
 
 from ssmr_ident.core.atomic import write_bytes
 from ssmr_ident.core.errors import InputError
-from ssmr_ident.readers.options import ReadOptions
+from ssmr_ident.core.whole_file import read_whole
+from ssmr_ident.readers.options import ReadOptions, numbered
+
+MOST_BYTES = 4_000_000
 
 
 def save_choices(session: Path, log: Path, options: ReadOptions) -> None:
@@ -30,9 +33,9 @@ def save_choices(session: Path, log: Path, options: ReadOptions) -> None:
     """
     choices: dict[str, Any] = {
         "reader": options.reader,
-        "columns": {k: int(v) if str(v).isdigit() else v for k, v in options.columns.items()} or None,
+        "columns": {k: _by_number(v) for k, v in options.columns.items()} or None,
         "units": dict(options.units) or None,
-        "sheets": {k: int(v) if str(v).isdigit() else v for k, v in options.sheets.items()} or None,
+        "sheets": {k: _by_number(v) for k, v in options.sheets.items()} or None,
         "sample_rate_hz": options.fs,
         "sample": options.sample,
         "skip_rows": None if options.skip == "auto" else int(options.skip),
@@ -46,11 +49,11 @@ def save_choices(session: Path, log: Path, options: ReadOptions) -> None:
     choices = {key: value for key, value in choices.items() if value is not None}
     session = session / "session.yaml" if session.is_dir() else session
     try:
-        text = session.read_text(encoding="utf-8")
+        text = read_whole(session, MOST_BYTES, "Name a session.yaml.").decode()
         root = yaml.compose(text, Loader=yaml.SafeLoader)
     except OSError as error:
         raise InputError(str(session), f"cannot be read ({error.strerror})", "Write the session first.") from error
-    except (yaml.YAMLError, UnicodeDecodeError) as error:
+    except (yaml.YAMLError, ValueError, RecursionError) as error:
         raise InputError(str(session), "is not valid YAML", "Mend it first.") from error
     entry = _entry(session, log, root)
     lines = text.splitlines()
@@ -74,9 +77,16 @@ def save_choices(session: Path, log: Path, options: ReadOptions) -> None:
     write_bytes(session, result.encode())
 
 
+def _by_number(which: int | str) -> int | str:
+    number = numbered(which)
+    return which if number is None else number
+
+
 def _entry(session: Path, log: Path, root: Any) -> yaml.MappingNode:
-    recordings = next((v for k, v in getattr(root, "value", []) if getattr(k, "value", "") == "recordings"), None)
-    for node in getattr(recordings, "value", []):
+    if not isinstance(root, yaml.MappingNode):
+        raise InputError(str(session), "is no session", "Name a session.yaml.")
+    recordings = next((v for k, v in root.value if k.value == "recordings"), None)
+    for node in recordings.value if isinstance(recordings, yaml.SequenceNode) else ():
         if not isinstance(node, yaml.MappingNode):
             continue
         for key, value in node.value:
@@ -105,7 +115,7 @@ def _check(session: Path, log: Path, result: str, choices: dict[str, Any]) -> No
         content = yaml.safe_load(result)
         entries = [e for e in content["recordings"] if (session.parent / e["file"]).resolve() == log.resolve()]
         good = len(entries) >= 1 and all(entries[0].get(key) == value for key, value in choices.items())
-    except (yaml.YAMLError, KeyError, TypeError):
+    except (yaml.YAMLError, KeyError, TypeError, ValueError, RecursionError):
         good = False
     if not good:
         raise InputError(

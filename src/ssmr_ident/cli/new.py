@@ -69,6 +69,8 @@ def command(
     from ssmr_ident.cli.new_questions import typed
     from ssmr_ident.cli.progress import progress
     from ssmr_ident.core.errors import InputError
+    from ssmr_ident.core.place import Place
+    from ssmr_ident.session.schema import KEYS
     from ssmr_ident.workflows.new.draft import refuse_existing
     from ssmr_ident.workflows.new.run import Told, draft_session
 
@@ -77,6 +79,12 @@ def command(
         raise InputError(
             "--inertia-kg-m2", "stands beside --mass-kg", "A rig moves straight or turns: give one of them"
         )
+    for option, key, value in (
+        ("--mass-kg", "mass_kg", mass_kg),
+        ("--inertia-kg-m2", "inertia_kg_m2.xx", inertia_kg_m2),
+    ):
+        if value is not None:
+            KEYS[key].domain.check(Place(option), value)
     told = Told(
         robot=robot,
         mass=inertia_kg_m2 if mass_kg is None else mass_kg,

@@ -73,7 +73,7 @@ def command(
     """Simulate one experiment and write it as a log."""
     from ssmr_ident.cli.answer import print_json
     from ssmr_ident.cli.progress import doing
-    from ssmr_ident.core.atomic import refuse_unwritable
+    from ssmr_ident.core.atomic import refuse_overwriting, refuse_unwritable
     from ssmr_ident.experiments import Conditions
     from ssmr_ident.workflows.simulate.request import Request, experiment_of, wheels_of
     from ssmr_ident.workflows.simulate.run import simulate_to_file
@@ -91,6 +91,7 @@ def command(
         seed=seed, effects=tuple(effect or ()), contact=contact,
     )  # fmt: skip
     refuse_unwritable(output)
+    refuse_overwriting(output, [params, *filter(None, (force, base))])
     with doing(FIRST_RUN, hidden=quiet or as_json):
         recording = simulate_to_file(params, request, output)
     if as_json:

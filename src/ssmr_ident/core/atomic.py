@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import os
 import secrets
+from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path
 
@@ -29,6 +30,8 @@ def write_bytes(path: str | Path, data: bytes) -> Path:
         When the folder cannot be made or may not be written to, or the disk is full.
     """
     path = Path(path)
+    if not path.name:
+        raise InputError(str(path), "is a folder, expected a file", "Give a file's name with -o")
     if not path.parent.exists():
         make_folder(path.parent)
     # Named before it is made: a signal between its making and its name would leave it lying.
@@ -91,6 +94,18 @@ def refuse_unwritable(path: str | Path) -> None:
         raise InputError(str(path), f"cannot be written ({above} is a file)", "Write elsewhere with -o")
     if not os.access(above, os.W_OK):
         raise InputError(str(path), f"cannot be written ({above} is read-only)", "Write elsewhere with -o")
+
+
+def refuse_overwriting(path: str | Path, read: Iterable[str | Path]) -> None:
+    """Ask before work whether its answer would take the place of what it is made from.
+
+    Raises
+    ------
+    InputError
+        When ``path`` is one of the files read.
+    """
+    if any(Path(path).resolve() == Path(file).resolve() for file in read):
+        raise InputError(str(path), "is read by this call and would be lost", "Give another name with -o")
 
 
 def remove_begun() -> None:

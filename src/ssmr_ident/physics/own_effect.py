@@ -17,10 +17,13 @@ import numpy as np
 
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import Parameter
+from ssmr_ident.core.whole_file import read_whole
 from ssmr_ident.physics.effect import Effect, Site
 
 GROUP = "ssmr_ident.effects"
 """Entry points of an installed package, each an effect: ``charge_amplifier = "my_package.charge_amplifier:EFFECT"``."""
+
+MOST_BYTES = 10 * 2**20
 
 FREE_SITES = (Site.OUTPUT, Site.SENSOR, Site.ROBOT, Site.PULL)
 """Where a law acts as a plain function. All others are compiled into the simulator's loop with the package."""
@@ -42,9 +45,10 @@ def effect_of_file(file: str | Path, taken: Collection[str]) -> Effect:
     """
     path = Path(file)
     try:
-        source = path.read_bytes()
-    except OSError as error:
-        raise InputError(str(file), f"cannot be read: {error.strerror}", "Give a Python file with an EFFECT") from None
+        source = read_whole(path, MOST_BYTES, "Give a Python file with an EFFECT")
+    except (OSError, ValueError) as error:  # ValueError: a NUL in the name
+        reason = getattr(error, "strerror", None) or str(error)
+        raise InputError(str(file), f"cannot be read: {reason}", "Give a Python file with an EFFECT") from None
     module = ModuleType(f"{__name__}.{re.sub(r'[^0-9A-Za-z_]', '_', path.stem)}")
     module.__file__ = str(path.absolute())
     sys.modules[module.__name__] = module  # dataclasses look their module up

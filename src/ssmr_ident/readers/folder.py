@@ -39,13 +39,18 @@ def logs_in(paths: Iterable[Path], *, below: bool = False) -> tuple[list[Path], 
     files: list[Path] = []
     errors: list[InputError] = []
     for path in paths:
-        if not path.is_dir():
-            files.append(path)
+        try:
+            if not path.is_dir():
+                files.append(path)
+                continue
+            found = _below(path) if below else _of(path)
+            within = [] if below or found else [folder for folder in _folders(path) if _below(folder)]
+        except OSError as error:
+            shown = str(error.filename or path)
+            errors.append(InputError(shown[:200], f"cannot be read ({error.strerror})", "Check the name."))
             continue
-        found = _below(path) if below else _of(path)
         if not found:
             kinds = ", ".join(sorted(LOG_EXTENSIONS))
-            within = [] if below else [folder for folder in _folders(path) if _below(folder)]
             mend = f"Name a folder in it: {', '.join(map(str, within[:3]))}." if within else f"Logs end in {kinds}."
             errors.append(InputError(str(path), "is a folder without logs", mend))
         files += found

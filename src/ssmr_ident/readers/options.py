@@ -2,8 +2,18 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+
+from ssmr_ident.core.domain import Choice, Number, Whole
+from ssmr_ident.core.place import Place
+
+RATE = Number("Hz", least=1e-6, most=1e10)
+LOAD_SCALE = Number("N", least=1e-12, most=1e12)
+SAMPLE, SKIP = Whole(least=1), Whole()
+ON_BAD, STAMPS, DECIMAL = Choice(("error", "nan")), Choice(("auto", "even", "logged")), Choice((".", ","))
+"""What options and keys of a session may be."""
 
 
 @dataclass(frozen=True)
@@ -42,6 +52,11 @@ class ReadOptions:
         Which recording (from 1) of a file that holds several.
     decimal : {".", ","} or None
         Decimal sign of a text log, where its numbers could be read either way.
+
+    Raises
+    ------
+    InputError
+        A choice that cannot be.
     """
 
     reader: str | None = None
@@ -60,15 +75,19 @@ class ReadOptions:
     decimal: str | None = None
 
     def __post_init__(self) -> None:
-        if self.fs is not None and not (0 < self.fs < float("inf")):
-            raise ValueError(f"fs must be a positive number of Hz. Got {self.fs!r} instead.")
-        if self.on_bad not in ("error", "nan"):
-            raise ValueError(f"on_bad must be 'error' or 'nan'. Got {self.on_bad!r} instead.")
-        if self.stamps not in ("auto", "even", "logged"):
-            raise ValueError(f"stamps must be 'auto', 'even' or 'logged'. Got {self.stamps!r} instead.")
-        if self.skip != "auto" and not (isinstance(self.skip, int) and self.skip >= 0):
-            raise ValueError(f"skip must be 'auto' or a number of rows from 0. Got {self.skip!r} instead.")
-        if self.decimal not in (None, ".", ","):
-            raise ValueError(f"decimal must be '.' or ','. Got {self.decimal!r} instead.")
-        if self.sample is not None and self.sample < 1:
-            raise ValueError(f"sample counts from 1. Got {self.sample!r} instead.")
+        for option, domain, value in (
+            ("--fs", RATE, self.fs),
+            ("--load-scale", LOAD_SCALE, self.load_scale),
+            ("--sample", SAMPLE, self.sample),
+            ("--skip", SKIP, None if self.skip == "auto" else self.skip),
+            ("--on-bad", ON_BAD, self.on_bad),
+            ("--stamps", STAMPS, self.stamps),
+            ("--decimal", DECIMAL, self.decimal),
+        ):
+            if value is not None:
+                domain.check(Place(option), value)
+
+
+def numbered(which: int | str) -> int | None:
+    """Number of a column or a sheet that is named by one; None for a name."""
+    return int(which) if isinstance(which, int) or re.fullmatch("-?[0-9]{1,9}", which) else None

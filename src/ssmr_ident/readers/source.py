@@ -11,6 +11,7 @@ from pathlib import Path
 
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.recording import Note, Provenance
+from ssmr_ident.core.whole_file import read_whole
 from ssmr_ident.readers.table.vocabulary import Vocabulary, vocabulary_for
 
 MAX_BYTES = 2**30  # a log of 20 s is 1 MB; an hour of three axes at 1 kHz as text is 150 MB
@@ -117,14 +118,7 @@ def open_source(path: str | Path) -> Source:
     try:
         if path.is_dir():
             raise InputError(str(path), "is a folder, not a log", "Name a file in it.")
-        size = path.stat().st_size
-        if size > MAX_BYTES:
-            raise InputError(
-                str(path),
-                f"holds {size / 2**20:.0f} MB, more than {MAX_BYTES // 2**20} MB",
-                "Split the recording.",
-            )
-        data = path.read_bytes()
+        data = read_whole(path, MAX_BYTES, "Split the recording.")
     except (OSError, ValueError) as error:  # ValueError: a NUL in the name
         reason = getattr(error, "strerror", None) or str(error)
         raise InputError(str(path), f"cannot be read ({reason})", "Check the name and the permissions.") from error

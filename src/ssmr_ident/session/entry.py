@@ -8,6 +8,7 @@ from typing import Annotated, Any
 
 from ssmr_ident.core.domain import Choice, FileName, Number, Pointer, Text, Whole, YesNo
 from ssmr_ident.core.nested_domain import Either, Keyed, Listed, Mapped, declared
+from ssmr_ident.readers.options import DECIMAL, LOAD_SCALE, ON_BAD, RATE, SAMPLE, SKIP, STAMPS
 
 BASELINES = ("rigid6", "decoupled", "sdof", "drag")
 EXPERIMENTS = (
@@ -26,7 +27,6 @@ CABLE = Keyed(
         "damping_N_s_m": (Number("N s/m", above=0.0, most=1e12), ""),
     }
 )
-RATE = Number("Hz", least=1e-6, most=1e10)
 SPEED = Number("mm/s", least=1e-9, most=1e7)
 HEIGHT = Number("m", least=-1e3, most=1e3)
 TURN = Number("deg/s", least=-1e6, most=1e6)
@@ -49,18 +49,14 @@ class Reading:
         Mapping[str, int | str], Mapped(Text(), Pointer(1)), "axis: worksheet by its number from 1, or its name"
     ] = field(default_factory=dict)
     sample_rate_hz: Annotated[float | None, RATE, "where the log has no time"] = None
-    sample: Annotated[int | None, Whole(least=1), "which part of a log that holds several, from 1"] = None
-    skip_rows: Annotated[int | None, Whole(), "rows before the numbers"] = None
+    sample: Annotated[int | None, SAMPLE, "which part of a log that holds several, from 1"] = None
+    skip_rows: Annotated[int | None, SKIP, "rows before the numbers"] = None
     time_unit: Annotated[str | None, Text(), "of the time column"] = None
-    decimal: Annotated[str | None, Choice((".", ",")), "decimal sign"] = None
-    on_bad: Annotated[str, Choice(("error", "nan")), "what becomes of a cell that is no number"] = "error"
-    stamps: Annotated[str, Choice(("auto", "even", "logged")), "stamps in bursts made even by regression, or kept"] = (
-        "auto"
-    )
+    decimal: Annotated[str | None, DECIMAL, "decimal sign"] = None
+    on_bad: Annotated[str, ON_BAD, "what becomes of a cell that is no number"] = "error"
+    stamps: Annotated[str, STAMPS, "stamps in bursts made even by regression, or kept"] = "auto"
     trim: Annotated[bool, YesNo(), "whether rows before the first whole one are cut"] = False
-    load_scale: Annotated[float | None, Number("N", least=1e-12, most=1e12), "newtons per unit of a machine's load"] = (
-        None
-    )
+    load_scale: Annotated[float | None, LOAD_SCALE, "newtons per unit of a machine's load"] = None
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,7 @@ def files_read(session: str | Path | Session, params: str = "") -> list[Path]:
     """
     read = session if isinstance(session, Session) else read_session(session)
     file = read.folder / "session.yaml" if isinstance(session, Session) or Path(session).is_dir() else Path(session)
-    robots = [read.folder / read.robot, *([Path(params)] if params else [])]
+    robots = [Path(read.robot), *([Path(params)] if params else [])]
     logs = [path for entry in read.entries for path in read.paths(entry)]
     logs += [read.folder / entry.wheel_log for entry in read.entries if entry.wheel_log]
     return [file, *(robot for robot in robots if robot.is_file()), *logs]

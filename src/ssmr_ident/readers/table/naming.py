@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ssmr_ident.core.errors import did_you_mean
-from ssmr_ident.readers.options import ReadOptions
+from ssmr_ident.readers.options import ReadOptions, numbered
 from ssmr_ident.readers.source import Source
 from ssmr_ident.readers.table.columns import Column, Table
 from ssmr_ident.readers.table.headings import heading_of
@@ -95,12 +95,13 @@ def _chosen(source: Source, table: Table, options: ReadOptions) -> list[Column]:
 
 
 def _index(source: Source, labels: list[str], which: int | str, quantity: str) -> int:
-    if isinstance(which, str) and not which.lstrip("-").isdigit():
+    number, unnamed = numbered(which), "no header"
+    if number is None:
+        assert isinstance(which, str)
         folded = [label.lower() for label in labels]
         if which.lower() in folded:
             return folded.index(which.lower())
         raise source.error(f"has no column {which!r} for {quantity}", did_you_mean(which, [v for v in labels if v]))
-    number, unnamed = int(which), "no header"
     if not 0 <= number < len(labels):
         raise source.error(
             f"has {len(labels)} columns, numbered from 0; column {number} for {quantity} is not there",

@@ -11,14 +11,57 @@ from typing import Any
 
 import yaml
 
+from ssmr_ident.core.domain import Number, Text, YesNo
 from ssmr_ident.core.errors import InputError, did_you_mean
+from ssmr_ident.core.nested_domain import Keyed, Listed, Mapped
+from ssmr_ident.core.place import Place
 from ssmr_ident.core.units import QUANTITY_OF_UNIT, Conversion, find_unit
+from ssmr_ident.core.whole_file import read_whole
 
 SHIPPED = Path(__file__).with_name("vocabulary.yaml")
 BESIDE = "vocabulary.yaml"
+_MOST_BYTES = 2**20
 LONGEST = 120  # characters of a header that are looked at; no name is longer
 _SECTIONS = ("modifiers", "others", "lengths", "counters", "ignored", "rates", "steps", "units_said", "series", "runs")
-_KEYS = {"quantities", "symbols", "conventions", "units", *_SECTIONS}
+_WORDS = Listed(Text(longest=200))
+_FORM = Keyed(
+    {
+        "quantities": (
+            Mapped(
+                Text(),
+                Keyed(
+                    {
+                        "words": (Mapped(Text(), _WORDS), "by language"),
+                        "endings": (_WORDS, "of compounds"),
+                        "optional": (YesNo(), "whether it is not asked about"),
+                        "unit": (Text(), "of an optional one"),
+                    }
+                ),
+            ),
+            "",
+        ),
+        "symbols": (Mapped(Text(), _WORDS), ""),
+        "conventions": (
+            Listed(Keyed(dict.fromkeys(("name", "unit", "source"), (Text(), "")), ("name", "unit", "source"))),
+            "",
+        ),
+        "units": (
+            Mapped(
+                Text(),
+                Keyed(
+                    {
+                        "unit": (Text(), "SI"),
+                        "factor": (Number(nonzero=True), "SI of one of it"),
+                        "offset": (Number(), "SI of none of it"),
+                    },
+                    ("unit", "factor"),
+                ),
+            ),
+            "",
+        ),
+        **dict.fromkeys(_SECTIONS, (_WORDS, "")),
+    }
+)
 _TOKEN = re.compile(r"[^\W\d_]+|\d+|[°%µ#]")
 _HUMP = re.compile(r"(?<=[a-zà-öø-ÿ])(?=[A-ZÀ-ÖØ-Þ])|(?<=[A-Z])(?=[A-Z][a-z])")
 
@@ -110,15 +153,10 @@ def _with(beside: Path, stamp: int) -> Vocabulary:
 
 def _content(path: Path) -> dict[str, Any]:
     try:
-        content = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
+        content = yaml.safe_load(read_whole(path, _MOST_BYTES, "Mend it.").decode())
+    except (OSError, ValueError, RecursionError, yaml.YAMLError) as error:
         raise InputError(str(path), f"is no vocabulary ({' '.join(str(error).split())[:120]})", "Mend it.") from error
-    if not isinstance(content, dict):
-        raise InputError(str(path), "is no vocabulary", "Its keys are " + ", ".join(sorted(_KEYS)) + ".")
-    for key in content:
-        if key not in _KEYS:
-            raise InputError(str(path), f"has an unknown key {key!r}", did_you_mean(str(key), _KEYS))
-    return content
+    return _FORM.check(Place(str(path)), content)
 
 
 def _made(*contents: dict[str, Any]) -> Vocabulary:
@@ -134,7 +172,7 @@ def _made(*contents: dict[str, Any]) -> Vocabulary:
     for content in contents:
         entries: dict[str, dict[str, Any]] = dict(content.get("quantities") or {})
         for quantity, entry in entries.items():
-            if entry.get("optional"):
+            if entry.get("optional") and "unit" in entry:
                 optional[quantity] = str(entry["unit"])
             elif quantity not in known:
                 raise InputError(

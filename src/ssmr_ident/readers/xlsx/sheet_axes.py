@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ssmr_ident.core.errors import did_you_mean
-from ssmr_ident.readers.options import ReadOptions
+from ssmr_ident.readers.options import ReadOptions, numbered
 from ssmr_ident.readers.source import Source
 from ssmr_ident.readers.xlsx.workbook import Sheet
 
@@ -82,11 +82,14 @@ def axes_of(source: Source, sheets: list[Sheet], options: ReadOptions) -> dict[s
 def _wanted(source: Source, sheets: list[Sheet], axis: str, which: int | str) -> Sheet:
     if axis.removeprefix("a") not in ("x", "y", "z"):
         raise source.error(f"--sheets names axis {axis!r}; axes are x, y, z", "Write --sheets x=3,y=2,z=1.")
-    if isinstance(which, int) or which.isdigit():
-        if 1 <= int(which) <= len(sheets):
-            return sheets[int(which) - 1]
+    number = numbered(which)
+    if number is not None:
+        if 1 <= number <= len(sheets):
+            return sheets[number - 1]
         raise source.error(f"has {len(sheets)} worksheets; sheet {which} for {axis} is not there", "They count from 1.")
     found = [sheet for sheet in sheets if sheet.name == which]
     if not found:
-        raise source.error(f"has no sheet {which!r} for {axis}", did_you_mean(which, [sheet.name for sheet in sheets]))
+        raise source.error(
+            f"has no sheet {which!r} for {axis}", did_you_mean(str(which), [sheet.name for sheet in sheets])
+        )
     return found[0]

@@ -12,9 +12,11 @@ from typing import Any
 import yaml
 
 from ssmr_ident.core.errors import InputError, did_you_mean
+from ssmr_ident.core.place import Place
 from ssmr_ident.experiments import EXPERIMENTS
 from ssmr_ident.readers import ReadOptions, read
 from ssmr_ident.readers.folder import logs_in
+from ssmr_ident.readers.options import RATE
 from ssmr_ident.session import bundled_robots
 from ssmr_ident.session.entry import BASELINES
 from ssmr_ident.workflows.new.answers import Answers, answered, mass_in
@@ -66,6 +68,8 @@ class Told:
             raise InputError("--experiment", f"is {self.experiment!r}", did_you_mean(self.experiment, EXPERIMENTS))
         if self.mass is not None and not 0 < self.mass < math.inf:
             raise InputError("--mass-kg", f"is {self.mass:g}, expected more than 0")
+        if self.sample_rate_hz is not None:
+            RATE.check(Place("--fs"), self.sample_rate_hz)
 
     @property
     def reading(self) -> dict[str, Any]:

@@ -11,7 +11,8 @@ from ssmr_ident.core.nested_domain import declared
 from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.core.place import Place, shown
 from ssmr_ident.experiments import EXPERIMENTS, Conditions, Experiment
-from ssmr_ident.session.entry import RATE, WHEELS
+from ssmr_ident.readers.options import RATE
+from ssmr_ident.session.entry import WHEELS
 from ssmr_ident.session.schema import CHOICES
 
 

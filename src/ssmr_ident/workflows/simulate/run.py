@@ -17,6 +17,8 @@ from ssmr_ident.session import read_parameters
 from ssmr_ident.workflows.simulate.request import Request, asked_for, check
 from ssmr_ident.workflows.simulate.table import simulated
 
+ENDINGS = (".csv", ".txt", ".lvm", ".xlsx")
+
 
 def simulate_to_file(params: str, request: Request, output: Path) -> Recording:
     """Simulate, add noise if asked for, and write the log; its ending decides the format.
@@ -27,6 +29,8 @@ def simulate_to_file(params: str, request: Request, output: Path) -> Recording:
         A missing parameter, an ending without a writer.
     """
     check(request)
+    if output.suffix.lower() not in ENDINGS:
+        raise _no_writer(output, "a simulated log")
     parameters = asked_for(read_parameters(params), request)
     recording = simulated(parameters, request)
     if request.noise:
@@ -51,11 +55,15 @@ def _write(output: Path, recording: Recording, parameters: ParameterSet) -> None
         write = writers.write_lvm if suffix == ".lvm" else writers.write_labview_xlsx
         write(output, recording.with_channels(volts))
     else:
-        raise InputError(
-            str(output),
-            f"no writer for {suffix or 'a name without ending'} with {', '.join(recording.names)}",
-            "Accelerations go to .csv, .lvm or .xlsx, forces to .csv or .txt",
-        )
+        raise _no_writer(output, ", ".join(recording.names))
+
+
+def _no_writer(output: Path, what: str) -> InputError:
+    return InputError(
+        str(output),
+        f"no writer for {output.suffix or 'a name without ending'} with {what}",
+        "Accelerations go to .csv, .lvm or .xlsx, forces to .csv or .txt",
+    )
 
 
 def _noisy(recording: Recording, parameters: ParameterSet, seed: int) -> Recording:
