@@ -139,7 +139,8 @@ def test_error_is_one_line_and_status_2(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("arguments", "words"),
-    [(["--units", "force"], "is no pair"), (["--fs", "-1"], "--fs: is -1.0, expected"), (["--reader", "xls"], "reader 'xls' is not"),
+    [(["--units", "force"], "is no pair"), (["--fs", "-1"], "--fs: is -1.0, expected"),
+     (["--reader", "xls"], "reader 'xls' is not"),
      (["--sample", "0"], "--sample: is 0, expected"), (["--skip", "few"], "--skip: is 'few', expected"),
      (["--mains", "0"], "no frequency")],
 )  # fmt: skip
