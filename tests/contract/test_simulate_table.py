@@ -21,10 +21,19 @@ ROTOR = "inertia_kg_m2: {value: 0.02}\nstiffness_N_m_rad: {value: 200}\ndamping_
 BLOCK = (
     "mass_kg: {value: 5}\nmu_static: {value: 0.5}\nmu_kinetic: {value: 0.35}\ncable: {stiffness_N_m: {value: 2500}}\n"
 )
-FILES = {"sdof": RIG, "drag": BLOCK}
+NETWORK = (
+    "bodies: {table: {mass_kg: {value: 2.0}}, tip: {mass_kg: {value: 0.4}}}\n"
+    "springs:\n"
+    "  foot: {between: [ground, table], stiffness_N_m: {value: 90000}, damping_N_s_m: {value: 12}}\n"
+    "  blade: {between: [table, tip], stiffness_N_m: {value: 7000}, damping_N_s_m: {value: 0.8}}\n"
+)
+FILES = {"sdof": RIG, "drag": BLOCK, "network": NETWORK}
+PLACED = "acceleration: {column: table_acceleration, body: table}, position_2: {column: tip_position, body: tip}"
 SHORT = {"swivel": 8.0, "straight": 8.0, "pull": 8.0, "wheel_drag": 8.0, "free_response": 2.0}
 ENTRIES = {
-    "free_response": {"rigid6": "motion: roll", "decoupled": "motion: roll"},
+    "free_response": {"rigid6": "motion: roll", "decoupled": "motion: roll", "network": f"channels: {{{PLACED}}}"},
+    "forced": {"network": f"channels: {{{PLACED}, force: {{column: force, body: table}}}}"},
+    "base_motion": {"network": f"channels: {{{PLACED}}}"},
     "swivel": {"": "yaw_rate_deg_s: 45"},
     "straight": {"": "wheel_speed_m_s: 0.3"},
     "pull": {"": "speed_mm_s: 1.0, direction: lateral"},

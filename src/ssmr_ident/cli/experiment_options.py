@@ -30,6 +30,9 @@ PushN = Annotated[
     float,
     typer.Option("--push-N", help="Free response: pushed by this force and let go, instead of --amplitude-mm."),
 ]
+At = Annotated[
+    str, typer.Option(help="Network: body that is driven (left out: the first), or pushed and let go (the last).")
+]
 Direction = Annotated[str, typer.Option(help="Pull: lateral or longitudinal.")]
 AngleDeg = Annotated[
     float | None, typer.Option(help="Pull: from straight behind (0) to the left (90), instead of --direction.")

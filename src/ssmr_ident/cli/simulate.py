@@ -25,6 +25,7 @@ EXAMPLES = (
     "ident simulate p3at-extended -e free_response --effect dry_friction:F_c_N=2 -o roll-1.csv",
     "ident simulate rig.yaml -e forced --force shaker.csv -o answer.csv",
     "ident simulate rig.yaml -e free_response --amplitude-mm 2 --duration-s 10 -o decay.csv",
+    "ident simulate network.yaml -e forced --force hammer.csv --at tip -o answer.csv",
     "ident simulate block.yaml -e pull --speed-mm-s 2 --duration-s 20 -o pull.csv",
     "ident simulate rig.yaml -e forced --force shaker.csv --effects my_law.py --effect my_law -o answer.csv",
 )
@@ -43,6 +44,7 @@ def command(
     amplitude_deg: asked.AmplitudeDeg = 5.0,
     start: asked.Start = "tilted",
     push_n: asked.PushN = 0.0,
+    at: asked.At = "",
     direction: asked.Direction = "lateral",
     angle_deg: asked.AngleDeg = None,
     speed_mm_s: asked.SpeedMmS = 1.0,
@@ -58,7 +60,7 @@ def command(
         str, typer.Option(help="Base motion: a log with columns time and base_acceleration, or base_position.")
     ] = "",
     baseline: Annotated[
-        str, typer.Option(help="rigid6, decoupled, sdof or drag; left out, what the file's keys describe.")
+        str, typer.Option(help="rigid6, decoupled, sdof, network or drag; left out, what the file's keys describe.")
     ] = "",
     contact: asked.Contact = None,
     effect: asked.EffectIds = None,
@@ -79,7 +81,7 @@ def command(
     from ssmr_ident.workflows.simulate.run import simulate_to_file
 
     conditions = Conditions(
-        motion=motion, amplitude_mm=amplitude_mm, amplitude_deg=amplitude_deg, start=start, push_N=push_n,
+        motion=motion, amplitude_mm=amplitude_mm, amplitude_deg=amplitude_deg, start=start, push_N=push_n, at=at,
         direction=direction, angle_deg=angle_deg,
         speed_mm_s=speed_mm_s, height_m=height_m, wheels_gripping=wheels_of(wheels_gripping), cable=cable,
         wheel_rate_rad_s=wheel_rate_rad_s, free_normal=free_normal, yaw_rate_deg_s=yaw_rate_deg_s,

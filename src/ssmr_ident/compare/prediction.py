@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from ssmr_ident.compare import block, turning
+from ssmr_ident.compare import block, network, turning
 from ssmr_ident.compare.outcome import Prediction
 from ssmr_ident.compare.recorded import follow, predicted
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.experiments.campaign import Campaign, Measurement
 from ssmr_ident.identify.fitting.coordinates import Model
 from ssmr_ident.identify.trials import trial_of
+from ssmr_ident.physics.network import NETWORK
 from ssmr_ident.physics.slots import effect_values
 
 __all__ = ["Prediction", "predict"]
@@ -39,6 +40,8 @@ def predict(campaign: Campaign, measurement: Measurement, parameters: ParameterS
         return turning.predict(parameters, measurement)
     if baseline == "drag" and block.FOLDED.issuperset(parameters.effects):
         return block.predict(parameters, measurement)
+    if baseline == NETWORK:
+        return network.predict(parameters, measurement)
     trial = trial_of(baseline, measurement, parameters)
     model = Model((), (), effect_values(parameters))
     fit = follow([trial], model, np.zeros(0))

@@ -17,6 +17,9 @@ if TYPE_CHECKING:
 
 Value = float | np.ndarray
 
+GROUND = "ground"
+"""What a spring of a network may join a body to: it does not move."""
+
 
 @dataclass(frozen=True)
 class Parameter:
@@ -71,7 +74,8 @@ class ParameterSet(Shown, Mapping[str, Estimate]):
     """Estimates by dotted path (``tire.stiffness_y_N_m``), as robot.yaml and exported parameters hold them.
 
     ``choices`` are the keys whose value is a word (``tire.contact``). ``effects`` maps an effect's id to its
-    parameters; ``provenance`` is free text and numbers about the origin.
+    parameters; ``provenance`` is free text and numbers about the origin. Of a network ``between`` has the two that each
+    spring joins, bodies or ``GROUND``, by its name.
     """
 
     name: str
@@ -80,6 +84,7 @@ class ParameterSet(Shown, Mapping[str, Estimate]):
     provenance: Mapping[str, Any] = field(default_factory=dict)
     file: str = ""
     choices: Mapping[str, str] = field(default_factory=dict)
+    between: Mapping[str, tuple[str, str]] = field(default_factory=dict)
 
     def __getitem__(self, path: str) -> Estimate:
         return self.estimates[path]

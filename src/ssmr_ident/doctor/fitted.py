@@ -80,11 +80,11 @@ def carried(node: Node, fit: Fit) -> tuple[Array, ...]:
     was, now, found = fit.node, node, []
     sizes = {"lag": 2, "branch": 1, "rider": 2}
     for nuisance in fit.nuisances:
-        at, kept = 2, {}
+        at, kept = was.motion_states, {}
         for member in (m for m in was.members if m.linear):
             kept[id(member)] = nuisance[at : at + sizes[member.linear]]
             at += sizes[member.linear]
-        states = [nuisance[:2]]
+        states = [nuisance[: was.motion_states]]
         states += [kept.get(id(m), np.zeros(sizes[m.linear])) for m in now.members if m.linear]
         hidden = nuisance[was.linear_states : was.states]
         states.append(hidden if len(hidden) == now.hidden_states else np.zeros(now.hidden_states))

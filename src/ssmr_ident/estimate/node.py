@@ -9,14 +9,14 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from scipy.linalg import expm
 
-from ssmr_ident.estimate.pieces import Piece
+from ssmr_ident.estimate.pieces import Piece, Seen
 from ssmr_ident.physics.effects import CATALOGUE
 from ssmr_ident.physics.element import STATES
+from ssmr_ident.physics.network import ONE, Layout
 from ssmr_ident.physics.slots import SLOTS, effect_vector
 
 Array = np.ndarray
 
-MASS, DAMPING, STIFFNESS = range(3)
 LAG, BRANCH, RIDER = "lag", "branch", "rider"
 """Linear members: a slow sensor, a Maxwell branch, a part of the mass on a spring of its own."""
 
@@ -152,6 +152,8 @@ class Member:
         Which channel that is.
     variable : str
         ``x`` or ``v``, of which alone a static force is a function; empty for both, and for other kinds.
+    element : str
+        Spring or body of a network at which it acts; empty on a rig, which has one of each.
     """
 
     id: str
@@ -164,19 +166,21 @@ class Member:
     after: str = ""
     channel: str = ""
     variable: str = ""
+    element: str = ""
 
     @property
     def name(self) -> str:
-        return f"{self.kind} in {self.form}" if self.tables else f"{self.id} ({self.form})" if self.form else self.id
+        what = f"{self.kind} in {self.form}" if self.tables else f"{self.id} ({self.form})" if self.form else self.id
+        return f"{what} at {self.element}" if self.element else what
 
 
 @dataclass(frozen=True, eq=False)
 class Node:
-    """The baseline's coordinates and the members beside it."""
+    """The baseline's coordinates, in the order of the layout's keys, and the members beside it."""
 
     baseline: tuple[Coordinate, ...]
     members: tuple[Member, ...] = ()
-    fixed: Mapping[int, float] = field(default_factory=dict)
+    layout: Layout = ONE
 
     @property
     def name(self) -> str:
@@ -215,14 +219,32 @@ class Node:
         return np.array([c.slope(float(p)) for c, p in zip(self.coordinates, point, strict=True)])
 
     def with_member(self, member: Member) -> Node:
-        return Node(self.baseline, (*self.members, member))
+        return replace(self, members=(*self.members, member))
 
     def without(self, member: Member) -> Node:
-        return Node(self.baseline, tuple(m for m in self.members if m is not member))
+        return replace(self, members=tuple(m for m in self.members if m is not member))
 
     @property
     def linear_states(self) -> int:
-        return 2 + sum({LAG: 2, BRANCH: 1, RIDER: 2}[m.linear] for m in self.members if m.linear)
+        return self.motion_states + sum({LAG: 2, BRANCH: 1, RIDER: 2}[m.linear] for m in self.members if m.linear)
+
+    @property
+    def motion_states(self) -> int:
+        """Coordinates of the bodies, then their rates."""
+        return 2 * len(self.layout.bodies)
+
+    @property
+    def linear_count(self) -> int:
+        """Coordinates of the fit that the linear part has."""
+        return len(self.baseline) + self.count("linear")
+
+    @property
+    def site(self) -> int:
+        """Number of the spring at which forces beside the linear network act."""
+        names = {m.element for m in self.members if (m.tables or m.law is not None) and m.element}
+        if len(names) > 1:
+            raise ValueError(f"forces at several springs, {', '.join(sorted(names))}: one takes them all")
+        return self.layout.springs.index(names.pop()) if names else 0
 
     @property
     def hidden_states(self) -> int:
@@ -245,7 +267,7 @@ def _place(member: Member) -> int:
     return 3 if member.law is not None else 4
 
 
-def matrices(node: Node, values: Array, orders: Array, based: bool) -> tuple[Array, ...]:
+def matrices(node: Node, values: Array, seen: Seen) -> tuple[Array, ...]:
     """A, what the drive and a force beside do to the states, and channels over states, drive and force.
 
     Parameters
@@ -253,69 +275,73 @@ def matrices(node: Node, values: Array, orders: Array, based: bool) -> tuple[Arr
     node : Node
     values : (linear,) float
         Of the baseline and the linear members.
-    orders : (c,) int
-        Derivatives of the deflection that the channels show.
-    based : bool
-        Whether the drive is the acceleration of the base, to which the deflection is relative.
+    seen : Seen
     """
-    mass, damping, stiffness = values[:3]
-    n = node.linear_states
+    layout, count, n = node.layout, len(node.layout.bodies), node.linear_states
+    rates = slice(count, 2 * count)
+    mass, damping, stiffness = layout.matrices(values[: len(node.baseline)])
+    stretch = layout.stretch
     a = np.zeros((n, n))
-    riders = [m for m in node.members if m.linear == RIDER]
-    at, place = 3, 2
-    share = 0.0
-    places: dict[str, list[tuple[int, Array]]] = {}
+    at, place = len(node.baseline), 2 * count
+    share = np.zeros(count)
+    places: dict[str, list[tuple[int, int, Array]]] = {}
     for member in (m for m in node.members if m.linear):
         size = len(member.coordinates)
-        places.setdefault(member.linear, []).append((place, values[at : at + size]))
+        own = values[at : at + size]
+        names = layout.springs if member.linear == BRANCH else layout.bodies
+        element = names.index(member.element) if member.element else 0
+        places.setdefault(member.linear, []).append((place, element, own))
         at, place = at + size, place + {LAG: 2, BRANCH: 1, RIDER: 2}[member.linear]
-    if riders:
-        share = sum(float(own[0]) for _, own in places[RIDER])
-    body = mass * (1.0 - share)
-    a[0, 1] = 1.0
-    a[1, :2] = -stiffness / body, -damping / body
-    for i, (stiff, tau) in places.get(BRANCH, []):
-        a[1, i] = -stiff / body
-        a[i, 1], a[i, i] = 1.0, -1.0 / tau
+        if member.linear == RIDER:
+            share[element] += own[0]
+    body = np.diag(mass) * (1.0 - share)
+    a[:count, rates] = np.eye(count)
+    a[rates, :count], a[rates, rates] = -stiffness / body[:, None], -damping / body[:, None]
+    for i, spring, (stiff, tau) in places.get(BRANCH, []):
+        a[rates, i] = -stiff * stretch[spring] / body
+        a[i, rates], a[i, i] = stretch[spring], -1.0 / tau
     kick, drive = np.zeros(n), np.zeros(n)
-    kick[1] = 1.0 / body
-    for i, (own, hz, ratio) in places.get(RIDER, []):
+    kick[rates] = stretch[node.site] / body
+    drive[count + seen.into] = 1.0 / body[seen.into]
+    if seen.based:
+        drive[rates] = -1.0
+    for i, on, (own, hz, ratio) in places.get(RIDER, []):
         turning = 2.0 * math.pi * hz
         pull = np.array([turning**2, 2.0 * ratio * turning])
-        a[1, i : i + 2] += pull * own * mass / body
-    for i, (_, hz, ratio) in places.get(RIDER, []):
-        turning = 2.0 * math.pi * hz
+        a[count + on, i : i + 2] += pull * own * mass[on, on] / body[on]
+    for i, on, (_, hz, ratio) in places.get(RIDER, []):
+        turning, at = 2.0 * math.pi * hz, count + on
         a[i, i + 1] = 1.0
-        a[i + 1] = -a[1]
+        a[i + 1] = -a[at]
         a[i + 1, i : i + 2] -= np.array([turning**2, 2.0 * ratio * turning])
-        kick[i + 1] = -kick[1]
-    drive[:] = kick
-    if based:
-        drive[:] = 0.0
-        drive[1] = -1.0
-    rows, by_drive, by_force = np.zeros((len(orders), n)), np.zeros(len(orders)), np.zeros(len(orders))
-    for c, order in enumerate(orders):
+        kick[i + 1] = -kick[at]
+        drive[i + 1] = 0.0 if seen.based else -drive[at]
+    channels = len(seen.orders)
+    rows, by_drive, by_force = np.zeros((channels, n)), np.zeros(channels), np.zeros(channels)
+    felt = 1.0 if seen.based else 0.0
+    for c, (order, on) in enumerate(zip(seen.orders, seen.bodies, strict=True)):
+        at = count + on
         if order < 2:
-            rows[c, order] = 1.0
+            rows[c, on + count * order] = 1.0
         else:
-            rows[c], by_drive[c], by_force[c] = a[1], drive[1] + (1.0 if based else 0.0), -kick[1]
-    for i, (hz, *known) in places.get(LAG, []):
+            rows[c], by_drive[c], by_force[c] = a[at], drive[at] + felt, -kick[at]
+    for i, on, (hz, *known) in places.get(LAG, []):
         # logs are rid of the low-pass that is known: this one takes its place, so that the two delay as one does
-        turning, slow = 2.0 * math.pi / (1.0 / hz - sum(1.0 / f for f in known)), np.zeros(n)
+        turning, slow, at = 2.0 * math.pi / (1.0 / hz - sum(1.0 / f for f in known)), np.zeros(n), count + on
         slow[i], slow[i + 1] = -(turning**2), -math.sqrt(2.0) * turning
         a[i, i + 1] = 1.0
-        a[i + 1] = turning**2 * a[1] + slow
-        kick[i + 1] = turning**2 * kick[1]
-        drive[i + 1] = turning**2 * (drive[1] + (1.0 if based else 0.0))
-        for c in np.flatnonzero(orders == 2).tolist():
+        a[i + 1] = turning**2 * a[at] + slow
+        kick[i + 1] = turning**2 * kick[at]
+        drive[i + 1] = turning**2 * (drive[at] + felt)
+        for c in (c for c, order in enumerate(seen.orders) if order == 2 and seen.bodies[c] == on):
             rows[c], by_drive[c], by_force[c] = 0.0, 0.0, 0.0
             rows[c, i] = 1.0
     return a, drive, kick, rows, by_drive, by_force
 
 
-def stepped(node: Node, values: Array, orders: Array, based: bool, step: float) -> tuple[tuple[Array, ...], ...]:
+def stepped(node: Node, values: Array, seen: Seen, step: float) -> tuple[tuple[Array, ...], ...]:
     """Exact step under a drive in a straight line, and the channels: ((T, now, later, half a kick), rows)."""
-    a, drive, kick, *rows = matrices(node, values, orders, based)
+    a, drive, kick, *rows = matrices(node, values, seen)
     n = len(a)
     block = np.zeros((n + 2, n + 2))
     block[:n, :n] = a * step
@@ -326,9 +352,9 @@ def stepped(node: Node, values: Array, orders: Array, based: bool, step: float) 
     return (e[:n, :n].copy(), e[:n, n] - later, later.copy(), 0.5 * step * kick), tuple(rows)
 
 
-def stepped_with_slopes(node: Node, values: Array, slopes: Array, orders: Array, based: bool, step: float):
+def stepped_with_slopes(node: Node, values: Array, slopes: Array, seen: Seen, step: float):
     """``stepped`` and its derivatives over the linear coordinates by central differences of the small matrices."""
-    lin, rows = stepped(node, values, orders, based, step)
+    lin, rows = stepped(node, values, seen, step)
     d_lin, d_rows = [], []
     for k in range(len(values)):
         change = 1e-5 * max(abs(values[k]), 1e-3 * abs(slopes[k]))
@@ -336,7 +362,7 @@ def stepped_with_slopes(node: Node, values: Array, slopes: Array, orders: Array,
         for sign in (1.0, -1.0):
             moved = values.copy()
             moved[k] += sign * change
-            both.append(stepped(node, moved, orders, based, step))
+            both.append(stepped(node, moved, seen, step))
         scale = slopes[k] / (2.0 * change)
         d_lin.append([(p - m) * scale for p, m in zip(both[0][0], both[1][0], strict=True)])
         d_rows.append([(p - m) * scale for p, m in zip(both[0][1], both[1][1], strict=True)])

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.signal import ss2tf
 
-from ssmr_ident.estimate.node import Node, stepped
+from ssmr_ident.estimate.node import stepped
 from ssmr_ident.estimate.pieces import Piece
 from ssmr_ident.estimate.values import Fit, Problem
 from ssmr_ident.signals.noise import AutoregressiveNoise, process_noise, third_difference_std
@@ -62,10 +62,10 @@ def own_noise(problem: Problem, fit: Fit) -> tuple[tuple[AutoregressiveNoise, ..
 
 def from_force(piece: Piece, fit: Fit) -> list[tuple[Array, Array]]:
     """Numerator and denominator from what drives a piece, or a force where nothing does, to each channel, in falling
-    powers of z, by a fit's mass, damping and stiffness alone."""
-    (transition, now, later, _), (rows, by_drive, _) = stepped(
-        Node(fit.node.baseline), fit.node.values(fit.point)[:3], piece.orders, piece.based, 1.0 / piece.rate
-    )
+    powers of z, by a fit's masses, dampings and stiffnesses alone."""
+    bare = replace(fit.node, members=())
+    values = fit.node.values(fit.point)[: len(bare.baseline)]
+    (transition, now, later, _), (rows, by_drive, _) = stepped(bare, values, piece.seen, 1.0 / piece.rate)
     # a drive in straight lines enters with its next value: that part belongs to the output
     entering = (now + transition @ later)[:, None]
     through = (rows @ later + by_drive)[:, None]

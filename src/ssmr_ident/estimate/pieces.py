@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import itertools
 import math
+import re
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,6 +16,7 @@ from ssmr_ident.core.recording import Recording
 from ssmr_ident.estimate.foot import foot_motion
 from ssmr_ident.experiments.campaign import Measurement
 from ssmr_ident.experiments.quantities import UNITS
+from ssmr_ident.session.entry import FURTHER
 from ssmr_ident.signals.grid import band_limited, even_samples
 from ssmr_ident.signals.noise import median_std, rounding, third_difference_std
 
@@ -47,6 +51,25 @@ QUIET = 0.1
 """Share of the loudest stretch below which a stretch is at rest."""
 
 
+class Seen(NamedTuple):
+    """What drives a recording, and what it shows.
+
+    Parameters
+    ----------
+    orders, bodies : tuple of int
+        Of each channel, the derivative of which body's coordinate it is.
+    based : bool
+        Whether the drive is the acceleration of the base, to which the coordinates are relative.
+    into : int
+        Body on which a force acts.
+    """
+
+    orders: tuple[int, ...]
+    bodies: tuple[int, ...]
+    based: bool
+    into: int
+
+
 @dataclass(frozen=True, eq=False)
 class Piece:
     """A stretch of a recording that has one start.
@@ -79,6 +102,10 @@ class Piece:
         Time at which the recording, or the release, began that this is a part of.
     foot : (n, c) float
         What was taken off ``y`` for its being relative.
+    bodies : tuple of int
+        Of a network, on which each channel is measured; empty where there is one alone.
+    into : int
+        Body on which the drive acts.
     """
 
     name: str
@@ -96,6 +123,13 @@ class Piece:
     white: Array
     begin: float = 0.0
     foot: Array = field(default_factory=lambda: np.zeros(1))
+    bodies: tuple[int, ...] = ()
+    into: int = 0
+
+    @property
+    def seen(self) -> Seen:
+        bodies = self.bodies or (0,) * len(self.orders)
+        return Seen(tuple(self.orders.tolist()), bodies, self.based, self.into)
 
     @property
     def rate(self) -> float:
@@ -115,7 +149,9 @@ def cut(piece: Piece, first: int, after: int) -> Piece:
     )  # fmt: skip
 
 
-def pieces_of(measurement: Measurement, index: int, frequency: float, bandwidth_hz: float) -> tuple[Piece, ...]:
+def pieces_of(
+    measurement: Measurement, index: int, frequency: float, bandwidth_hz: float, bodies: Sequence[str] = ()
+) -> tuple[Piece, ...]:
     """Prepare a recording.
 
     Parameters
@@ -127,6 +163,8 @@ def pieces_of(measurement: Measurement, index: int, frequency: float, bandwidth_
         Highest at which the rig is expected to move on its own.
     bandwidth_hz : float [Hz]
         Of the accelerometer, as known; ``inf`` where nothing has to be undone.
+    bodies : sequence of str
+        Of a network; none of a rig, which moves as one, and of whose sensors those of a second place are left out.
 
     Raises
     ------
@@ -134,15 +172,18 @@ def pieces_of(measurement: Measurement, index: int, frequency: float, bandwidth_
         No motion, or one that does not change.
     """
     recording = measurement.recording
-    channels, drive_name = channels_of(recording)
+    channels, drive_name = channels_of(recording, every_place=bool(bodies))
+    number = {name: k for k, name in enumerate(bodies)}
+    places = tuple(number[measurement.entry.bodies.get(name, bodies[0])] for name in channels) if bodies else ()
+    into = number[measurement.entry.bodies.get(drive_name, bodies[0])] if bodies else 0
     wanted = [*channels, *([drive_name] if drive_name else [])]
     even = even_samples(recording.time, np.column_stack([recording[name] for name in wanted]))
     y, rate = even.samples[:, : len(channels)], even.sample_rate
     drive = even.samples[:, -1] if drive_name else np.zeros(len(y))
-    orders = np.array([ORDER[name] for name in channels])
+    orders = np.array([order_of(name) for name in channels])
     foot = np.zeros_like(y)
     if drive_name in FEET:
-        moved = foot_motion(drive, drive_name, {n: ORDER[n] for n in channels}, rate, recording.provenance.file)
+        moved = foot_motion(drive, drive_name, {n: order_of(n) for n in channels}, rate, recording.provenance.file)
         drive, foot = moved[:, 2], np.where(orders < 2, moved[:, orders], 0.0)
         y = y - foot
     found = []
@@ -153,7 +194,7 @@ def pieces_of(measurement: Measurement, index: int, frequency: float, bandwidth_
         part = np.where(counts, part, np.column_stack([smooth for _, smooth in judged]))
         least = np.array([rounding(column) for column in part.T]) / math.sqrt(block)
         if math.isfinite(bandwidth_hz):
-            slow = [c for c, name in enumerate(channels) if ORDER[name] == 2]
+            slow = np.flatnonzero(orders == 2).tolist()
             part[:, slow] = before_low_pass(part[:, slow], rate, bandwidth_hz)
         averaged, kept = (_blocks(x, block) for x in (part, counts))
         every = max(1, math.ceil(STEPS * frequency * block / rate))
@@ -181,6 +222,8 @@ def pieces_of(measurement: Measurement, index: int, frequency: float, bandwidth_
                 white,
                 float(middle[0]),
                 _blocks(foot[first:after], block),
+                places,
+                into,
             )
         )
     return tuple(found)
@@ -218,15 +261,25 @@ def before_low_pass(samples: Array, rate: float, bandwidth_hz: float) -> Array:
     return np.fft.irfft(raised * np.fft.rfft(padded, axis=0), len(padded), axis=0)[around : around + len(samples)]
 
 
-def channels_of(recording: Recording) -> tuple[tuple[str, ...], str]:
-    """Motions that change, and the name of what drives (empty for none).
+def order_of(channel: str) -> int:
+    """Time derivative of a coordinate that a channel shows, whichever sensor of its kind it is.
+
+    >>> order_of("velocity"), order_of("acceleration_2")
+    (1, 2)
+    """
+    return ORDER[re.sub("_[0-9]$", "", channel)]
+
+
+def channels_of(recording: Recording, every_place: bool = False) -> tuple[tuple[str, ...], str]:
+    """Motions that change, and the name of what drives (empty for none); ``every_place`` takes further sensors too.
 
     Raises
     ------
     InputError
         None does.
     """
-    motions = tuple(name for name in ORDER if name in recording and np.ptp(recording[name]) > 0)
+    names = (*ORDER, *FURTHER) if every_place else ORDER
+    motions = tuple(name for name in names if name in recording and np.ptp(recording[name]) > 0)
     drive = next((name for name in (*FORCES, *FEET) if name in recording), "")
     if not motions:
         where, found = recording.provenance.file, ", ".join(recording.names)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -42,16 +43,31 @@ def problem_of(measurements: Sequence[Measurement], parameters: ParameterSet) ->
         Mass, damping, stiffness, as known.
     """
     frequency = natural_hz(parameters)
-    seen = [_seen_hz(m) for m in measurements]
+    seen = [seen_hz(m) for m in measurements]
     moving = float(np.median(seen))
     if not 1.0 / FAR < frequency / moving < FAR:
         frequency = moving
-    bandwidth, fastest = parameters.number(BANDWIDTH, math.inf), max(frequency, moving)
+    bandwidth = known_bandwidth(measurements, parameters)
+    problem = made(measurements, (), (), frequency, max(frequency, moving), bandwidth)
+    driven = any(p.driven and not p.based for p in problem.pieces)
+    return replace(problem, baseline=baseline_of(parameters, driven, problem.size, frequency))
+
+
+def known_bandwidth(measurements: Sequence[Measurement], parameters: ParameterSet) -> float:
+    """Of the accelerometers [Hz]; infinite where it is beyond what was logged."""
+    bandwidth = parameters.number(BANDWIDTH, math.inf)
     if bandwidth >= 0.5 * min(m.recording.sample_rate for m in measurements):
-        bandwidth = math.inf  # cancels with the low-pass of the force's own converter
-    pieces = first_white([p for i, m in enumerate(measurements) for p in pieces_of(m, i, fastest, bandwidth)])
+        return math.inf  # cancels with the low-pass of the force's own converter
+    return bandwidth
+
+
+def made(
+    measurements: Sequence[Measurement], bodies: Sequence[str], baseline: tuple[Coordinate, ...], frequency: float,
+    fastest: float, bandwidth: float,
+) -> Problem:  # fmt: skip
+    """The problem of recordings of a rig, or of a network of given bodies; frequencies in Hz."""
+    pieces = first_white([p for i, m in enumerate(measurements) for p in pieces_of(m, i, fastest, bandwidth, bodies)])
     size = float(np.sqrt(np.mean([_size(p, frequency) ** 2 for p in pieces])))
-    driven = any(p.driven and not p.based for p in pieces)
     noises = tuple(
         tuple(
             AutoregressiveNoise(np.ones(1), max(w, LEAST_NOISE * s))
@@ -59,9 +75,7 @@ def problem_of(measurements: Sequence[Measurement], parameters: ParameterSet) ->
         )
         for p in pieces
     )
-    return Problem(
-        pieces, baseline_of(parameters, driven, size, frequency), noises, frequency, size, bandwidth, fastest
-    )
+    return Problem(pieces, baseline, noises, frequency, size, bandwidth, fastest)
 
 
 def natural_hz(parameters: ParameterSet) -> float:
@@ -93,7 +107,7 @@ def baseline_of(parameters: ParameterSet, driven: bool, size: float, frequency: 
     return tuple(found)
 
 
-def _seen_hz(measurement: Measurement) -> float:
+def seen_hz(measurement: Measurement) -> float:
     """Frequency of the deflection, from the loudest motion's spectrum, in acceleration divided by its square."""
     channels, drive = channels_of(measurement.recording)
     name = channels[0]

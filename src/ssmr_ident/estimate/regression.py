@@ -59,6 +59,6 @@ def starts_of(problem: Problem, node: Node, start: Start) -> list[Array]:
     assert start.paths is not None
     for piece, path in zip(problem.pieces, start.paths, strict=True):
         states = np.zeros(node.states)
-        states[:2] = path[0, :2]
+        states[: node.motion_states] = path[0, : node.motion_states]
         found.append(np.concatenate([states, np.zeros(2 * int(piece.driven) + 2 * piece.y.shape[1])]))
     return found

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from ssmr_ident.estimate.node import STIFFNESS, Node
+from ssmr_ident.estimate.node import Node
 from ssmr_ident.estimate.pieces import Piece
 from ssmr_ident.estimate.values import Problem
 
@@ -29,7 +29,8 @@ def nuisance_scales(problem: Problem, node: Node, piece: Piece) -> Array:
     # what holds a mass aside has loaded its friction, and so has what went before; a driven log begins at rest
     sizes[node.linear_states :] *= 1e-6 if piece.driven and piece.time[0] <= piece.begin else 0.1
     zero, offsets = zero_scales(piece)
-    held = float(node.values(np.array([c.mean for c in node.coordinates]))[STIFFNESS]) > 0.0
+    usual = node.values(np.array([c.mean for c in node.coordinates]))[: len(node.baseline)]
+    held = bool(np.any(usual[len(node.layout.bodies) + 1 :: 2] > 0.0))
     # the path of a mass that nothing holds may itself go on and on
     drifts = DRIFT * piece.white if held else np.full(len(offsets), 1e-12)
     return np.concatenate([sizes, zero, np.full(len(zero), GAIN), offsets, drifts])
@@ -44,7 +45,8 @@ def zero_scales(piece: Piece) -> list[Array]:
 def state_sizes(problem: Problem, node: Node) -> Array:
     """Sizes of linear and hidden states in SI."""
     x, turning = problem.size, 2.0 * math.pi * problem.frequency
-    sizes = [x, x * turning]
+    bodies = len(node.layout.bodies)
+    sizes = [x] * bodies + [x * turning] * bodies
     for member in (m for m in node.members if m.linear):
         sizes += {"lag": [x * turning**2, x * turning**3], "branch": [x], "rider": [x, x * turning]}[member.linear]
     return np.array(sizes + [x] * node.hidden_states)

@@ -34,7 +34,7 @@ def shot(
     problem : Problem
     node : Node
     start : Start
-        With paths, (n, 3) per piece.
+        With paths, (n, 3) per piece; on a network (n, states), coordinates of the bodies before their rates.
     continuity : sequence of float
     held : bool
         Whether the point stays, and states and zeros alone are found.
@@ -53,7 +53,7 @@ def shot(
         length = max(4, round(piece.rate / problem.frequency))
         edge = np.append(np.arange(0, max(len(piece.y) - length // 2, 1), length), len(piece.y))
         own = np.zeros((len(edge) - 1, len(sizes)))
-        own[:, :2] = path[edge[:-1], :2]
+        own[:, : node.motion_states] = path[edge[:-1], : node.motion_states]
         borders.append(edge)
         states.append(own)
         local.append(np.zeros(int(piece.driven) + piece.y.shape[1]))

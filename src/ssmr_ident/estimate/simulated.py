@@ -48,6 +48,29 @@ class Compiled:
         """(4,) bool: which hidden states of laws are in use, and whether terms that no list holds are."""
         return np.array([any(m.id == name and m.law is not None for m in self.node.members) for name in REMEMBER])
 
+    @property
+    def turned(self) -> tuple[Array, Array, Array] | None:
+        """Linear states with the stretch of the spring at which forces act, and its rate, at the front, (n, n) float;
+        back again; and the order of coordinates with its damping and stiffness behind the first one.
+
+        The loop knows forces at its first state alone. None where it is that already, or nothing acts beside.
+        """
+        count, springs = len(self.node.layout.bodies), len(self.node.layout.springs)
+        if not self.node.beside or count == springs == 1:
+            return None
+        stretch = self.node.layout.stretch[self.node.site]
+        pivot = int(np.flatnonzero(stretch)[0])
+        into = np.eye(self.node.linear_states)
+        others = [b for b in range(count) if b != pivot]
+        into[: 2 * count, : 2 * count] = 0.0
+        into[0, :count], into[1, count : 2 * count] = stretch, stretch
+        for row, (order, body) in enumerate(((o, b) for o in (0, 1) for b in others), start=2):
+            into[row, body + count * order] = 1.0
+        damping = count + 2 * self.node.site
+        first = [0, damping, damping + 1]
+        places = np.array(first + [k for k in range(self.node.linear_count) if k not in first])
+        return into, np.linalg.inv(into), places
+
     @classmethod
     def of(cls, problem: Problem, node: Node, point: Array, pieces: Sequence[Piece]) -> Compiled:
         places, scales = law_places(node)
@@ -57,12 +80,11 @@ class Compiled:
         )  # fmt: skip
 
     def stepping(self, piece: Piece) -> tuple:
-        key = (piece.step, tuple(piece.orders), piece.based)
+        key = (piece.step, piece.seen)
         if key not in self.steps:
-            n = 3 + self.node.count("linear")
-            self.steps[key] = stepped_with_slopes(
-                self.node, self.values[:n], self.slopes[:n], piece.orders, piece.based, piece.step
-            )
+            n = self.node.linear_count
+            found = stepped_with_slopes(self.node, self.values[:n], self.slopes[:n], piece.seen, piece.step)
+            self.steps[key] = found if self.turned is None else _turned(found, *self.turned)
         return self.steps[key]
 
     def courses(self, piece: Piece) -> Array:
@@ -76,19 +98,36 @@ class Compiled:
         return None
 
 
+def _turned(stepping: tuple, into: Array, back: Array, order: Array) -> tuple:
+    """Exact steps and channels over states that are put together otherwise, slopes in another order."""
+
+    def step(transition: Array, *added: Array) -> tuple[Array, ...]:
+        whole = np.ascontiguousarray(into @ transition @ back)
+        return whole, *(np.ascontiguousarray(column @ into.T) for column in added)
+
+    def rows(over: Array, *others: Array) -> tuple[Array, ...]:
+        return np.ascontiguousarray(over @ back), *others
+
+    lin, d_lin, seen, d_seen = stepping
+    return step(*lin), step(*(d[order] for d in d_lin)), rows(*seen), rows(*(d[order] for d in d_seen))
+
+
 def simulate(model: Compiled, index: int, starts: Array, borders: Array, zero: float) -> Simulated:
     """A piece in stretches, with slopes over (states, coordinates, zero of the drive)."""
     node, piece, problem = model.node, model.pieces[index], model.problem
     lin, d_lin, rows, d_rows = model.stepping(piece)
-    n_lin = 3 + node.count("linear")
+    n_lin = node.linear_count
     n_tab, n_law = node.count("tables"), node.count("law")
     tables = model.tables
     generic = model.values[n_lin : n_lin + n_tab]
+    turned, moved = model.turned, node.linear_states
+    order = np.arange(n_lin) if turned is None else turned[2]
     g = (
         tables.reach, (tables.low, tables.top, 0.0 if piece.based else 1.0), tables.by_position, tables.by_velocity,
         tables.by_both, model.courses(piece), tables.kinds, np.ascontiguousarray(generic),
-        np.stack([model.values[:n_lin], model.slopes[:n_lin]]), tables.yields, n_law > 0 or _has_law(node), model.law,
-        model.places, model.scales, problem.size, problem.speed, model.remembers,
+        np.stack([model.values[:n_lin][order], model.slopes[:n_lin][order]]), tables.yields,
+        n_law > 0 or _has_law(node), model.law, model.places, model.scales, problem.size, problem.speed,
+        model.remembers,
     )  # fmt: skip
     drive, drives = piece.drive, np.ones((1, len(piece.drive)))
     delay = model.delay()
@@ -105,8 +144,16 @@ def simulate(model: Compiled, index: int, starts: Array, borders: Array, zero: f
     y, dy = np.empty(piece.y.shape), np.empty((*piece.y.shape, columns))
     ends, dends = np.empty(starts.shape), np.empty((*starts.shape, columns))
     begin = float(piece.time[0])
-    run(lin, d_lin, rows, d_rows, g, node.beside, starts, borders, drive, drives, piece.every, piece.step, begin,
+    begun = starts if turned is None else np.hstack([starts[:, :moved] @ turned[0].T, starts[:, moved:]])
+    run(lin, d_lin, rows, d_rows, g, node.beside, begun, borders, drive, drives, piece.every, piece.step, begin,
         y, dy, ends, dends)  # fmt: skip
+    if turned is not None:
+        into, back, _ = turned
+        ends[:, :moved] = ends[:, :moved] @ back.T
+        dends[:, :moved] = np.einsum("ij,sjc->sic", back, dends[:, :moved])
+        for slopes in (dy, dends):
+            slopes[..., :moved] = slopes[..., :moved] @ into
+            slopes[..., states + order] = slopes[..., states : states + n_lin].copy()
     return _arranged(model, index, Simulated(y, dy, ends, dends), states, n_lin, n_tab + n_law, delay)
 
 

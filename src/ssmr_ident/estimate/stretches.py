@@ -88,7 +88,8 @@ def predictable(problem: Problem, fit: Fit) -> float:
     for index, (piece, nuisance) in enumerate(zip(problem.pieces, fit.nuisances, strict=True)):
         zero = float(nuisance[n]) if piece.driven else 0.0
         s = simulate(model, index, nuisance[None, :n].copy(), np.array([0, len(piece.y)]), zero)
-        slopes = s.dends[0][:2, :2] * sizes[None, :2] / sizes[:2, None]
+        k = fit.node.motion_states
+        slopes = s.dends[0][:k, :k] * sizes[None, :k] / sizes[:k, None]
         if not np.isfinite(slopes).all():
             return math.inf
         grown += math.log(max(float(np.linalg.norm(slopes, 2)), 1e-300))

@@ -11,6 +11,7 @@ import numpy as np
 
 from ssmr_ident.estimate.node import Coordinate, Node
 from ssmr_ident.estimate.pieces import Piece
+from ssmr_ident.physics.network import ONE, Layout
 from ssmr_ident.signals.noise import AutoregressiveNoise
 
 Array = np.ndarray
@@ -30,7 +31,7 @@ class Problem:
     ----------
     pieces : tuple of Piece
     baseline : tuple of Coordinate
-        Mass, damping, stiffness.
+        Mass, damping, stiffness; of a network in the order of its layout's keys.
     noises : tuple of tuple of AutoregressiveNoise
         Per piece and channel.
     frequency : float [Hz]
@@ -43,6 +44,8 @@ class Problem:
         Highest frequency at which the rig is expected to move; ``frequency`` where it is less.
     horizon : float
         Periods after which a start no longer tells where the motion is; ``inf`` unless it is chaotic.
+    layout : Layout
+        Bodies and springs.
     """
 
     pieces: tuple[Piece, ...]
@@ -53,6 +56,7 @@ class Problem:
     bandwidth_hz: float = math.inf
     fastest: float = 0.0
     horizon: float = math.inf
+    layout: Layout = ONE
 
     @property
     def speed(self) -> float:

@@ -1,6 +1,7 @@
 """Base motion: a shaker table moves the foot of a rig; its motion is logged, and the mass' absolute acceleration."""
 
-from ssmr_ident.experiments.experiment import BASES, MOTIONS, Drive, Experiment, Likelihood
+from ssmr_ident.experiments.experiment import BASES, RIGS, Drive, Experiment, Likelihood
+from ssmr_ident.session.entry import MOTIONS
 
 BASE_MOTION = Experiment(
     name="base_motion",
@@ -9,7 +10,7 @@ BASE_MOTION = Experiment(
     drive=Drive.BASE,
     channels=(BASES, MOTIONS),
     likelihood=Likelihood.WAVEFORM,
-    baselines=("sdof",),
+    baselines=RIGS,
     nuisances=("the state at the start", "zeros of the sensors", "gain of a second accelerometer"),
     file_words=("table", "base", "shaketable", "floor"),
 )

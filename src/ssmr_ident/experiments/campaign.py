@@ -8,15 +8,16 @@ from pathlib import Path
 
 import numpy as np
 
-from ssmr_ident.core.errors import InputError
+from ssmr_ident.core.errors import InputError, did_you_mean
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.core.recording import Recording
 from ssmr_ident.core.shown import Shown
 from ssmr_ident.experiments import BASE_MOTION, EXPERIMENTS
-from ssmr_ident.experiments.experiment import BASES, Experiment
+from ssmr_ident.experiments.experiment import BASES, RIGS, Experiment
 from ssmr_ident.experiments.quantities import UNITS, to_quantities
 from ssmr_ident.experiments.releases import parts_of, release_sentence
 from ssmr_ident.experiments.together import Log, merged, one_of_each, undelayed
+from ssmr_ident.physics.network import NETWORK, bodies_of
 from ssmr_ident.physics.robot import accelerometer_from_parameters
 from ssmr_ident.physics.sensor import Accelerometer
 from ssmr_ident.readers import ReadOptions, read_one
@@ -99,6 +100,7 @@ def load(path: str | Path, progress: Callable[[int, int], None] | None = None) -
 def load_logs(session: Session, progress: Callable[[int, int], None] | None = None) -> Campaign:
     """As ``load``, of a session whose file is read already."""
     parameters = read_parameters(session.robot)
+    places_known(session, parameters)
     accelerometer = accelerometer_from_parameters(parameters)
     measurements: list[Measurement] = []
     for index, entry in enumerate(session.entries):
@@ -106,6 +108,34 @@ def load_logs(session: Session, progress: Callable[[int, int], None] | None = No
         if progress:
             progress(index + 1, len(session.entries))
     return Campaign(session, parameters, tuple(measurements))
+
+
+def places_known(session: Session, parameters: ParameterSet) -> None:
+    """Refuse a network of which no file describes the bodies, and channels that belong to none of them.
+
+    Raises
+    ------
+    InputError
+        With the entry and the channel.
+    """
+    where = f"{session.folder / 'session.yaml'}"
+    bodies = bodies_of(parameters)
+    if (session.baseline == NETWORK) != bool(bodies):
+        problem = f"is {session.baseline}, and {Path(parameters.file).name} has {'' if bodies else 'no '}bodies:"
+        raise InputError(
+            f"{where}: baseline", problem, f"Write baseline: {NETWORK} for bodies on springs, and for no other"
+        )
+    for index, entry in enumerate(session.entries):
+        here = f"{where}: recordings[{index}].channels"
+        for quantity, body in entry.bodies.items():
+            if body not in bodies:
+                raise InputError(
+                    f"{here}.{quantity}.body", f"is {body!r}, which is no body", did_you_mean(body, bodies)
+                )
+        for quantity in entry.channels if len(bodies) > 1 else ():
+            if quantity not in (*entry.bodies, *BASES, "time"):
+                mend = f"Write {quantity}: {{column: {entry.channels[quantity]}, body: {' or '.join(bodies)}}}"
+                raise InputError(f"{here}.{quantity}", "names no body", mend)
 
 
 def _measure(session: Session, entry: Entry, accelerometer: Accelerometer) -> Measurement:
@@ -198,7 +228,7 @@ def _of_several(session: Session, entry: Entry, accelerometer: Accelerometer) ->
 
 def _decays(measurement: Measurement, baseline: str) -> list[Measurement]:
     """A rig's free response from each release on; a robot's finds its own in the fit."""
-    if baseline != "sdof" or not measurement.experiment.free:
+    if baseline not in RIGS or not measurement.experiment.free:
         return [measurement]
     given = measurement.entry.release_s
     parts = parts_of(measurement.recording, given)

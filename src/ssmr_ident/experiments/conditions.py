@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated
 
-from ssmr_ident.core.domain import Choice, Number
+from ssmr_ident.core.domain import Choice, Number, Text
 from ssmr_ident.core.nested_domain import declared
 from ssmr_ident.session.entry import Entry
 
@@ -27,6 +27,8 @@ class Conditions:
         Angle of a rotary rig at the release.
     start : {"tilted", "vertical"}
         Of a free response: tilted about the CoM, which strains all springs, or the thesis' push of vertical ones only.
+    at : str
+        Body of a network that is driven, or pushed and let go; empty takes the first, or the last.
     push_N : float
         Steady force from which it is let go in place of ``amplitude_mm``, where not 0.
     direction : {"lateral", "longitudinal"}
@@ -55,6 +57,7 @@ class Conditions:
     amplitude_mm: Annotated[float, Number("mm", least=-1e4, most=1e4)] = 0.3
     amplitude_deg: Annotated[float, Number("deg", least=-360.0, most=360.0)] = 5.0
     start: Annotated[str, Choice(("tilted", "vertical"))] = "tilted"
+    at: Annotated[str, Text(longest=60)] = ""
     push_N: Annotated[float, Number("N", least=-1e9, most=1e9)] = 0.0
     direction: Annotated[str, _ENTRY["direction"][0]] = "lateral"
     angle_deg: Annotated[float | None, Number("deg", least=0.0, most=90.0)] = None

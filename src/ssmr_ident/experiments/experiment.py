@@ -13,10 +13,11 @@ from ssmr_ident.physics.effect import Effect
 from ssmr_ident.physics.robot import Robot
 
 ROBOT = ("rigid6", "decoupled")
-"""Baselines of a session that stand for a robot; the others are a rig (``sdof``) and a dragged block (``drag``)."""
+"""Baselines of a session that stand for a robot; the others are a rig (``sdof``), a network of bodies, and a dragged
+block (``drag``)."""
 
-MOTIONS = ("acceleration", "velocity", "position", "angle", "angular_rate")
-"""Channels of a rig's motion."""
+RIGS = ("sdof", "network")
+"""Baselines of bodies on springs, driven by a measured force, by their foot, or let go."""
 
 BASES = ("base_acceleration", "base_position")
 """Channels of the foot that a rig stands on."""

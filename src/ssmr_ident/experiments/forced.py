@@ -1,6 +1,7 @@
 """Forced: a shaker, a motor or a hand drives a rig; its force or torque is logged beside the motion."""
 
-from ssmr_ident.experiments.experiment import MOTIONS, Drive, Experiment, Likelihood
+from ssmr_ident.experiments.experiment import RIGS, Drive, Experiment, Likelihood
+from ssmr_ident.session.entry import MOTIONS
 
 FORCED = Experiment(
     name="forced",
@@ -9,7 +10,7 @@ FORCED = Experiment(
     drive=Drive.FORCE,
     channels=(("force", "torque"), MOTIONS),
     likelihood=Likelihood.WAVEFORM,
-    baselines=("sdof",),
+    baselines=RIGS,
     nuisances=("the state at the start", "zeros of force and sensors", "gain of a second accelerometer"),
     file_words=("forced", "shaker", "sweep", "chirp", "noise", "sine", "prbs"),
 )

@@ -8,10 +8,11 @@ import numpy as np
 
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.experiments.conditions import Conditions
-from ssmr_ident.experiments.experiment import ACCELERATIONS, MOTIONS, ROBOT, Drive, Experiment, Likelihood
+from ssmr_ident.experiments.experiment import ACCELERATIONS, RIGS, ROBOT, Drive, Experiment, Likelihood
 from ssmr_ident.experiments.scenario import Scenario
 from ssmr_ident.physics.linear import COORDINATES, linear_robot
 from ssmr_ident.physics.robot import Robot
+from ssmr_ident.session.entry import MOTIONS
 
 _PUSHING_HEIGHT = 0.5  # m above the CoM: the top of the frame
 _TURNING_ARM = 0.5  # m
@@ -100,7 +101,7 @@ FREE_RESPONSE = Experiment(
     drive=Drive.NOTHING,
     channels=((*ACCELERATIONS, *MOTIONS),),
     likelihood=Likelihood.WAVEFORM,
-    baselines=(*ROBOT, "sdof"),
+    baselines=(*ROBOT, *RIGS),
     nuisances=("the state at the release", "zeros of the sensors", "mains lines"),
     file_words=("free", "release", "decay", "ring", "ringdown", "hammer", "tap"),
     duration=4.096,

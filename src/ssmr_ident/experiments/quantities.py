@@ -11,14 +11,16 @@ from ssmr_ident.core.recording import Channel, Note, Recording
 from ssmr_ident.physics.sensor import Accelerometer
 from ssmr_ident.readers.health import ends_of_supply
 from ssmr_ident.session import Entry
+from ssmr_ident.session.entry import FURTHER
 
 UNITS = {
     **{"force": "N", "torque": "N m", "position": "m", "position_reference": "m", "velocity": "m/s"},
-    **dict.fromkeys(("acceleration", "acceleration_2", "base_acceleration", "ax", "ay", "az"), "m/s^2"),
+    **dict.fromkeys(("acceleration", "base_acceleration", "ax", "ay", "az"), "m/s^2"),
     **{"base_position": "m"},
     **{"angle": "rad", "angular_rate": "rad/s", "wx": "rad/s", "wy": "rad/s", "wz": "rad/s"},
     **{"v_left": "m/s", "v_right": "m/s"},
 }
+UNITS |= {name: UNITS[name.rpartition("_")[0]] for name in FURTHER}
 
 
 def to_quantities(recording: Recording, entry: Entry, accelerometer: Accelerometer) -> Recording:

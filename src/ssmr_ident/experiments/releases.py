@@ -9,7 +9,7 @@ import numpy as np
 
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.recording import Recording
-from ssmr_ident.experiments.experiment import MOTIONS
+from ssmr_ident.session.entry import MOTIONS
 from ssmr_ident.signals.grid import even_samples
 from ssmr_ident.signals.releases import Release, find_releases
 

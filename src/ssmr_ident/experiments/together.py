@@ -12,7 +12,8 @@ import numpy as np
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.recent import Recent
 from ssmr_ident.core.recording import Channel, Note, Provenance, Recording
-from ssmr_ident.experiments.experiment import ACCELERATIONS, BASES, MOTIONS
+from ssmr_ident.experiments.experiment import ACCELERATIONS, BASES
+from ssmr_ident.session.entry import MOTIONS
 from ssmr_ident.signals.alignment import Alignment, Clocked, align
 from ssmr_ident.signals.grid import band_limited, even_samples
 

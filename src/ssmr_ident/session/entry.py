@@ -10,15 +10,18 @@ from ssmr_ident.core.domain import Choice, FileName, Number, Pointer, Text, Whol
 from ssmr_ident.core.nested_domain import Either, Keyed, Listed, Mapped, declared
 from ssmr_ident.readers.options import DECIMAL, LOAD_SCALE, ON_BAD, RATE, SAMPLE, SKIP, STAMPS
 
-BASELINES = ("rigid6", "decoupled", "sdof", "drag")
+BASELINES = ("rigid6", "decoupled", "sdof", "network", "drag")
 EXPERIMENTS = (
     *("free_response", "swivel", "straight", "pull", "wheel_drag", "vertical_compression", "forced", "base_motion"),
 )
 ROLES = ("target", "calibration", "heldout")
 CABLES = ("steel", "rope")
+MOTIONS = ("acceleration", "velocity", "position", "angle", "angular_rate")
+FURTHER = tuple(f"{name}_{number}" for name in MOTIONS for number in range(2, 10))
+"""The same of further sensors."""
 QUANTITIES = (
-    *("force", "torque", "acceleration", "acceleration_2", "velocity", "position", "position_reference"),
-    *("base_acceleration", "base_position", "angle", "angular_rate", "ax", "ay", "az", "wx", "wy", "wz", "time"),
+    *("force", "torque", *MOTIONS, *FURTHER, "position_reference"),
+    *("base_acceleration", "base_position", "ax", "ay", "az", "wx", "wy", "wz", "time"),
 )
 
 CABLE = Keyed(
@@ -32,7 +35,17 @@ HEIGHT = Number("m", least=-1e3, most=1e3)
 TURN = Number("deg/s", least=-1e6, most=1e6)
 WHEELS = Listed(Choice((1, 2, 3, 4)), distinct=True)
 SECONDS = Number("s", least=-1e9, most=1e9)
-CHANNEL = Either(Text(), Keyed({"column": (Text(), "its header"), "delay_s": (SECONDS, "it comes late")}, ("column",)))
+CHANNEL = Either(
+    Text(),
+    Keyed(
+        {
+            "column": (Text(), "its header"),
+            "body": (Text(), "of a network: on which it is measured, or acts"),
+            "delay_s": (SECONDS, "it comes late"),
+        },
+        ("column",),
+    ),
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -118,6 +131,8 @@ class Entry(Reading):
     delay_s: Annotated[
         Mapping[str, float], Mapped(Choice(QUANTITIES), SECONDS), "quantity: by how much its channel comes late"
     ] = field(default_factory=dict)
+    bodies: Mapping[str, str] = field(default_factory=dict)
+    """Quantity: body of a network, as ``channels`` says."""
 
     @property
     def logs(self) -> tuple[str, ...]:
@@ -138,6 +153,7 @@ def entry_of(values: Mapping[str, Any]) -> Entry:
         made["release_s"] = (made["release_s"],)
     columns = {quantity: c for quantity, c in made.get("channels", {}).items() if isinstance(c, Mapping)}
     late = {quantity: c["delay_s"] for quantity, c in columns.items() if "delay_s" in c}
+    made["bodies"] = {quantity: c["body"] for quantity, c in columns.items() if "body" in c}
     made["channels"] = dict(made.get("channels", {})) | {quantity: c["column"] for quantity, c in columns.items()}
     made["delay_s"] = dict(made.get("delay_s", {})) | late
     return Entry(**made)

@@ -14,6 +14,7 @@ from ssmr_ident.core.domain import Schema
 from ssmr_ident.core.nested_domain import optional
 from ssmr_ident.session.effects_block import effect_keys, rotary
 from ssmr_ident.session.estimate_file import Quantity, definitions
+from ssmr_ident.session.network_block import network_schemas
 from ssmr_ident.session.parameters_file import HEAD
 from ssmr_ident.session.schema import CHOICES, KEYS
 from ssmr_ident.session.session_file import FILE
@@ -57,6 +58,7 @@ def parameters_schema() -> Schema:
     for path, (choice, meaning) in CHOICES.items():
         block, last = path.split(".")
         properties[block]["anyOf"][0]["properties"][last] = choice.schema() | {"description": meaning}
+    properties |= network_schemas()
     properties["effects"] = _effects()
     properties["provenance"] = {"type": ["object", "null"], "description": "where the numbers come from"}
     absent = {"anyOf": [{"const": 0}, {"type": "object", "properties": {"value": {"const": 0}}, "required": ["value"]}]}

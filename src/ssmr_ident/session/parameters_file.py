@@ -16,6 +16,7 @@ from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.core.place import Place, shown
 from ssmr_ident.session.effects_block import effect_keys, rotary
 from ssmr_ident.session.estimate_file import Quantity
+from ssmr_ident.session.network_block import BODIES, BODY_KEYS, SPRING_KEYS, SPRINGS, read_network
 from ssmr_ident.session.parameters_text import SCHEMA
 from ssmr_ident.session.schema import BLOCKS, CHOICES, KEYS
 from ssmr_ident.session.yaml_file import expect_schema, load_with_lines
@@ -25,6 +26,8 @@ HEAD: dict[str, tuple[Any, str]] = {
     "name": (Text(one_line=False), "of the robot or rig"),
 }
 """What stands beside the parameters; ``effects`` and ``provenance`` are read on their own."""
+
+_OF_A_RIG = (*BODY_KEYS, *(key for keys in SPRING_KEYS for key in keys))
 
 
 def bundled_robots() -> tuple[str, ...]:
@@ -53,15 +56,23 @@ def parameters_of(place: Place, content: Mapping[str, Any]) -> ParameterSet:
     head = Keyed(HEAD).check(place, {key: content[key] for key in HEAD if key in content})
     estimates: dict[str, Estimate] = {}
     choices: dict[str, str] = {}
+    between: dict[str, tuple[str, str]] = {}
+    if BODIES in content or SPRINGS in content:
+        estimates, between = read_network(place, content)
     for key, block in content.items():
-        if key not in (*HEAD, "effects", "provenance"):
+        if key not in (*HEAD, BODIES, SPRINGS, "effects", "provenance"):
             _collect(place.at(str(key)), str(key), block, estimates, choices)
-    turning = "inertia_kg_m2" in estimates
+    if between:
+        alone = next((key for key in estimates if key in _OF_A_RIG), None)
+        if alone:
+            raise place.at(alone).error(f"stands beside {BODIES}", f"Write it below {BODIES} or {SPRINGS}")
+    turning = any(key.endswith("inertia_kg_m2") for key in estimates)
     effects = _effects(place.at("effects"), _given(content, "effects"), turning)
     provenance = _given(content, "provenance")
     if not isinstance(provenance, Mapping):
         raise place.at("provenance").error(f"is {shown(provenance)}, expected a mapping")
-    return ParameterSet(head.get("name", Path(place.file).stem), estimates, effects, provenance, place.file, choices)
+    name = head.get("name", Path(place.file).stem)
+    return ParameterSet(name, estimates, effects, provenance, place.file, choices, between)
 
 
 def _beside(key: str) -> set[str]:
@@ -69,7 +80,7 @@ def _beside(key: str) -> set[str]:
     block = key.rpartition(".")[0]
     begin = f"{block}." if block else ""
     known = {path[len(begin) :].partition(".")[0] for path in (*KEYS, *CHOICES) if path.startswith(begin)}
-    return known if block else known | {*HEAD, "effects", "provenance"}
+    return known if block else known | {*HEAD, BODIES, SPRINGS, "effects", "provenance"}
 
 
 def _given(content: Mapping[str, Any], key: str) -> Any:

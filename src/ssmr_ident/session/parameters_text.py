@@ -11,6 +11,7 @@ import yaml
 from ssmr_ident.core.atomic import write_text
 from ssmr_ident.core.documents import plain
 from ssmr_ident.core.parameter import Estimate, ParameterSet
+from ssmr_ident.session.network_block import BETWEEN, BODIES, SPRINGS
 from ssmr_ident.session.schema import KEYS
 
 SCHEMA = "ssmr-ident/parameters/1"
@@ -28,16 +29,16 @@ def parameters_text(parameters: ParameterSet) -> str:
     """The YAML text of a parameter set."""
     lines = [f"schema: {SCHEMA}", f"name: {_scalar(parameters.name)}"]
     open_blocks: list[str] = []
-    for key, estimate in _grouped(parameters):
+    for key, entry in _grouped(parameters):
         parts = key.split(".")
         while open_blocks and parts[: len(open_blocks)] != open_blocks:
             open_blocks.pop()
         while len(open_blocks) < len(parts) - 1:
-            lines.append(f"{'  ' * len(open_blocks)}{parts[len(open_blocks)]}:")
+            lines.append(f"{'  ' * len(open_blocks)}{_key(parts[len(open_blocks)])}:")
             open_blocks.append(parts[len(open_blocks)])
         indent = "  " * (len(parts) - 1)
         meaning = f"  # {KEYS[key].meaning}" if key in KEYS else ""
-        lines.append(f"{indent}{parts[-1]}: {_flow(estimate) if isinstance(estimate, Estimate) else estimate}{meaning}")
+        lines.append(f"{indent}{parts[-1]}: {_entry(entry)}{meaning}")
     if parameters.effects:
         lines.append("effects:")
         for effect, entries in parameters.effects.items():
@@ -49,9 +50,25 @@ def parameters_text(parameters: ParameterSet) -> str:
     return text
 
 
-def _grouped(parameters: ParameterSet) -> list[tuple[str, Estimate | str]]:
+Entry = Estimate | str | tuple[str, str]
+
+
+def _entry(entry: Entry) -> str:
+    if isinstance(entry, Estimate):
+        return _flow(entry)
+    return entry if isinstance(entry, str) else f"[{', '.join(map(_key, entry))}]"
+
+
+def _key(name: str) -> str:
+    """A name, in quotes where YAML would read another thing (yes, null)."""
+    return name if yaml.safe_load(name) == name else f'"{name}"'
+
+
+def _grouped(parameters: ParameterSet) -> list[tuple[str, Entry]]:
     """Keys of one block side by side, blocks in the order of their first key."""
-    entries: dict[str, Estimate | str] = {**parameters.estimates, **parameters.choices}
+    joins: dict[str, Entry] = {f"{SPRINGS}.{name}.{BETWEEN}": ends for name, ends in parameters.between.items()}
+    bodies = {key: estimate for key, estimate in parameters.estimates.items() if key.startswith(f"{BODIES}.")}
+    entries: dict[str, Entry] = {**bodies, **joins, **parameters.estimates, **parameters.choices}
     order: dict[str, int] = {}
     for key in entries:
         parts = key.split(".")

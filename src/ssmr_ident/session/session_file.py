@@ -19,7 +19,10 @@ KEYS: dict[str, tuple[Domain, str]] = {
     "schema": (Choice((SCHEMA,)), "what kind of file this is"),
     "name": (Text(one_line=False), "of the session"),
     "robot": (FileName(), "parameter file, or the name of a bundled robot"),
-    "baseline": (Choice(BASELINES), "rigid6: the robot; decoupled: pure rotations; sdof: a rig; drag: a pulled block"),
+    "baseline": (
+        Choice(BASELINES),
+        "rigid6: the robot; decoupled: pure rotations; sdof: a rig; network: bodies on springs; drag: a pulled block",
+    ),
     "recordings": (
         Listed(Keyed(declared(Entry), ("experiment",), ("file", "files")), 1),
         "the logs, each with how it was made",

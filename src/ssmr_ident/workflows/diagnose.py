@@ -19,6 +19,7 @@ from ssmr_ident.doctor.blocks import BLOCK, diagnose_block
 from ssmr_ident.doctor.run import RIG
 from ssmr_ident.doctor.run import diagnose as diagnose_rig
 from ssmr_ident.experiments.campaign import Campaign, load
+from ssmr_ident.physics.network import NETWORK
 from ssmr_ident.session import write_parameters
 from ssmr_ident.session.effects_block import in_rotary_units
 from ssmr_ident.workflows.files_read import files_read
@@ -80,6 +81,9 @@ def _diagnosed(
 ) -> Diagnosis:
     if campaign.session.baseline == RIG:
         return diagnose_rig(campaign, known, seed, progress, budget)
+    if campaign.session.baseline == NETWORK:
+        where = f"{campaign.session.folder / 'session.yaml'}: baseline"
+        raise InputError(where, "network is not diagnosed", "ident fit and ident compare take it")
     if math.isfinite(budget):
         raise InputError("--budget", f"limits a rig's search; this session's baseline is {campaign.session.baseline}",
                          "Leave it out")  # fmt: skip

@@ -16,11 +16,12 @@ from ssmr_ident.core.errors import InputError, SimulationError
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.estimate.foot import foot_motion
 from ssmr_ident.experiments.campaign import Measurement
-from ssmr_ident.experiments.experiment import BASES, MOTIONS
+from ssmr_ident.experiments.experiment import BASES
 from ssmr_ident.experiments.quantities import UNITS
 from ssmr_ident.identify.trials.trial import Array, Course, Trial, Values
 from ssmr_ident.physics.rig import RIG_KEYS, Rig, rig_from_parameters
 from ssmr_ident.physics.slots import Effects
+from ssmr_ident.session.entry import MOTIONS
 from ssmr_ident.signals.grid import band_limited, even_samples
 from ssmr_ident.signals.metrics import LOW_PASS_HZ
 from ssmr_ident.signals.noise import AutoregressiveNoise, rounding, white_noise

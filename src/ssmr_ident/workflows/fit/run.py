@@ -11,7 +11,9 @@ from ssmr_ident import __version__
 from ssmr_ident.core.errors import InputError, did_you_mean
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.experiments.campaign import Campaign, Measurement, load
+from ssmr_ident.physics.network import NETWORK
 from ssmr_ident.workflows.fit.drag import fit_drag_session
+from ssmr_ident.workflows.fit.network import fit_network_session
 from ssmr_ident.workflows.fit.result import SessionFit
 from ssmr_ident.workflows.fit.rig import fit_rig_session
 from ssmr_ident.workflows.fit.robot import fit_robot_session
@@ -76,6 +78,10 @@ def fit_campaign(
         step("fitting the rig", 0, 1)
         fit = fit_rig_session(campaign, chosen, coulomb)
         step("fitting the rig", 1, 1)
+    elif campaign.session.baseline == NETWORK:
+        step("fitting the network", 0, 1)
+        fit = fit_network_session(campaign, chosen)
+        step("fitting the network", 1, 1)
     elif campaign.session.baseline == "drag":
         step("fitting the block", 0, 1)
         fit = fit_drag_session(campaign, chosen)

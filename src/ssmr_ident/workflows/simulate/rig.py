@@ -28,7 +28,7 @@ def driven(parameters: ParameterSet, request: Request) -> Recording:
     """Under a measured force, or torque."""
     rig = rig_from_parameters(parameters)
     name = "torque" if rig.rotary else "force"
-    time, rate, force = _drive(request, "force", (name,))[:3]
+    time, rate, force = drive_of(request, "force", (name,))[:3]
     motion = _motion(parameters, rig, force, rate)
     return logged(request, time, **{name: (force, UNITS[name])}, **_channels(rig, motion))
 
@@ -51,7 +51,7 @@ def shaken(parameters: ParameterSet, request: Request) -> Recording:
     rig = rig_from_parameters(parameters)
     if rig.rotary:
         raise InputError("--experiment", "base_motion shakes a foot along a line", "Drive a rotary rig: forced")
-    time, rate, base, name = _drive(request, "base", BASES[::-1])
+    time, rate, base, name = drive_of(request, "base", BASES[::-1])
     acceleration_alone = {"acceleration": 2}
     foot = foot_motion(base, name, acceleration_alone, rate, request.base)
     motion = foot + _motion(parameters, rig, -rig.mass * foot[:, 2], rate)
@@ -70,7 +70,7 @@ def pulled_block(parameters: ParameterSet, request: Request) -> Recording:
     return logged(request, time, position=(head, "m"), force=(force, "N"))
 
 
-def _drive(request: Request, option: str, names: tuple[str, ...]) -> tuple[np.ndarray, float, np.ndarray, str]:
+def drive_of(request: Request, option: str, names: tuple[str, ...]) -> tuple[np.ndarray, float, np.ndarray, str]:
     """Time, rate, samples and name of the first of the channels that the option's log has."""
     path = {"force": request.force, "base": request.base}[option]
     if not path:

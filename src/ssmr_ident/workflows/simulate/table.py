@@ -18,7 +18,8 @@ from ssmr_ident.experiments import (
     WHEEL_DRAG,
     Experiment,
 )
-from ssmr_ident.workflows.simulate import rig, robot
+from ssmr_ident.physics.network import NETWORK, bodies_of
+from ssmr_ident.workflows.simulate import network, rig, robot
 from ssmr_ident.workflows.simulate.request import Request
 
 Cell = Callable[[ParameterSet, Request], Recording]
@@ -26,14 +27,19 @@ Cell = Callable[[ParameterSet, Request], Recording]
 _WHOLE: dict[str, Cell] = {"rigid6": robot.whole, "decoupled": robot.whole}
 _WHEEL: dict[str, Cell] = {"rigid6": robot.one_wheel, "decoupled": robot.one_wheel}
 TABLE: dict[Experiment, dict[str, Cell]] = {
-    FREE_RESPONSE: {"rigid6": robot.whole, "decoupled": robot.turning_purely, "sdof": rig.let_go},
+    FREE_RESPONSE: {
+        "rigid6": robot.whole,
+        "decoupled": robot.turning_purely,
+        "sdof": rig.let_go,
+        NETWORK: network.let_go,
+    },
     SWIVEL: _WHOLE,
     STRAIGHT: _WHOLE,
     PULL: {**_WHOLE, "drag": rig.pulled_block},
     WHEEL_DRAG: {**_WHEEL, "drag": rig.pulled_block},
     VERTICAL_COMPRESSION: _WHEEL,
-    FORCED: {"sdof": rig.driven},
-    BASE_MOTION: {"sdof": rig.shaken},
+    FORCED: {"sdof": rig.driven, NETWORK: network.driven},
+    BASE_MOTION: {"sdof": rig.shaken, NETWORK: network.shaken},
 }
 """By experiment and baseline; what is not here makes no sense."""
 
@@ -41,6 +47,7 @@ WHAT = {
     "rigid6": "a robot",
     "decoupled": "a robot of pure rotations",
     "sdof": "a rig with one mass",
+    NETWORK: "a network of bodies",
     "drag": "a pulled block",
 }
 
@@ -70,13 +77,18 @@ def baseline_of(parameters: ParameterSet) -> str:
     Raises
     ------
     InputError
-        Neither a robot, nor a rig, nor a block.
+        Neither a robot, nor a rig, nor a network, nor a block.
     """
     if any(key.startswith(("contact_points_m", "tire.")) for key in parameters):
         return "rigid6"
+    if bodies_of(parameters):
+        return NETWORK
     if any(key in parameters for key in ("stiffness_N_m", "stiffness_N_m_rad", "damping_N_s_m", "damping_N_m_s_rad")):
         return "sdof"
     if any(key in parameters for key in ("mu_static", "mu_kinetic")):
         return "drag"
-    mend = "A robot has contact_points_m, a rig stiffness_N_m and damping_N_s_m, a block mu_static and mu_kinetic"
+    mend = (
+        "A robot has contact_points_m, a rig stiffness_N_m and damping_N_s_m, a network bodies and springs, a block "
+        "mu_static and mu_kinetic"
+    )
     raise InputError(parameters.file or parameters.name, "describes nothing that can be simulated", mend)
