@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 from scipy.integrate import solve_ivp
+from scipy.interpolate import make_interp_spline
 
 from ssmr_ident.core.parameter import Estimate, ParameterSet
 
@@ -48,13 +49,15 @@ class Chain:
         return net / np.array(self.masses)
 
     def motion(self, time: np.ndarray, push: np.ndarray, into: int, start: np.ndarray) -> np.ndarray:
-        """(n, 3, bodies): coordinates, rates, accelerations; the push [N] is in straight lines between the samples."""
+        """(n, 3, bodies): coordinates, rates, accelerations; the push [N] is smooth between the samples."""
         n = len(self.masses)
         along = np.zeros(n)
         along[into] = 1.0
 
+        between = make_interp_spline(time, push, k=5)
+
         def change(t: float, s: np.ndarray) -> np.ndarray:
-            return np.r_[s[n:], self.accelerations(s[:n], s[n:], along * np.interp(t, time, push))]
+            return np.r_[s[n:], self.accelerations(s[:n], s[n:], along * between(t))]
 
         found = solve_ivp(
             change, (0.0, time[-1]), start, t_eval=time, rtol=1e-7, atol=1e-10, max_step=2.0 * (time[1] - time[0])
@@ -105,7 +108,7 @@ def pushed(
     """Times and a band of noise [N] up to about twice the highest frequency of a chain."""
     time = np.arange(round(seconds * rate)) / rate
     fastest = np.sqrt(max(np.array(chain.stiffness) / np.array(chain.masses))) / (2.0 * np.pi)
-    push = np.convolve(random.standard_normal(len(time)), np.hanning(max(3, int(0.35 * rate / fastest))), "same")
+    push = np.convolve(random.standard_normal(len(time)), np.hanning(max(5, int(0.9 * rate / fastest))), "same")
     return time, push * size / push.std() * np.minimum(1.0, np.minimum(time, time[-1] - time) / 0.1)
 
 

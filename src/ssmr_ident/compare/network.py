@@ -5,11 +5,15 @@ from __future__ import annotations
 import numpy as np
 
 from ssmr_ident.compare.outcome import Prediction
-from ssmr_ident.core.parameter import ParameterSet
+from ssmr_ident.core.errors import InputError
+from ssmr_ident.core.parameter import ParameterSet, effect_and_element
 from ssmr_ident.estimate.network import followed, network_problem
-from ssmr_ident.estimate.node import Node
+from ssmr_ident.estimate.node import Member, Node
 from ssmr_ident.experiments.campaign import Measurement
+from ssmr_ident.physics.effect import Site
+from ssmr_ident.physics.effects import CATALOGUE
 from ssmr_ident.physics.network import network_from_parameters
+from ssmr_ident.physics.slots import effect_values
 from ssmr_ident.signals.metrics import LOW_PASS_HZ
 
 NO_GROUND = "no spring leads to the ground: the network as a whole moves freely"
@@ -20,10 +24,32 @@ def band_of(parameters: ParameterSet) -> float:
     return float(max(LOW_PASS_HZ, *(4.0 * network_from_parameters(parameters).modes()[0])))
 
 
+def laws_of(parameters: ParameterSet) -> tuple[Member, ...]:
+    """The effects of a network's file as members that nothing fits.
+
+    Raises
+    ------
+    InputError
+        One that acts at no spring, or several springs with effects.
+    """
+    where = f"{parameters.file or parameters.name}: effects"
+    found = []
+    for key, values in effect_values(parameters).items():
+        effect, element = effect_and_element(key)
+        if not element or not CATALOGUE[effect].rig or Site.ELEMENT not in CATALOGUE[effect].acts:
+            springs = ", ".join(parameters.between)
+            raise InputError(f"{where}.{effect}", "acts at no spring of a network", f"element: one of {springs}")
+        found.append(Member(effect, "", "", (), law=values, element=element))
+    places = sorted({member.element for member in found})
+    if len(places) > 1:
+        raise InputError(where, f"act at {' and '.join(places)}", "One spring may have effects; leave the others out")
+    return tuple(found)
+
+
 def predict(parameters: ParameterSet, measurement: Measurement) -> Prediction:
     """Simulate one recording of a network."""
     problem = network_problem([measurement], parameters)
-    node = Node(problem.baseline, layout=problem.layout)
+    node = Node(problem.baseline, laws_of(parameters), problem.layout)
     fit = followed(problem, node, np.array([c.mean for c in problem.baseline]))
     rest = np.vstack(fit.residuals)
     measured = np.vstack([piece.y + piece.foot for piece in problem.pieces])

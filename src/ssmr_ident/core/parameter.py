@@ -73,9 +73,9 @@ class Estimate(Shown):
 class ParameterSet(Shown, Mapping[str, Estimate]):
     """Estimates by dotted path (``tire.stiffness_y_N_m``), as robot.yaml and exported parameters hold them.
 
-    ``choices`` are the keys whose value is a word (``tire.contact``). ``effects`` maps an effect's id to its
-    parameters; ``provenance`` is free text and numbers about the origin. Of a network ``between`` has the two that each
-    spring joins, bodies or ``GROUND``, by its name.
+    ``choices`` are the keys whose value is a word (``tire.contact``). ``effects`` maps an effect's id, on a network by
+    ``at_element``, to its parameters; ``provenance`` is free text and numbers about the origin. Of a network
+    ``between`` has the two that each spring joins, bodies or ``GROUND``, by its name.
     """
 
     name: str
@@ -137,6 +137,21 @@ class ParameterSet(Shown, Mapping[str, Estimate]):
         for effect, parameters in self.effects.items():
             lines += [f"  {effect}: {key} = {estimate}" for key, estimate in parameters.items()]
         return "\n".join(lines)
+
+
+def at_element(effect: str, element: str) -> str:
+    """The key of an effect that acts at one spring of a network, among those of a parameter set.
+
+    >>> at_element("dry_friction", "blade"), at_element("dry_friction", "")
+    ('dry_friction@blade', 'dry_friction')
+    """
+    return f"{effect}@{element}" if element else effect
+
+
+def effect_and_element(key: str) -> tuple[str, str]:
+    """The effect and the spring of such a key; the latter is empty where there is but one."""
+    effect, _, element = key.partition("@")
+    return effect, element
 
 
 def _parts(value: Value) -> list[tuple[str, float]]:

@@ -17,6 +17,7 @@ from ssmr_ident.estimate.node import Node
 from ssmr_ident.estimate.regression import regressed
 from ssmr_ident.estimate.shooting import shot
 from ssmr_ident.estimate.values import Fit, Problem, Start
+from ssmr_ident.physics.network import ONE
 
 Array = np.ndarray
 Progress = Callable[[str, int, int], None]
@@ -112,7 +113,8 @@ def finished(search: Search, near: Fit, base: Fit, paths: Sequence[Array], point
     if over(full, problem) < NEAR_NOISE or explained:
         return full
     if point is None:
-        point = regressed(problem, paths, near.node) if near.node.generic else joined(near.node, base)
+        plain = near.node.generic and problem.layout == ONE
+        point = regressed(problem, paths, near.node) if plain else joined(near.node, base)
     far = from_paths(problem, near.node, point, paths)
     return far if far.cost < full.cost else full
 

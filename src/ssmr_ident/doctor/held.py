@@ -10,10 +10,10 @@ import numpy as np
 
 from ssmr_ident.estimate.exact import polish
 from ssmr_ident.estimate.generic import BY_RECORDING
+from ssmr_ident.estimate.network import paths_of
 from ssmr_ident.estimate.pieces import Piece, cut
 from ssmr_ident.estimate.regression import starts_of
 from ssmr_ident.estimate.shooting import shot
-from ssmr_ident.estimate.smoother import smoothed
 from ssmr_ident.estimate.stretches import moving
 from ssmr_ident.estimate.values import Fit, Problem, Start
 
@@ -59,7 +59,7 @@ def held_fit(kept: Problem, fit: Fit) -> Fit | None:
     """
     if any(BY_RECORDING in m.form for m in fit.node.members):
         return None
-    start = Start(fit.point, paths=tuple(smoothed(p, kept.frequency, kept.size) for p in kept.pieces))
+    start = Start(fit.point, paths=tuple(paths_of(kept, fit.node, fit.point)))
     if math.isfinite(kept.horizon):
         start = shot(kept, fit.node, start, held=True)
     else:

@@ -170,14 +170,14 @@ def proposals(problem: Problem, found: Fit, paths: Sequence[Array], beside: Sequ
     stiff = float(found.node.values(found.point)[2])
     for law in (m for m in beside if m.law is not None):
         own = CATALOGUE[law.id].begun({**(law.law or {}), **found.node.of(law, found.point)})
-        column = _along(problem, paths, first, law.id, own, stiff)
+        column = law_along(problem, paths, first, law.id, own, stiff)
         plain = np.column_stack([plain, column / max(float(np.sqrt(np.mean(column**2))), 1e-300)])
     result = []
     taken = {m.id for m in beside}
     sizes = reach, fastest, 0.3 * size
     turns = any(unit.startswith("rad") for unit in problem.pieces[0].units)
     for form in (f for f in FORMS if f.effect not in taken and (turns or f.name != SINE)):
-        along = partial(_on_path, form, partial(_along, problem, paths, first), plain, force, stiff, sizes)
+        along = partial(on_path, form, partial(law_along, problem, paths, first), plain, force, stiff, sizes)
         rest, shape, k, d, values = best_shape(along, form.shapes(*sizes))
         member = member_of(form, values, form.unit(shape, stiff, *sizes), reach)
         node = Node(found.node.baseline, (*beside, member))
@@ -211,13 +211,13 @@ def best_shape(along: Callable[[Shape], _OnPath], shapes: Sequence[Shape]) -> _O
     return best
 
 
-def _on_path(
-    form: Form, law_along: Callable[[str, Shape, float], Array], plain: Array, force: Array, stiffness: float,
+def on_path(
+    form: Form, along: Callable[[str, Shape, float], Array], plain: Array, force: Array, stiffness: float,
     sizes: tuple[float, float, float], shape: Shape,
 ) -> _OnPath:  # fmt: skip
     """The force regressed on the rig and a form: what is left, the shape, stiffness, damping, the form's values."""
     unit = CATALOGUE[form.effect].begun(form.unit(shape, stiffness, *sizes))
-    column = law_along(form.effect, unit, stiffness)
+    column = along(form.effect, unit, stiffness)
     norm = float(np.sqrt(np.mean(column**2)))
     if not np.isfinite(norm) or norm <= 0.0:  # it acts nowhere along this path
         norm, column = 1.0, np.zeros(len(column))
@@ -257,7 +257,7 @@ def _begun(node: Node, found: Fit, given: Sequence[float], member: Member, value
     return point
 
 
-def _along(
+def law_along(
     problem: Problem, paths: Sequence[Array], first: Sequence[int], effect: str, values: Shape, stiffness: float
 ) -> Array:
     """A law's force along the paths, (n,) float [N]."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 from ssmr_ident.doctor.fitted import (
     BEGUN,
@@ -18,12 +19,15 @@ from ssmr_ident.doctor.fitted import (
     over,
 )
 from ssmr_ident.doctor.laws import Proposal, proposals, simpler
+from ssmr_ident.doctor.networks import laws_in_network
 from ssmr_ident.doctor.rules import HALVED, SECOND
 from ssmr_ident.estimate.exact import polish
+from ssmr_ident.estimate.latent_force import network_paths
 from ssmr_ident.estimate.motion import motion
 from ssmr_ident.estimate.node import Member
 from ssmr_ident.estimate.shooting import shot
 from ssmr_ident.estimate.values import Fit, Problem, Start
+from ssmr_ident.physics.network import ONE
 
 TRIED_LAWS, FULL_LAWS = 7, 3
 """Named laws that get a short fit, most promising first, two formulas of one effect at the most; and a full one."""
@@ -47,10 +51,14 @@ def named_along(search: Search, say: Progress, beside: Sequence[Member] = (), be
 
 def named(search: Search, say: Progress, best: Fit, beside: Sequence[Member] = ()) -> None:
     """Named laws beside given members, begun along the motion of a fit that follows it well."""
-    paths = motion(search.problem, best)
     problem, short = search.problem, []
     base = next(f for f in search.fits if not f.node.members)
-    offers = proposals(problem, best, paths, beside)
+    if problem.layout == ONE:
+        paths = motion(problem, best)
+        offers = proposals(problem, best, paths, beside)
+    else:
+        paths = network_paths(problem, best.node, best.point)
+        offers = [replace(o, start=replace(o.start, paths=tuple(paths))) for o in laws_in_network(problem, search.fits)]
     if over(best, problem) > NEAR_NOISE:  # along a motion that is not the recorded one promises are worth little
         offers = sorted(offers, key=lambda offer: _scored(problem, offer, best))
     offers = _varied(offers)

@@ -10,14 +10,16 @@ from typing import Any
 import numpy as np
 
 from ssmr_ident.compare.comparison import measure
+from ssmr_ident.compare.network import band_of
 from ssmr_ident.compare.prediction import Prediction
-from ssmr_ident.core.parameter import Estimate, ParameterSet
+from ssmr_ident.core.parameter import Estimate, ParameterSet, at_element
 from ssmr_ident.diagnose.diagnosis import Conflict, Diagnosis, KindShare, Located, NamedEffect, PredictionQuality, Tried
 from ssmr_ident.diagnose.evidence import Evidence
 from ssmr_ident.diagnose.words import law, missing, nothing, told, undetermined
 from ssmr_ident.diagnose.worth import overlays, worth
 from ssmr_ident.doctor.decide import MISSING, NOTHING, UNDETERMINED, Decision
 from ssmr_ident.doctor.fitted import Search
+from ssmr_ident.doctor.further_body import mode_parameters, riders, shapes_told, with_further_bodies
 from ssmr_ident.doctor.held import held_fit
 from ssmr_ident.doctor.rules import OVER_NOISE, UNEVEN
 from ssmr_ident.doctor.table import Row
@@ -124,7 +126,7 @@ def _checked(decision: Decision, training: PredictionQuality, heldout: Predictio
 
 def predictions(problem: Problem, fit: Fit, known: ParameterSet) -> list[Prediction]:
     """Every piece beside what a fit says of it."""
-    band = max(LOW_PASS_HZ, 4.0 * natural_hz(known))
+    band = band_of(known) if known.between else max(LOW_PASS_HZ, 4.0 * natural_hz(known))
     return [
         Prediction(p.time, p.channels, p.units, p.y + p.foot, p.y + p.foot + rest, low_pass_hz=band)
         for p, rest in zip(problem.pieces, fit.residuals, strict=True)
@@ -149,18 +151,24 @@ def exported(fit: Fit, known: ParameterSet) -> ParameterSet:
             continue
         std = float(stds[k])
         changes[c.name] = replace(known[c.name], value=float(values[k]), std=std, source=SOURCE)
+    known = with_further_bodies(fit, known.updated(changes))
     place = {id(c): k for k, c in enumerate(node.coordinates)}
     blocks: dict[str, dict[str, Estimate]] = {}
+    bodies = riders(fit)
+    held = [m for m in node.members if m not in bodies]
     for effect, full in effects_of(node, fit.point).items():
+        if effect in {m.id for m in bodies}:
+            continue
         units = {p.name: p.unit for p in CATALOGUE[effect].parameters}
         blocks[effect] = {n: Estimate(float(v), None, units[n], "not fitted", fixed=True) for n, v in full.items()}
-    for member in node.members:
+    for member in held:
         for c in member.coordinates if member.id in blocks and not member.tables else ():
             k = place[id(c)]
             blocks[member.id][c.name] = Estimate(
                 float(values[k]), float(stds[k]), c.unit, SOURCE, at_bound=values[k] in (c.lower, c.upper)
             )
-    return replace(known.updated(changes), effects=blocks)
+    elements = {m.id: m.element for m in held if m.element}
+    return replace(known, effects={at_element(i, elements.get(i, "")): block for i, block in blocks.items()})
 
 
 def named_effects(decision: Decision, chosen: Row, after: ParameterSet) -> tuple[NamedEffect, ...]:
@@ -168,12 +176,17 @@ def named_effects(decision: Decision, chosen: Row, after: ParameterSet) -> tuple
     found = []
     for member in chosen.fit.node.members:
         effect = member.id if decision.listed else "unlisted"
-        values = {} if member.tables else _shown(member, after)
+        further = member in riders(chosen.fit)
+        values = mode_parameters(chosen.fit, member) if further else {} if member.tables else _shown(member, after)
         if effect == "unlisted":
             values = {name: e for name, e in values.items() if not e.fixed}
         text = law(effect, values) if values else "F = f(s, v), drawn"
         kind = member.kind.replace("_", " ")
         sentence = told(effect, values) if values else f"Something of the kind {kind} acts that no listed law makes."
+        if further:
+            sentence = (
+                f"A body that the file has not moves on {member.element}: {_listed(values)}. {shapes_told(after)}"
+            )
         found.append(
             NamedEffect(
                 effect, sentence, text, values, min(decision.confidence, 1.0), decision.ties, member.form,
@@ -186,13 +199,17 @@ def named_effects(decision: Decision, chosen: Row, after: ParameterSet) -> tuple
 def _shown(member: Member, after: ParameterSet) -> dict[str, Estimate]:
     """What its formula has: what was fitted, and what the formula holds."""
     own = {c.name for c in member.coordinates} | set(member.law or {})
-    return {name: e for name, e in after.effects[member.id].items() if name in own}
+    return {name: e for name, e in after.effects[at_element(member.id, member.element)].items() if name in own}
+
+
+def _listed(values: Mapping[str, Estimate]) -> str:
+    return ", ".join(f"{name} = {estimate}" for name, estimate in values.items())
 
 
 def element_of(member: Member) -> str:
     if member.kind == "sensor_chain":
         return f"sensor.{member.channel}" if member.channel else "sensor.acceleration" if member.linear else "sensor"
-    return "body" if member.kind == "extra_motion" else "spring"
+    return member.element or ("body" if member.kind == "extra_motion" else "spring")
 
 
 def curve(fit: Fit, member: Member) -> Mapping[str, Any] | None:
@@ -209,7 +226,7 @@ def curve(fit: Fit, member: Member) -> Mapping[str, Any] | None:
     scales = fit.node.slopes(fit.point)[own]
     force = shapes @ fit.node.values(fit.point)[own]
     spread = np.sqrt(np.einsum("gi,ij,gj->g", shapes * scales, fit.covariance[own, own], shapes * scales))
-    stiffness = fit.node.values(fit.point)[2]
+    stiffness = fit.node.values(fit.point)[len(fit.node.layout.bodies) + 1 + 2 * fit.node.site]
     return {
         "variable": "displacement [m]",
         "points": (grid * tables.reach).tolist(),

@@ -3,34 +3,36 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
 from threadpoolctl import threadpool_limits
 
+from ssmr_ident.compare.network import NO_GROUND
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.arranged import arranged
 from ssmr_ident.diagnose.diagnosis import Diagnosis
 from ssmr_ident.diagnose.setup import keep_back
-from ssmr_ident.doctor.decide import decide
+from ssmr_ident.doctor.decide import MISSING, Decision, decide
 from ssmr_ident.doctor.held import held_fit, interleaved
 from ssmr_ident.doctor.left import left
+from ssmr_ident.doctor.networks import also_at
 from ssmr_ident.doctor.result import Examined, answer, errors, predictions
 from ssmr_ident.doctor.search import searched
 from ssmr_ident.doctor.table import Row
+from ssmr_ident.estimate.network import network_problem
 from ssmr_ident.estimate.problem import problem_of
 from ssmr_ident.estimate.stretches import in_stretches
 from ssmr_ident.estimate.values import Problem
 from ssmr_ident.experiments import EXPERIMENTS
 from ssmr_ident.experiments.campaign import Campaign, Measurement
+from ssmr_ident.physics.network import NETWORK
 
 Array = np.ndarray
 Progress = Callable[[str, int, int], None]
 
-RIG = "sdof"
-"""The baseline whose recordings this doctor takes."""
 
 SHOWN = 8
 """Rows of the table that are held against what was kept back."""
@@ -43,12 +45,12 @@ def diagnose(
     progress: Progress | None = None,
     budget: float = math.inf,
 ) -> Diagnosis:
-    """Locate, name and prove what a rig's baseline leaves out.
+    """Locate, name and prove what the baseline of a rig or a network leaves out.
 
     Parameters
     ----------
     campaign : Campaign
-        With ``baseline: sdof``.
+        With ``baseline: sdof`` or ``network``.
     parameters : ParameterSet, optional
         What is known beforehand, in place of the session's own file.
     seed : int
@@ -72,10 +74,12 @@ def examined(campaign: Campaign, known: ParameterSet, progress: Progress | None,
     _checked(campaign)
     campaign = arranged(campaign)  # sums round differently in another order
     targets, heldout, by_us = roles(campaign)
-    fitted = problem_of(targets, known)
+    alone = campaign.session.baseline != NETWORK
+    prepared = problem_of if alone else network_problem
+    fitted = prepared(targets, known)
     notes: list[str] = []
     if heldout:
-        kept: Problem | None = problem_of(heldout, known)
+        kept: Problem | None = prepared(heldout, known)
         if by_us:
             names = ", ".join(m.name for m in heldout)
             notes.append(f"the session holds nothing back, so {names} did not enter the fits that decided")
@@ -86,7 +90,7 @@ def examined(campaign: Campaign, known: ParameterSet, progress: Progress | None,
         else:
             spans = ", ".join(f"{p.time[0]:.4g} to {p.time[-1]:.4g} s" for p in kept.pieces)
             notes.append(f"{targets[0].name} is the only recording: {spans} were kept back, with starts of their own")
-    if any("acceleration_2" in m.recording for m in campaign.measurements):
+    if alone and any("acceleration_2" in m.recording for m in campaign.measurements):
         notes.append("acceleration_2 was not compared: a rig of one mass moves as one")
     search = searched(fitted, budget, progress)
     horizon = search.problem.horizon
@@ -103,15 +107,28 @@ def examined(campaign: Campaign, known: ParameterSet, progress: Progress | None,
     if kept is not None:
         wanted = {id(r): r for r in (*rows[:SHOWN], base, *([decision.chosen] if decision.chosen else []))}
         rows = tuple(_with_heldout(r, kept, known) if id(r) in wanted else r for r in rows)
+    if not alone:
+        notes += _of_network(fitted, rows, decision)
     if search.untried:
         notes.append(f"not tried within the budget: {', '.join(search.untried)}")
     return Examined(campaign, known, search, rows, decision, search.problem, kept, by_us, tuple(notes))
 
 
+def _of_network(problem: Problem, rows: Sequence[Row], decision: Decision) -> list[str]:
+    notes = ["one effect was looked for, at every spring, body and sensor; a second beside it was not"]
+    if not problem.layout.grounded:
+        notes.append(NO_GROUND)
+    others = also_at(rows, decision.chosen) if decision.chosen is not None else ()
+    if others and decision.verdict == MISSING:
+        notes.append(f"the same at {' or '.join(others)} fits these recordings as well")
+    return notes
+
+
 def _checked(campaign: Campaign) -> None:
+    baseline = campaign.session.baseline
     for m in campaign.measurements:
-        if not m.experiment.fitted_under(RIG):
-            possible = [name for name, kind in EXPERIMENTS.items() if kind.fitted_under(RIG)]
+        if not m.experiment.fitted_under(baseline):
+            possible = [name for name, kind in EXPERIMENTS.items() if kind.fitted_under(baseline)]
             raise InputError(
                 f"{campaign.session.folder / 'session.yaml'}: {m.name}",
                 f"a {m.entry.experiment} cannot be diagnosed with baseline {campaign.session.baseline}",

@@ -24,11 +24,14 @@ from ssmr_ident.doctor.fitted import (
 )
 from ssmr_ident.doctor.kinds import kinds
 from ssmr_ident.doctor.named import named_along
+from ssmr_ident.doctor.networks import members_of_network
 from ssmr_ident.doctor.rules import FORMULA
 from ssmr_ident.doctor.second import FULL_KINDS, exchanged, second
 from ssmr_ident.doctor.table import Row
 from ssmr_ident.estimate.coarser import coarser
 from ssmr_ident.estimate.exact import polish
+from ssmr_ident.estimate.latent_force import network_paths
+from ssmr_ident.estimate.network import baseline_fit, paths_of
 from ssmr_ident.estimate.node import Node
 from ssmr_ident.estimate.noise import left_white, own_noise
 from ssmr_ident.estimate.regression import regressed
@@ -36,6 +39,7 @@ from ssmr_ident.estimate.shooting import shot
 from ssmr_ident.estimate.smoother import smoothed
 from ssmr_ident.estimate.stretches import in_stretches, predictable, sampled
 from ssmr_ident.estimate.values import Fit, Problem, Start, with_noises
+from ssmr_ident.physics.network import ONE
 
 NEAR = 200.0
 """Log evidence below the best one, on every sample, up to which a model is fitted to every sample; so is what leaves
@@ -61,11 +65,16 @@ def searched(problem: Problem, budget: float = math.inf, progress: Progress | No
     problem, begins = sampled(coarser(whole))
     search = Search(problem, time.monotonic() + budget)
     say("fitting the baseline", 0, 1)
-    paths = [smoothed(p, problem.frequency, problem.size) for p in problem.pieces]
-    baseline = Node(problem.baseline)
-    base = search.add(from_paths(problem, baseline, regressed(problem, paths, baseline), paths))
+    alone = problem.layout == ONE
+    if alone:
+        paths = [smoothed(p, problem.frequency, problem.size) for p in problem.pieces]
+        baseline = Node(problem.baseline)
+        base = search.add(from_paths(problem, baseline, regressed(problem, paths, baseline), paths))
+    else:
+        base = search.add(baseline_fit(problem))
+        paths = network_paths(problem, base.node, base.point)
     say("fitting the baseline", 1, 1)
-    members = kinds(problem, paths)
+    members = kinds(problem, paths) if alone else members_of_network(problem, base, paths)
     short = []
     for index, member in enumerate(members):
         say("any shape of every kind", index, len(members))
@@ -82,8 +91,9 @@ def searched(problem: Problem, budget: float = math.inf, progress: Progress | No
     named_along(search, say)
     offered_back(search)
     search = _with_own_noise(search)
-    second(search, say)
-    exchanged(search, say)
+    if alone:
+        second(search, say)
+        exchanged(search, say)
     return search if problem is whole else _in_full(search, whole, begins, say)
 
 
@@ -124,7 +134,7 @@ def _in_full(search: Search, whole: Problem, begins: Sequence[int], say: Progres
     whole = in_stretches(whole, predictable(search.problem, best))
     chaotic = math.isfinite(whole.horizon)
     if chaotic:  # what a start does to the motion is no longer linear: the best one's states begin all others
-        paths = [smoothed(p, whole.frequency, whole.size) for p in whole.pieces]
+        paths = paths_of(whole, best.node, best.point)
         found = polish(whole, best.node, shot(whole, best.node, Start(best.point, paths=tuple(paths))), SHORT)
     else:
         found = polish(whole, best.node, _at_begins(best, begins), SHORT)

@@ -31,6 +31,7 @@ def _whitened(problem: Problem, index: int, columns: Array) -> Array:
     return np.stack(filtered, axis=1)
 
 
+@np.errstate(over="ignore", invalid="ignore")  # a cost that is not finite is refused
 def _exact(problem: Problem, node: Node, point: Array, nuisances: Sequence[Array]):
     """Normal equations by exact simulation: chi2, residuals, and per piece (J, r) over (nuisance, coordinates)."""
     model = Compiled.of(problem, node, point, problem.pieces)
@@ -58,9 +59,8 @@ def _exact(problem: Problem, node: Node, point: Array, nuisances: Sequence[Array
         np.multiply(s.dy[..., n:-1], gain, out=whole[..., k:-1])
         whole[..., -1] = rest
         whole[:passed] = 0.0
-        with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is refused below
-            white = _whitened(problem, index, whole).reshape(-1, whole.shape[2])
-            normal = white.T @ white
+        white = _whitened(problem, index, whole).reshape(-1, whole.shape[2])
+        normal = white.T @ white
         residuals.append(rest)
         if not np.isfinite(normal).all():
             return math.inf, [], []
@@ -95,8 +95,7 @@ def polish(problem: Problem, node: Node, start: Start, steps: int = 30, freeze: 
                 break
             new_point = bounded(node, point + solved[0])
             new = [v + d for v, d in zip(nuisances, solved[1], strict=True)]
-            with np.errstate(over="ignore", invalid="ignore"):
-                trial = _exact(problem, node, new_point, new)
+            trial = _exact(problem, node, new_point, new)
             lower = total(trial[0], new_point, new)
             if lower < cost:
                 lower_any = True

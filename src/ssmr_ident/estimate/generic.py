@@ -14,6 +14,7 @@ from ssmr_ident.estimate.motion_kernel import BY_INERTIA, BY_POSITION, BY_VELOCI
 from ssmr_ident.estimate.node import BRANCH, LAG, RIDER, Coordinate, Member, Tables
 from ssmr_ident.estimate.pieces import Piece
 from ssmr_ident.estimate.values import Problem
+from ssmr_ident.physics.network import ONE
 
 Array = np.ndarray
 
@@ -83,7 +84,7 @@ def memory(problem: Problem, paths: Sequence[Array]) -> Member:
 def changing(problem: Problem) -> Member:
     """Stiffness, damping and inertia as slow functions of the time since a recording began."""
     longest = max(p.time[-1] - p.begin for p in problem.pieces)
-    driven = any(p.driven and not p.based for p in problem.pieces)
+    driven = problem.layout == ONE and any(p.driven and not p.based for p in problem.pieces)
     kinds = [BY_POSITION] * 3 + [BY_VELOCITY] * 2 + [BY_INERTIA] * (2 if driven else 0)
 
     def courses(piece: Piece) -> Array:

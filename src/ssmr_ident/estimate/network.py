@@ -15,9 +15,11 @@ from ssmr_ident.estimate.node import Coordinate, Node
 from ssmr_ident.estimate.noise import left_white, own_noise
 from ssmr_ident.estimate.problem import VAGUE, known_bandwidth, made, seen_hz
 from ssmr_ident.estimate.shooting import shot
+from ssmr_ident.estimate.simulated import Compiled, simulate
+from ssmr_ident.estimate.smoother import smoothed
 from ssmr_ident.estimate.values import Fit, Problem, Start, with_noises
 from ssmr_ident.experiments.campaign import Measurement
-from ssmr_ident.physics.network import Layout, Network, layout_of, network_from_parameters
+from ssmr_ident.physics.network import ONE, Layout, Network, layout_of, network_from_parameters
 
 Array = np.ndarray
 
@@ -93,6 +95,29 @@ def baseline_fit(problem: Problem, point: Array | None = None) -> Fit:
     point = np.array([c.mean for c in problem.baseline]) if point is None else point
     begun = shot(problem, node, Start(point, paths=tuple(network_paths(problem, node, point))))
     return polish(problem, node, begun, STEPS)
+
+
+def paths_of(problem: Problem, node: Node, point: Array) -> list[Array]:
+    """Paths from which multiple shooting begins: of one mass without any model of it, of a network by what is known."""
+    if problem.layout == ONE:
+        return [smoothed(piece, problem.frequency, problem.size) for piece in problem.pieces]
+    return network_paths(problem, node, point)
+
+
+def motion_of(problem: Problem, found: Fit) -> list[Array]:
+    """Coordinates, rates and accelerations of all bodies that a fit has, (n, 3·bodies) per piece."""
+    bodies = len(problem.layout.bodies)
+    orders, places = np.repeat(np.arange(3), bodies), tuple(range(bodies)) * 3
+    pieces = [
+        replace(p, channels=("",) * len(orders), orders=orders, bodies=places, y=np.zeros((len(p.y), len(orders))))
+        for p in problem.pieces
+    ]
+    model, n = Compiled.of(problem, found.node, found.point, pieces), found.node.states
+    paths = []
+    for index, (piece, nuisance) in enumerate(zip(pieces, found.nuisances, strict=True)):
+        zero = float(nuisance[n]) if piece.driven else 0.0
+        paths.append(simulate(model, index, nuisance[None, :n].copy(), np.array([0, len(piece.y)]), zero).y)
+    return paths
 
 
 def under_own_noise(problem: Problem, fit: Fit) -> tuple[Problem, Fit]:

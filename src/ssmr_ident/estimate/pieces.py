@@ -172,10 +172,10 @@ def pieces_of(
         No motion, or one that does not change.
     """
     recording = measurement.recording
-    channels, drive_name = channels_of(recording, every_place=bool(bodies))
-    number = {name: k for k, name in enumerate(bodies)}
-    places = tuple(number[measurement.entry.bodies.get(name, bodies[0])] for name in channels) if bodies else ()
-    into = number[measurement.entry.bodies.get(drive_name, bodies[0])] if bodies else 0
+    if bodies:
+        channels, drive_name, places, into = placed_channels(measurement, bodies)
+    else:
+        (channels, drive_name), places, into = channels_of(recording), (), 0
     wanted = [*channels, *([drive_name] if drive_name else [])]
     even = even_samples(recording.time, np.column_stack([recording[name] for name in wanted]))
     y, rate = even.samples[:, : len(channels)], even.sample_rate
@@ -270,16 +270,42 @@ def order_of(channel: str) -> int:
     return ORDER[re.sub("_[0-9]$", "", channel)]
 
 
-def channels_of(recording: Recording, every_place: bool = False) -> tuple[tuple[str, ...], str]:
-    """Motions that change, and the name of what drives (empty for none); ``every_place`` takes further sensors too.
+def placed_channels(
+    measurement: Measurement, bodies: Sequence[str]
+) -> tuple[tuple[str, ...], str, tuple[int, ...], int]:
+    """Motions that change, what drives (empty for nothing), and the numbers of the bodies of both.
+
+    Of several bodies those channels count that name theirs; of a single one all do.
+
+    Raises
+    ------
+    InputError
+        No such motion, or a force that acts nobody knows where.
+    """
+    recording, said = measurement.recording, measurement.entry.bodies
+    number = {name: k for k, name in enumerate(bodies)}
+    known = {name: said.get(name, bodies[0]) for name in recording.names if name in said or len(bodies) == 1}
+    motions = tuple(n for n in (*ORDER, *FURTHER) if n in known and np.ptp(recording[n]) > 0)
+    where = recording.provenance.file or measurement.name
+    drive = next((name for name in (*FORCES, *FEET) if name in recording), "")
+    example = "{column: HEADER, body: " + bodies[0] + "}"
+    if not motions:
+        found = ", ".join(recording.names)
+        raise InputError(where, f"needs the motion of a body; found {found}", f"channels: {{acceleration: {example}}}")
+    if drive in FORCES and drive not in known:
+        raise InputError(f"{where}: {drive}", "acts on nobody knows which body", f"channels: {{{drive}: {example}}}")
+    return motions, drive, tuple(number[known[name]] for name in motions), number[known.get(drive, bodies[0])]
+
+
+def channels_of(recording: Recording) -> tuple[tuple[str, ...], str]:
+    """Motions that change, and the name of what drives (empty for none).
 
     Raises
     ------
     InputError
         None does.
     """
-    names = (*ORDER, *FURTHER) if every_place else ORDER
-    motions = tuple(name for name in names if name in recording and np.ptp(recording[name]) > 0)
+    motions = tuple(name for name in ORDER if name in recording and np.ptp(recording[name]) > 0)
     drive = next((name for name in (*FORCES, *FEET) if name in recording), "")
     if not motions:
         where, found = recording.provenance.file, ", ".join(recording.names)

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from ssmr_ident.core.errors import InputError, did_you_mean
-from ssmr_ident.core.parameter import ParameterSet
+from ssmr_ident.core.parameter import ParameterSet, effect_and_element
 from ssmr_ident.physics.effects import CATALOGUE, unlisted
 
 SLOTS = (
@@ -74,7 +74,8 @@ def checked(effects: Effects) -> dict[str, dict[str, float]]:
         An unknown effect or parameter, or a value out of bounds.
     """
     result = {}
-    for effect_id, given in effects.items():
+    for key, given in effects.items():
+        effect_id, _ = effect_and_element(key)
         if effect_id not in CATALOGUE:
             raise InputError(f"effects: {effect_id}", "is no known effect", did_you_mean(effect_id, CATALOGUE))
         effect = CATALOGUE[effect_id]
@@ -86,7 +87,7 @@ def checked(effects: Effects) -> dict[str, dict[str, float]]:
             if not bounds[name].lower <= value <= bounds[name].upper:
                 limits = f"{bounds[name].lower:g} … {bounds[name].upper:g} {bounds[name].unit}"
                 raise InputError(f"effects: {effect_id}.{name}", f"is {value:g}, expected {limits}")
-        result[effect_id] = effect.begun(given)
+        result[key] = effect.begun(given)
     return result
 
 

@@ -14,7 +14,7 @@ from ssmr_ident.core.domain import Schema
 from ssmr_ident.core.nested_domain import optional
 from ssmr_ident.session.effects_block import effect_keys, rotary
 from ssmr_ident.session.estimate_file import Quantity, definitions
-from ssmr_ident.session.network_block import network_schemas
+from ssmr_ident.session.network_block import Name, network_schemas
 from ssmr_ident.session.parameters_file import HEAD
 from ssmr_ident.session.schema import CHOICES, KEYS
 from ssmr_ident.session.session_file import FILE
@@ -68,11 +68,13 @@ def parameters_schema() -> Schema:
 
 
 def _effects() -> Schema:
-    blocks = {
+    element = {"element": Name().schema() | {"description": "of a network: the spring at which it acts"}}
+    blocks: Schema = {
         effect: {
             "type": "object",
             "additionalProperties": False,
-            "properties": {
+            "properties": element
+            | {
                 name: Quantity(domain, (domain.unit, rotary(domain.unit))).schema()
                 | {"description": f"{meaning} [{domain.unit}]".strip()}
                 for name, (domain, meaning) in keys.items()
@@ -80,6 +82,8 @@ def _effects() -> Schema:
         }
         for effect, keys in effect_keys().items()
     }
+    several = {"type": "array", "minItems": 1}
+    blocks = {effect: {"anyOf": [block, several | {"items": block}]} for effect, block in blocks.items()}
     meaning = "physics beyond the baseline; ident effects lists what there is"
     return {"type": ["object", "null"], "description": meaning, "additionalProperties": False, "properties": blocks}
 

@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from ssmr_ident.core.domain import Choice, Text
+from ssmr_ident.core.domain import Choice, Number, Text
 from ssmr_ident.core.errors import did_you_mean
 from ssmr_ident.core.nested_domain import Keyed
-from ssmr_ident.core.parameter import Estimate, ParameterSet
+from ssmr_ident.core.parameter import Estimate, ParameterSet, at_element
 from ssmr_ident.core.place import Place, shown
 from ssmr_ident.session.effects_block import effect_keys, rotary
 from ssmr_ident.session.estimate_file import Quantity
@@ -26,6 +26,9 @@ HEAD: dict[str, tuple[Any, str]] = {
     "name": (Text(one_line=False), "of the robot or rig"),
 }
 """What stands beside the parameters; ``effects`` and ``provenance`` are read on their own."""
+
+ELEMENT = "element"
+"""Of an effect on a network: the spring at which it acts."""
 
 _OF_A_RIG = (*BODY_KEYS, *(key for keys in SPRING_KEYS for key in keys))
 
@@ -67,7 +70,7 @@ def parameters_of(place: Place, content: Mapping[str, Any]) -> ParameterSet:
         if alone:
             raise place.at(alone).error(f"stands beside {BODIES}", f"Write it below {BODIES} or {SPRINGS}")
     turning = any(key.endswith("inertia_kg_m2") for key in estimates)
-    effects = _effects(place.at("effects"), _given(content, "effects"), turning)
+    effects = _effects(place.at("effects"), _given(content, "effects"), turning, tuple(between))
     provenance = _given(content, "provenance")
     if not isinstance(provenance, Mapping):
         raise place.at("provenance").error(f"is {shown(provenance)}, expected a mapping")
@@ -105,7 +108,7 @@ def _collect(place: Place, key: str, block: Any, estimates: dict[str, Estimate],
     estimates[key] = estimate
 
 
-def _effects(place: Place, block: Any, turning: bool) -> dict[str, dict[str, Estimate]]:
+def _effects(place: Place, block: Any, turning: bool, springs: tuple[str, ...]) -> dict[str, dict[str, Estimate]]:
     if not isinstance(block, Mapping):
         raise place.error(f"is {shown(block)}, expected a mapping of effect ids")
     known = effect_keys() if block else {}
@@ -116,15 +119,39 @@ def _effects(place: Place, block: Any, turning: bool) -> dict[str, dict[str, Est
             raise here.error(
                 "is no known effect", f"{did_you_mean(str(effect)[:60], known)} One of your own: --effects FILE"
             )
-        if not isinstance(parameters, Mapping):
-            raise here.error(f"is {shown(parameters)}, expected a mapping of its parameters")
-        found[effect] = {}
-        for key, entry in parameters.items():
-            if key not in known[effect]:
-                raise here.at(str(key)).error(
-                    "is no parameter of this effect", did_you_mean(str(key)[:60], known[effect])
-                )
-            domain, _ = known[effect][key]
-            units = (domain.unit, rotary(domain.unit)) if turning else (domain.unit,)
-            found[effect][key] = Quantity(domain, units).check(here.at(key), entry)
+        several = springs and isinstance(parameters, list | tuple)
+        for at, own in ((here.at(k), one) for k, one in enumerate(parameters)) if several else ((here, parameters),):
+            if not isinstance(own, Mapping):
+                raise at.error(f"is {shown(own)}, expected a mapping of its parameters")
+            name = at_element(effect, _element(at, own, springs))
+            if name in found:
+                raise at.at(ELEMENT).error("stands twice with this effect", "Write one of them for each spring")
+            found[name] = _one_effect(at, own, known[effect], turning)
+    return found
+
+
+def _element(place: Place, block: Mapping[str, Any], springs: tuple[str, ...]) -> str:
+    """Spring at which an effect acts; empty on what is no network."""
+    if ELEMENT not in block:
+        return ""
+    element = block[ELEMENT]
+    if not springs:
+        raise place.at(ELEMENT).error("is a spring of a network, and this file has none", "Take it out")
+    if element not in springs:
+        raise place.at(ELEMENT).error(f"is {shown(element)}, which is no spring", did_you_mean(str(element), springs))
+    return str(element)
+
+
+def _one_effect(
+    place: Place, block: Mapping[str, Any], known: Mapping[str, tuple[Number, str]], turning: bool
+) -> dict[str, Estimate]:
+    found = {}
+    for key, entry in block.items():
+        if key == ELEMENT:
+            continue
+        if key not in known:
+            raise place.at(str(key)).error("is no parameter of this effect", did_you_mean(str(key)[:60], known))
+        domain, _ = known[key]
+        units = (domain.unit, rotary(domain.unit)) if turning else (domain.unit,)
+        found[key] = Quantity(domain, units).check(place.at(key), entry)
     return found

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +11,7 @@ import yaml
 
 from ssmr_ident.core.atomic import write_text
 from ssmr_ident.core.documents import plain
-from ssmr_ident.core.parameter import Estimate, ParameterSet
+from ssmr_ident.core.parameter import Estimate, ParameterSet, effect_and_element
 from ssmr_ident.session.network_block import BETWEEN, BODIES, SPRINGS
 from ssmr_ident.session.schema import KEYS
 
@@ -40,14 +41,25 @@ def parameters_text(parameters: ParameterSet) -> str:
         meaning = f"  # {KEYS[key].meaning}" if key in KEYS else ""
         lines.append(f"{indent}{parts[-1]}: {_entry(entry)}{meaning}")
     if parameters.effects:
-        lines.append("effects:")
-        for effect, entries in parameters.effects.items():
-            lines.append(f"  {effect}:" if entries else f"  {effect}: {{}}")
-            lines += [f"    {key}: {_flow(estimate)}" for key, estimate in entries.items()]
+        lines += ["effects:", *_effects(parameters.effects)]
     text = "\n".join(lines) + "\n"
     if parameters.provenance:
         text += yaml.safe_dump({"provenance": plain(parameters.provenance)}, sort_keys=False, allow_unicode=True)
     return text
+
+
+def _effects(effects: Mapping[str, Mapping[str, Estimate]]) -> Iterator[str]:
+    """The block's lines; an effect at several springs of a network is a list."""
+    places: dict[str, list[list[str]]] = {}
+    for key, entries in effects.items():
+        effect, element = effect_and_element(key)
+        said = [f"element: {_key(element)}"] if element else []
+        places.setdefault(effect, []).append(said + [f"{name}: {_flow(e)}" for name, e in entries.items()])
+    for effect, blocks in places.items():
+        yield f"  {effect}:" if blocks[0] else f"  {effect}: {{}}"
+        for lines in blocks:
+            several = len(blocks) > 1
+            yield from (f"    {'' if not several else '- ' if k == 0 else '  '}{line}" for k, line in enumerate(lines))
 
 
 Entry = Estimate | str | tuple[str, str]

@@ -16,10 +16,9 @@ from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.diagnosis import Diagnosis
 from ssmr_ident.doctor.blocks import BLOCK, diagnose_block
-from ssmr_ident.doctor.run import RIG
 from ssmr_ident.doctor.run import diagnose as diagnose_rig
 from ssmr_ident.experiments.campaign import Campaign, load
-from ssmr_ident.physics.network import NETWORK
+from ssmr_ident.experiments.experiment import RIGS
 from ssmr_ident.session import write_parameters
 from ssmr_ident.session.effects_block import in_rotary_units
 from ssmr_ident.workflows.files_read import files_read
@@ -57,7 +56,7 @@ def diagnose(
     # recordings are simulated side by side; matrices are small, and threads of their own would stand in the way
     with threadpool_limits(1, user_api="blas"):
         found = _diagnosed(replace(campaign, parameters=known), known, seed, progress, budget)
-    return in_rig_units(found) if "inertia_kg_m2" in known else found
+    return in_rig_units(found) if any(key.endswith("inertia_kg_m2") for key in known) else found
 
 
 def in_rig_units(found: Diagnosis) -> Diagnosis:
@@ -79,11 +78,8 @@ def _over_angle(curve: Mapping[str, Any] | None) -> Mapping[str, Any] | None:
 def _diagnosed(
     campaign: Campaign, known: ParameterSet, seed: int, progress: Progress | None, budget: float
 ) -> Diagnosis:
-    if campaign.session.baseline == RIG:
+    if campaign.session.baseline in RIGS:
         return diagnose_rig(campaign, known, seed, progress, budget)
-    if campaign.session.baseline == NETWORK:
-        where = f"{campaign.session.folder / 'session.yaml'}: baseline"
-        raise InputError(where, "network is not diagnosed", "ident fit and ident compare take it")
     if math.isfinite(budget):
         raise InputError("--budget", f"limits a rig's search; this session's baseline is {campaign.session.baseline}",
                          "Leave it out")  # fmt: skip
