@@ -31,6 +31,8 @@ class Truth:
         Of the plant without its effects.
     noise_floor : mapping of str to float
         Per recording, what the true signals leave of the metric.
+    element : str
+        Spring of a network at which the effects act.
     """
 
     verdict: str
@@ -38,6 +40,7 @@ class Truth:
     formula: str
     parameters: Mapping[str, float]
     noise_floor: Mapping[str, float]
+    element: str = ""
 
     @property
     def ids(self) -> tuple[str, ...]:

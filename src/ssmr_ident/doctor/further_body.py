@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -31,7 +32,7 @@ def with_further_bodies(fit: Fit, known: ParameterSet) -> ParameterSet:
     for member in riders(fit):
         rotary = fit.node.layout.rotary
         body, host = f"on_{member.element}", f"bodies.{member.element}.{BODY_KEY[rotary]}"
-        mass, left, damping, stiffness = _with_std(fit, lambda v, m=member, h=host: _numbers(v, m, h))
+        mass, left, damping, stiffness = _with_std(fit, partial(_numbers, host=host))
         unit = known[host].unit
         units = [known[f"springs.{fit.node.layout.springs[0]}.{key}"].unit for key in SPRING_KEYS[rotary]]
         new = {
@@ -48,7 +49,7 @@ def mode_parameters(fit: Fit, member: Member) -> dict[str, Estimate]:
     """Mass, frequency with the other body held, and damping ratio of a further body."""
     host = f"bodies.{member.element}.{BODY_KEY[fit.node.layout.rotary]}"
     unit = next(c.unit for c in fit.node.baseline if c.name == host)
-    mass, *_ = _with_std(fit, lambda v: _numbers(v, member, host))
+    mass, *_ = _with_std(fit, partial(_numbers, host=host))
     hz, ratio = _with_std(fit, lambda v: (v["rider_Hz"], v["rider_ratio"]))
     return {
         "mass_kg": Estimate(*mass, unit, SOURCE),
@@ -69,7 +70,7 @@ def shapes_told(after: ParameterSet) -> str:
     return f"Modes, damping ratios and shapes with it are {'; '.join(told)}."
 
 
-def _numbers(values: Mapping[str, float], member: Member, host: str) -> tuple[float, float, float, float]:
+def _numbers(values: Mapping[str, float], host: str) -> tuple[float, float, float, float]:
     share, turning = values["rider_share"], 2.0 * math.pi * values["rider_Hz"]
     mass = share * values[host]
     return mass, values[host] - mass, 2.0 * values["rider_ratio"] * turning * mass, turning**2 * mass

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -129,7 +129,7 @@ def _along_one(problem: Problem, fit: Fit, spring: str) -> list[Proposal]:
 
 
 def _begun(
-    fit: Fit, member: Member, form: Form, law: dict[str, float], straight: dict[int, float], rest: float, count: int
+    fit: Fit, member: Member, form: Form, law: Mapping[str, float], straight: dict[int, float], rest: float, count: int
 ) -> Proposal:
     """A law beside the network of a fit, whose spring's straight part is another; places count behind the masses."""
     node = replace(fit.node, members=(member,))

@@ -7,10 +7,11 @@ from typing import Any
 
 import numpy as np
 
+from ssmr_ident.compare.comparison import measure
 from ssmr_ident.compare.network import NO_GROUND
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import ParameterSet
-from ssmr_ident.doctor.result import conflicting, exported
+from ssmr_ident.doctor.result import conflicting, exported, predictions
 from ssmr_ident.estimate.network import EXACTLY, baseline_fit, network_problem, under_own_noise
 from ssmr_ident.estimate.values import Fit, Problem
 from ssmr_ident.experiments.campaign import Campaign, Measurement
@@ -51,7 +52,7 @@ def fit_network_session(campaign: Campaign, chosen: tuple[Measurement, ...]) -> 
     if not any(p.driven and not p.based for p in problem.pieces):
         name = fit.node.baseline[0].name
         findings.append(f"without a measured force all is known only as ratios to {name}, which stays")
-    lines, results = _recordings(problem, fit)
+    lines, results = _recordings(problem, fit, known)
     size = np.where(stds > 0.0, stds, 1.0)
     correlations = fit.covariance / np.outer(size, size)
     return SessionFit(
@@ -87,15 +88,22 @@ def modes_table(before: ParameterSet, after: ParameterSet) -> str:
     return "\n".join(["Modes", *rows])
 
 
-def _recordings(problem: Problem, fit: Fit) -> tuple[dict[str, tuple[str, ...]], dict[str, dict[str, Any]]]:
+def _recordings(
+    problem: Problem, fit: Fit, known: ParameterSet
+) -> tuple[dict[str, tuple[str, ...]], dict[str, dict[str, Any]]]:
     lines: dict[str, list[str]] = {}
     results: dict[str, dict[str, Any]] = {}
-    for piece, rest in zip(problem.pieces, fit.residuals, strict=True):
+    judged = predictions(problem, fit, known)
+    for piece, rest, prediction in zip(problem.pieces, fit.residuals, judged, strict=True):
         size = np.maximum((piece.y - piece.y.mean(axis=0)).std(axis=0), 1e-300)
         share = dict(zip(piece.channels, map(float, 100.0 * rest.std(axis=0) / size), strict=True))
         places = [problem.layout.bodies[k] for k in piece.seen.bodies]
         said = ", ".join(f"{v:.3g} % of {name} of {on}" for (name, v), on in zip(share.items(), places, strict=True))
-        lines.setdefault(piece.name, []).append(f"{piece.time[0]:.4g} to {piece.time[-1]:.4g} s: unexplained {said}")
-        own = results.setdefault(piece.name, {"unexplained_percent": {}})
+        apart = measure(prediction)[0]
+        span = f"{piece.time[0]:.4g} to {piece.time[-1]:.4g} s"
+        lines.setdefault(piece.name, []).append(
+            f"{span}: {apart:.3g} % apart below {prediction.low_pass_hz:.4g} Hz; unexplained at all frequencies {said}"
+        )
+        own = results.setdefault(piece.name, {"nrmse_percent": apart, "unexplained_percent": {}})
         own["unexplained_percent"] |= share
     return {name: tuple(own) for name, own in lines.items()}, results
