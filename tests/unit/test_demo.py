@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import pytest
 from made_diagnoses import hardening, nothing
 from typed_command import typed
 
 from ssmr_ident.core.parameter import Estimate
-from ssmr_ident.workflows.demo.hidden import RELEASED_MM, Hidden
+from ssmr_ident.workflows.demo.hidden import Hidden
 
 
 def test_before_after_and_floor_are_drawn_in_proportion() -> None:
@@ -30,15 +29,3 @@ def test_what_no_rig_has_is_told(tmp_path: Path) -> None:
     told = typed("demo", "--hide", "dry_fricton:F_c_N=1", cwd=tmp_path)
     assert told.returncode == 2
     assert "dry_friction" in told.stderr.splitlines()[-1]
-
-
-@pytest.mark.slow
-def test_the_demo_finds_what_it_hides(tmp_path: Path) -> None:
-    """Twice into one folder: the second time begins anew."""
-    for seed in ("1", "2"):
-        told = typed("demo", "--seed", seed, "--hide", "quadratic_damping:d2_N_s2_m2=40", cwd=tmp_path)
-        assert told.returncode == 0, told.stderr
-        assert "found   quadratic_damping" in told.stdout
-        assert "ident new FOLDER" in told.stdout
-    assert len(list((tmp_path / "out" / "demo-rig").glob("*.csv"))) == len(RELEASED_MM)
-    assert (tmp_path / "out" / "demo-diagnosis" / "report.html").is_file()
