@@ -18,6 +18,7 @@ from made_diagnoses import EVERY, hardening, nothing, swivel, undetermined
 from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.diagnose.diagnosis import Conflict, Diagnosis, PredictionQuality, Tried
 from ssmr_ident.diagnose.evidence import Evidence, ForceSurface, SpeedMap
+from ssmr_ident.physics.effects import CATALOGUE
 from ssmr_ident.report.chart import packed
 from ssmr_ident.report.curves import busiest_part, thinned
 from ssmr_ident.report.diagnosis_page import diagnosis_page, render_report, write_report
@@ -134,6 +135,15 @@ def test_a_rotary_rig_has_moments_and_angles() -> None:
     assert "N m/rad³" in page.verdict.equations[0]
 
 
+def test_the_formula_has_the_name_of_the_field_and_the_sentence_no_numbers() -> None:
+    told = CATALOGUE["dry_friction"].sentence.rstrip(".") + ": F_c_N = 0.4 ± 0.01 N."
+    effect = replace(hardening().effects[0], id="dry_friction", form="tanh", sentence=told)
+    verdict = diagnosis_page(replace(hardening(), effects=(effect,)), "").verdict
+    assert verdict is not None
+    assert verdict.label == "Missing: dry friction (Coulomb)"
+    assert verdict.sentence == CATALOGUE["dry_friction"].sentence.rstrip(".") + "."
+
+
 def test_a_force_of_any_shape_is_drawn_with_its_band() -> None:
     (chart,) = next(s for s in page_of(undetermined).sections if s.title == "What it could be").charts
     assert (chart.x_label, chart.x_unit, chart.y_unit, chart.band) == ("displacement", "m", "N", True)
@@ -245,6 +255,25 @@ def test_few_speeds_are_drawn_as_lines_and_many_as_maps() -> None:
         names=("target", "held out") * 2,
     )  # fmt: skip
     assert names(few) == ["waterfall-1"]
+
+
+@pytest.mark.slow
+def test_a_page_of_24_recordings_is_below_a_megabyte_and_a_half() -> None:
+    """Uneven times and noise pack worst; maps, surfaces and drifts as many as are drawn at the most."""
+    full, rng = hardening(), np.random.default_rng(5)
+    time = np.sort(rng.uniform(0.0, 30.0, 3000))
+    overlays = tuple(
+        replace(full.evidence.overlays[0], recording=f"roll-{k}.csv", channel=channel, time=time,
+                **{name: rng.standard_normal(3000) for name in ("measured", "before", "after")})
+        for k in range(24) for channel in ("ax", "ay", "az")
+    )  # fmt: skip
+    evidence = replace(
+        full.evidence, overlays=overlays, maps=2 * full.evidence.maps, surfaces=2 * full.evidence.surfaces,
+        drifts=2 * full.evidence.drifts,
+    )  # fmt: skip
+    located = 24 * full.located
+    page = render_report(replace(full, evidence=evidence, located=located, tried=8 * full.tried), "", 0)
+    assert len(page.encode()) < 1_500_000
 
 
 @pytest.mark.slow

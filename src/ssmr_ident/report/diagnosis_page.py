@@ -18,6 +18,16 @@ from ssmr_ident.report.numbers import alike, interval, measured, number, share
 
 FIGURES = "figures"
 
+FORMULAS = {
+    "sine": "a pendulum's sine",
+    "two slopes": "two slopes, as of stops",
+    "cubic and two slopes": "cubic, and two slopes as of stops",
+    "tanh": "Coulomb",
+    "slider": "Coulomb, with an elastic slider",
+    "Dahl": "Coulomb, with pre-sliding after Dahl",
+}
+"""What the formulas of an effect are called in the field, where that is not how the search calls them."""
+
 NEAR = 1.6
 """Times the noise floor up to which an answer leaves nothing to look for."""
 
@@ -99,12 +109,14 @@ def verdict(diagnosis: Diagnosis) -> Verdict:
 
 def _name(effect: NamedEffect) -> str:
     name = "a force that no listed law makes" if effect.id == "unlisted" else readable(effect.id)
-    return f"{name} ({effect.form})" if effect.form and effect.id != "unlisted" else name
+    return f"{name} ({FORMULAS.get(effect.form, effect.form)})" if effect.form and effect.id != "unlisted" else name
 
 
 def _sentence(effect: NamedEffect) -> str:
+    """What it does, without the numbers that stand beside the law."""
     known = CATALOGUE.get(effect.id)
-    return f"{known.sentence.rstrip('.')}." if known else effect.sentence
+    plain = f"{known.sentence.rstrip('.')}." if known else ""
+    return plain if plain and effect.sentence.startswith(plain[:-1]) else effect.sentence
 
 
 def _law(effect: NamedEffect, turns: bool) -> str:
