@@ -9,11 +9,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from made_diagnoses import EVERY
+from made_diagnoses import EVERY, hardening, nothing
 from made_fit import made_fit
 
 from ssmr_ident.compare import Comparison, RecordingComparison
+from ssmr_ident.compare.change import Side, changes
 from ssmr_ident.compare.outcome import Prediction
+from ssmr_ident.report.changes_page import changes_page
 from ssmr_ident.report.comparison_page import comparison_page
 from ssmr_ident.report.diagnosis_page import write_report
 from ssmr_ident.report.html import write_page
@@ -50,6 +52,7 @@ def pages(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     made["comparison"] = _comparison(folder)
     made["spectrum"] = _spectrum(folder)
     made["fit"] = _fit(folder)
+    made["changes"] = _changes(folder)
     return made
 
 
@@ -112,3 +115,17 @@ def _fit(folder: Path) -> Path:
     (folder / "fit").mkdir()
     page = fit_page(made_fit(), "ident fit my-session --figures fit", 3, ())
     return write_page(folder / "fit" / "report.html", page)
+
+
+def _changes(folder: Path) -> Path:
+    (folder / "changes").mkdir()
+    robots = (diagnosis.after for diagnosis in (hardening(), nothing()))
+    sides = [
+        Side(name, robot, verdict, effects, "nrmse_percent", error)
+        for name, robot, verdict, effects, error in zip(
+            ("march", "june"), robots, ("missing_physics", "nothing_missing"), (("nonlinear_stiffness",), ()),
+            ((22.0, 3.4, 2.9), (2.95, 2.95, 2.91)), strict=True,
+        )
+    ]  # fmt: skip
+    page = changes_page(changes(*sides), "ident compare march june", ())
+    return write_page(folder / "changes" / "report.html", page)

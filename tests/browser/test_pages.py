@@ -11,7 +11,7 @@ import pytest
 
 pytestmark = pytest.mark.slow
 
-NAMES = ("hardening", "nothing", "undetermined", "swivel", "comparison", "spectrum", "fit")
+NAMES = ("hardening", "nothing", "undetermined", "swivel", "comparison", "spectrum", "fit", "changes")
 Opened = Callable[..., Any]
 
 

@@ -66,7 +66,7 @@
     const panel = (height, series, data, yLabel, last) => {
       const options = {
         width: holder.clientWidth, height, padding: [8, 14, 0, 0], legend: { show: false }, scales: { x: { time: false } },
-        cursor: { sync: { key: spec.name }, drag: { x: true, y: false }, points: { size: 5 }, focus: { prox: -1 } },
+        cursor: { y: false, sync: { key: spec.name }, drag: { x: true, y: false }, points: { size: 5 }, focus: { prox: -1 } },
         axes: [axis(2, last ? `${spec.xLabel}${unit(spec.xUnit)}` : undefined, last ? 34 : 0), axis(3, yLabel, 48)],
         series: [{}, ...series],
         hooks: { setCursor: [(u) => u === panels[0] && read(u.cursor.idx ?? null)], setScale: [(u, key) => key === "x" && follow(u)] },
