@@ -1,4 +1,4 @@
-"""What docs/theory/diagnosis.md states in numbers is what the code has, and what noise does."""
+"""What docs/theory/robot_diagnosis.md states in numbers is what the code has, and what noise does."""
 
 from __future__ import annotations
 
@@ -15,10 +15,11 @@ from ssmr_ident.compare.comparison import measure
 from ssmr_ident.compare.outcome import Prediction
 from ssmr_ident.diagnose import accept, assemble, finals, followed, race, rivals, weigh, within, worth
 from ssmr_ident.diagnose.worth import noise_floor, reddest
+from ssmr_ident.doctor import rules
 from ssmr_ident.physics.effects import CATALOGUE
 from ssmr_ident.signals.metrics import LOW_PASS_HZ
 
-PAGE = Path(__file__).resolve().parents[2] / "docs" / "theory" / "diagnosis.md"
+PAGE = Path(__file__).resolve().parents[2] / "docs" / "theory" / "robot_diagnosis.md"
 
 
 def test_thresholds_are_those_of_the_code() -> None:
@@ -28,6 +29,14 @@ def test_thresholds_are_those_of_the_code() -> None:
     code = {name: getattr(m, name) for m in modules for name in rows if hasattr(m, name)}
     assert {"CERTAIN", "UNEXPLAINED"} <= set(rows)
     assert stated == pytest.approx(code)
+
+
+def test_numbers_of_the_decision_are_those_of_the_code() -> None:
+    page = (PAGE.parent / "diagnosis.md").read_text(encoding="utf-8")
+    stated = {name: float(value) for name, value in re.findall(r"^\| `([A-Z_]+)` \| ([\d.]+) \|", page, re.MULTILINE)}
+    code = {name: value for name, value in vars(rules).items() if name.isupper()}
+    assert stated == pytest.approx(code)
+    assert page.count("\n") <= 250
 
 
 def test_chance_to_be_certain_where_nothing_is_missing() -> None:

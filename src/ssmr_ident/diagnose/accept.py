@@ -19,7 +19,7 @@ from ssmr_ident.identify.fitting.scatter import covariance
 SECOND = 0.7
 """Share of the first effect's unexplained variance, mean over all recordings, that may be left when a second one is
 added: the right effect in a formula that is not quite the world's leaves structure, of which any other takes a part.
-How large a part, and how much a true second effect takes: docs/theory/diagnosis.md."""
+How large a part, and how much a true second effect takes: docs/theory/robot_diagnosis.md."""
 
 BESIDES = 0.95
 """The same without the recording that shows it best: one alone may be an accident, a stick that lets go elsewhere."""
@@ -27,7 +27,7 @@ BESIDES = 0.95
 BY_NOISE = 0.05
 """Probability by chance above which a second effect leaves nothing that follows the motion. Where the first one leaves
 some (``BY_CHANCE``), that counts as well, whatever share below ``BESIDES``: what another formula takes of a wrong one
-is only a part of that. Calibrated, docs/theory/diagnosis.md."""
+is only a part of that. Calibrated, docs/theory/robot_diagnosis.md."""
 
 LED_ON = 0.1
 """By how much being led on may change the share that a pair leaves (15 pairs of 35 sessions of decays: 0.09 at the

@@ -25,7 +25,8 @@ TIE = math.log(20.0)
 
 CERTAIN = math.log(1e3)
 """Log evidence that an effect needs over the baseline, beside Schwarz's penalty: with a dozen effects looked at, each
-with two or three parameters, noise alone gets there in fewer than 1 of 1000 sessions (docs/theory/diagnosis.md)."""
+with two or three parameters, noise alone gets there in fewer than 1 of 1000 sessions:
+docs/theory/robot_diagnosis.md."""
 
 
 @dataclass(frozen=True, eq=False)
