@@ -16,7 +16,7 @@ SWING = np.sin(2 * np.pi * 20 * TIME) + 1e-4 * np.random.default_rng(3).standard
 def test_cut_off(ends: tuple[float, float]) -> None:
     samples = np.clip(SWING, *ends)
     at = int((samples == ends[0]).sum() + (samples == ends[1]).sum())
-    assert cut_off(samples) == pytest.approx(at, abs=4)
+    assert cut_off(samples).sum() == pytest.approx(at, abs=4)
     (note,) = warnings_of((Channel("acceleration", samples, "m/s^2", "acc"),))
     assert "is cut off" in note.text
 
@@ -24,8 +24,8 @@ def test_cut_off(ends: tuple[float, float]) -> None:
 @pytest.mark.parametrize("step", [0.0, 0.002, 0.02, 0.1])
 def test_coarse_steps_are_no_ends(step: float) -> None:
     samples = np.round(SWING / step) * step if step else SWING
-    assert cut_off(samples) == 0
+    assert not cut_off(samples).any()
 
 
 def test_a_slow_clock_is_no_end() -> None:
-    assert cut_off(np.repeat(SWING[::5], 5)) == 0
+    assert not cut_off(np.repeat(SWING[::5], 5)).any()

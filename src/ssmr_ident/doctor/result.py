@@ -189,7 +189,8 @@ def named_effects(decision: Decision, chosen: Row, after: ParameterSet) -> tuple
             )
         found.append(
             NamedEffect(
-                effect, sentence, text, values, min(decision.confidence, 1.0), decision.ties, member.form,
+                effect, sentence, text, values | _riding_mass(values, after), min(decision.confidence, 1.0),
+                decision.ties, member.form,
                 kind=member.kind, element=element_of(member), curve=curve(chosen.fit, member),
             )
         )  # fmt: skip
@@ -204,6 +205,17 @@ def _shown(member: Member, after: ParameterSet) -> dict[str, Estimate]:
 
 def _listed(values: Mapping[str, Estimate]) -> str:
     return ", ".join(f"{name} = {estimate}" for name, estimate in values.items())
+
+
+def _riding_mass(values: Mapping[str, Estimate], after: ParameterSet) -> dict[str, Estimate]:
+    """What rides on a spring of its own, in the unit of the rig's mass."""
+    share = values.get("rider_share")
+    if share is None:
+        return {}
+    key = "inertia_kg_m2" if "inertia_kg_m2" in after else "mass_kg"
+    mass = float(after[key].value)
+    std = None if share.std is None else share.std * mass
+    return {key: Estimate(share.value * mass, std, after[key].unit, "rider_share of the mass")}
 
 
 def element_of(member: Member) -> str:

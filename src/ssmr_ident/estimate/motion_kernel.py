@@ -50,7 +50,7 @@ def _force(x, v, z, time, row, drive, g, slopes, with_slopes):
     """Force beside the linear rig [N], its slopes over x and v; those over hidden states and parameters into
     ``slopes``, (hidden + parameters,)."""
     (reach, steep, tab_x, tab_v, tab_xv, courses, course_kind, c, linear, yields, has_law, e, law_index, law_scale,
-     size_x, size_v, remembers) = g  # fmt: skip
+     size_x, size_v, uses) = g  # fmt: skip
     jenkins = len(yields)
     hidden = jenkins + (STATES if has_law else 0)
     f, fx, fv = 0.0, 0.0, 0.0
@@ -127,35 +127,33 @@ def _force(x, v, z, time, row, drive, g, slopes, with_slopes):
         stiffness = linear[0, 2]
         dx, dv = TINY * size_x, TINY * size_v
         dk = TINY * stiffness if stiffness > 0.0 else TINY
-        centre, above = 0.0, 0.0
+        centre = 0.0
         # one place from which the law is called, or the compiler writes it out a dozen times
-        for q in range(9 + len(law_index) if with_slopes else 3):
-            if 5 <= q < 8 and not remembers[q - 5]:
+        for q in range(7 + len(law_index) if with_slopes else 2):
+            if 1 <= q < 7 and not uses[q - 1]:
                 continue
-            was = e[law_index[q - 9]] if q >= 9 else 0.0
-            if q >= 9:
-                e[law_index[q - 9]] = was + TINY * law_scale[q - 9]
-            at_x = x + dx if q == 3 else x - dx if q == 4 else x
-            at_v = v + dv if q == 1 else v - dv if q == 2 else v
-            at_h = (h[0] + dx if q == 5 else h[0], h[1] + dx if q == 6 else h[1], h[2] + dx if q == 7 else h[2])
-            at_k = stiffness + dk if q == 8 else stiffness
-            value = law_force(at_x, at_v, at_h, time, at_k, e, remembers[3])
+            was = e[law_index[q - 7]] if q >= 7 else 0.0
+            if q >= 7:
+                e[law_index[q - 7]] = was + TINY * law_scale[q - 7]
+            at_v = v + dv if q == 1 else v
+            at_x = x + dx if q == 2 else x
+            at_k = stiffness + dk if q == 3 else stiffness
+            at_h = (h[0] + dx if q == 4 else h[0], h[1] + dx if q == 5 else h[1], h[2] + dx if q == 6 else h[2])
+            value = law_force(at_x, at_v, at_h, time, at_k, e, uses[6])
             if q == 0:
                 centre = value
                 f += value
-            elif q == 1 or q == 3:
-                above = value
+            elif q == 1:
+                fv += (value - centre) / dv
             elif q == 2:
-                fv += (above - value) / (2.0 * dv)
-            elif q == 4:
-                fx += (above - value) / (2.0 * dx)
-            elif q < 8:
-                slopes[jenkins + q - 5] = (value - centre) / dx
-            elif q == 8:
+                fx += (value - centre) / dx
+            elif q == 3:
                 slopes[hidden + 2] += (value - centre) / dk * linear[1, 2]
+            elif q < 7:
+                slopes[jenkins + q - 4] = (value - centre) / dx
             else:
-                slopes[first + at + q - 9] = (value - centre) / (TINY * law_scale[q - 9])
-                e[law_index[q - 9]] = was
+                slopes[first + at + q - 7] = (value - centre) / (TINY * law_scale[q - 7])
+                e[law_index[q - 7]] = was
     return f, fx, fv
 
 
@@ -163,7 +161,7 @@ def _force(x, v, z, time, row, drive, g, slopes, with_slopes):
 def _advance(z, tangents, change, change_slopes, step, first, by_v, g):
     """Hidden states one step later, with their slopes; ``change`` : deflection over the step,
     ``first`` : column of the first parameter of a law; ``by_v`` : (3,) float to work in."""
-    (_, _, _, _, _, _, _, _c, _linear, yields, has_law, e, law_index, law_scale, size_x, size_v, remembers) = g
+    (_, _, _, _, _, _, _, _c, _linear, yields, has_law, e, law_index, law_scale, size_x, size_v, uses) = g
     jenkins = len(yields)
     columns = tangents.shape[1]
     for k in range(jenkins):
@@ -175,7 +173,7 @@ def _advance(z, tangents, change, change_slopes, step, first, by_v, g):
         else:
             z[k] = yields[k] if moved > 0.0 else -yields[k]
             tangents[k, :] = 0.0
-    if has_law and (remembers[0] or remembers[1] or remembers[2]):
+    if has_law and (uses[3] or uses[4] or uses[5]):
         v = change / step
         h = (z[jenkins], z[jenkins + 1], z[jenkins + 2])
         dx, dv = TINY * size_x, TINY * size_v

@@ -19,6 +19,9 @@ Array = np.ndarray
 REMEMBER = ("dry_friction", "hysteresis", "viscoelastic_relaxation", "unlisted")
 """Laws by the hidden state of an element that they use; the last one by its terms."""
 
+SEES = {"v": (True, False, False), "x": (False, True, True)}
+"""Whether a law of one variable looks at speed, deflection, the rig's stiffness; others may look at all."""
+
 
 @dataclass(frozen=True, eq=False)
 class Simulated:
@@ -44,9 +47,12 @@ class Compiled:
     steps: dict[tuple, tuple] = field(default_factory=dict)
 
     @property
-    def remembers(self) -> Array:
-        """(4,) bool: which hidden states of laws are in use, and whether terms that no list holds are."""
-        return np.array([any(m.id == name and m.law is not None for m in self.node.members) for name in REMEMBER])
+    def uses(self) -> Array:
+        """(7,) bool: what the laws look at (speed, deflection, stiffness, three hidden states), and whether any has
+        terms that no list holds."""
+        laws = [m for m in self.node.members if m.law is not None]
+        sees = np.array([SEES.get(m.variable, (True, True, True)) for m in laws], dtype=bool).reshape(-1, 3)
+        return np.concatenate([sees.any(axis=0), [any(m.id == name for m in laws) for name in REMEMBER]])
 
     @property
     def turned(self) -> tuple[Array, Array, Array] | None:
@@ -127,7 +133,7 @@ def simulate(model: Compiled, index: int, starts: Array, borders: Array, zero: f
         tables.by_both, model.courses(piece), tables.kinds, np.ascontiguousarray(generic),
         np.stack([model.values[:n_lin][order], model.slopes[:n_lin][order]]), tables.yields,
         n_law > 0 or _has_law(node), model.law, model.places, model.scales, problem.size, problem.speed,
-        model.remembers,
+        model.uses,
     )  # fmt: skip
     drive, drives = piece.drive, np.ones((1, len(piece.drive)))
     delay = model.delay()

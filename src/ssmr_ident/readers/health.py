@@ -128,7 +128,7 @@ def _channel_health(channel: Channel, logged: Series) -> ChannelHealth:
         float(finite.std()) if len(finite) else float("nan"),
         len(logged.samples) - len(finite),
         repeated,
-        at_rails(channel) or saturated(logged.samples) or cut_off(logged.samples),
+        at_rails(channel) or saturated(logged.samples) or int(cut_off(logged.samples).sum()),
         len(logged.samples),
         logged.rate,
         float(logged.time[0]),
@@ -194,36 +194,50 @@ def saturated(samples: np.ndarray) -> int:
     return longest if longest >= _SATURATED else 0
 
 
-def cut_off(samples: np.ndarray) -> int:
+def cut_off(samples: np.ndarray) -> np.ndarray:
     """Samples that stand, three and more in a row, at the largest or the smallest value of a channel that elsewhere
     moves: a signal that goes beyond its range again and again.
 
     A converter's coarse steps make flat tops as well, but from those the signal falls by one step; from a range that
     is exceeded it falls at the slope it came with.
+
+    Parameters
+    ----------
+    samples : (n,) float
+
+    Returns
+    -------
+    (n,) bool
     """
-    finite = samples[np.isfinite(samples)] if len(samples) and not np.isfinite(np.ptp(samples)) else samples
-    if len(finite) < _SATURATED:
-        return 0
-    high, low = float(finite.max()), float(finite.min())
-    if np.count_nonzero(finite == high) < _RUN * _PLACES and np.count_nonzero(finite == low) < _RUN * _PLACES:
-        return 0
+    cut = np.zeros(len(samples), dtype=bool)
+    if len(samples) < _SATURATED:
+        return cut
+    given, high, low = samples, float(samples.max()), float(samples.min())
+    if not np.isfinite(high - low):  # copy a long channel only when it must be
+        given = np.where(np.isfinite(samples), samples, np.nan)
+        finite = given[np.isfinite(given)]
+        high, low = float(finite.max(initial=-np.inf)), float(finite.min(initial=np.inf))
+    if np.count_nonzero(given == high) < _RUN * _PLACES and np.count_nonzero(given == low) < _RUN * _PLACES:
+        return cut
     falls: list[float] = []
-    total, places, inside = 0, 0, np.ones(len(finite), dtype=bool)
+    places, inside = 0, np.isfinite(given)
     for extreme in (high, low):
-        at = finite == extreme
+        at = given == extreme
         edges = np.flatnonzero(np.diff(np.r_[False, at, False]))
         begins, ends = edges[::2], edges[1::2]
         long = ends - begins >= _RUN
-        total, places = total + int((ends - begins)[long].sum()), places + int(long.sum())
-        before, behind = begins[long] - 1, ends[long]
-        falls += np.abs(extreme - finite[before[before >= 0]]).tolist()
-        falls += np.abs(extreme - finite[behind[behind < len(finite)]]).tolist()
+        places += int(long.sum())
+        for begin, end in zip(begins[long], ends[long], strict=True):
+            cut[begin:end] = True
+            falls += [
+                abs(extreme - given[k]) for k in (begin - 1, end) if 0 <= k < len(given) and np.isfinite(given[k])
+            ]
         inside &= ~at
-    resting = np.mean(np.diff(finite[inside]) == 0) if inside.sum() > 1 else 1.0
-    if places < _PLACES or not falls or resting > _RESTS or high == low:
-        return 0
-    step = float(np.diff(np.unique(finite)).min())
-    return total if float(np.median(falls)) > _RUN * step else 0
+    resting = np.mean(np.diff(given[inside]) == 0) if inside.sum() > 1 else 1.0
+    step = float(np.diff(np.unique(given[np.isfinite(given)])).min(initial=np.inf))
+    if places < _PLACES or not falls or resting > _RESTS or high == low or np.median(falls) <= _RUN * step:
+        return np.zeros(len(samples), dtype=bool)
+    return cut
 
 
 def warnings_of(channels: tuple[Channel, ...]) -> list[Note]:
@@ -243,7 +257,7 @@ def warnings_of(channels: tuple[Channel, ...]) -> list[Note]:
             notes.append(
                 Note("warning", f"{name} clipped: {rails} sample(s) at the rails, ±1.7 g exceeded", channel.name)
             )
-        elif not flat and channel.unit in _AMPLIFIED and (cut := cut_off(channel.samples)):
+        elif not flat and channel.unit in _AMPLIFIED and (cut := int(cut_off(channel.samples).sum())):
             low, high = float(np.nanmin(channel.samples)), float(np.nanmax(channel.samples))
             text = (
                 f"{name} is cut off: {cut} samples stand at its ends ({low:.4g}, {high:.4g} {channel.unit}); clipped?"

@@ -46,6 +46,12 @@ class Backbone(Shown):
     omega_trend_p: float
     xi_trend_p: float
 
+    @property
+    def mean_xi(self) -> tuple[float, float]:
+        """Mean damping of the windows and its standard deviation; windows overlap by half."""
+        weight = self.xi_std**-2.0
+        return float(weight @ self.xi / weight.sum()), float(np.sqrt(2.0 / weight.sum()))
+
     def __str__(self) -> str:
         lines = ["  amplitude   omega_n rad/s          xi"]
         for row in zip(self.amplitude, self.omega_n, self.omega_n_std, self.xi, self.xi_std, strict=True):

@@ -13,6 +13,9 @@ from ssmr_ident.identify.posterior.most_probable import Posterior, Unknown
 CONFLICT_SIGMAS = 3.0
 TRADE_OFF = 0.95
 
+TREND = 1e-3
+"""Chance of a trend with amplitude below which it is told."""
+
 
 def posterior_findings(
     posterior: Posterior, hidden: Collection[str] = (), known: Sequence[Unknown] | None = None
@@ -127,10 +130,10 @@ def amplitude_findings(name: str, trends: Mapping[str, float], falls: bool, smal
         Frequency at small amplitude, as text.
     """
     found = []
-    if trends["omega"] < 1e-3:
+    if trends["omega"] < TREND:
         kind = "softening" if falls else "hardening"
         found.append(f"{name}: the frequency depends on amplitude ({kind}); at small amplitudes it is {small}")
-    if trends["xi"] < 1e-3:
+    if trends["xi"] < TREND:
         found.append(f"{name}: the damping depends on amplitude, so it is not viscous alone")
     return found
 

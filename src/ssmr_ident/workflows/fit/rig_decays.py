@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -12,10 +13,14 @@ from ssmr_ident.experiments.campaign import Measurement
 from ssmr_ident.identify.decays.backbone import backbone
 from ssmr_ident.identify.decays.fit import fit_decay
 from ssmr_ident.identify.decays.result import DecayFit
-from ssmr_ident.identify.posterior.findings import amplitude_findings
+from ssmr_ident.identify.posterior.findings import TREND, amplitude_findings
 from ssmr_ident.identify.posterior.most_probable import Observation
 from ssmr_ident.identify.rigs.frequency_domain import DERIVATIVES
+from ssmr_ident.readers.health import cut_off
 from ssmr_ident.report.figures_fit import NamedBackbone
+
+REST = 128
+"""Samples that a decay must have beyond its sensor's range to be fitted there."""
 
 
 def modes_after_a_hit(
@@ -80,12 +85,13 @@ def free_decay(
             "Map the header in session.yaml under channels",
         )
     samples = recording[name]
+    start = _after_the_range(measurement.name, recording.time, samples, findings)
     try:
-        fit = fit_decay(recording.time, samples, modes=1, unit=recording.channel(name).unit)
+        fit = fit_decay(recording.time, samples, start_s=start, modes=1, unit=recording.channel(name).unit)
     except InputError as error:
         raise InputError(f"{recording.provenance.file}: {name}", error.problem, error.mend) from None
     mode = fit.dominant
-    covariance = fit.covariance.copy()
+    omega, xi, covariance = mode.omega_n, mode.xi, fit.covariance.copy()
     text = [*str(fit).splitlines()]
     trend = backbone(recording.time, samples, fit)
     result = _decay_numbers(fit)
@@ -103,6 +109,12 @@ def free_decay(
             # Where the mode drifts over the record, one pair of numbers is no better known than the drift is wide.
             covariance[0, 0] += float(np.var(trend.omega_n))
             covariance[1, 1] += float(np.var(trend.xi))
+            if p_values["omega"] < TREND:
+                omega, (xi, std) = trend.small_omega_n, trend.mean_xi  # what a small motion has
+                covariance[1, 1] = std**2 + float(np.var(trend.xi)) / len(trend.xi)
+                result |= {"xi": xi, "xi_std": math.sqrt(covariance[1, 1])}
+                text = [f"no one frequency over the record; in windows of a few periods xi = {xi:.4g} ± {std:.2g}",
+                        *str(trend).splitlines()]  # fmt: skip
     lines[measurement.name] = tuple(text)
     results[measurement.name] = {"experiment": measurement.entry.experiment, **result}
 
@@ -112,7 +124,23 @@ def free_decay(
         omega = np.sqrt(max(stiffness / mass, 1e-12))
         return np.array([omega, damping / (2 * mass * omega)])
 
-    return Observation(measurement.name, ("omega_n", "xi"), np.array([mode.omega_n, mode.xi]), covariance, predict)
+    return Observation(measurement.name, ("omega_n", "xi"), np.array([omega, xi]), covariance, predict)
+
+
+def _after_the_range(name: str, time: np.ndarray, samples: np.ndarray, findings: list[str]) -> float | None:
+    """Time from which a decay stays within its sensor's range, where it has left it [s]."""
+    cut = np.flatnonzero(cut_off(samples))
+    if not len(cut):
+        return None
+    first = int(cut[-1]) + 1
+    if len(samples) - first < REST:
+        findings.append(f"{name}: {len(cut)} clipped samples up to its end; xi and frequency are those of a cut signal")
+        return None
+    start = float(time[first])
+    findings.append(
+        f"{name}: {len(cut)} clipped samples; the decay is fitted after the last of them, from {start:.4g} s on"
+    )
+    return start
 
 
 def _decay_numbers(fit: DecayFit) -> dict[str, Any]:
