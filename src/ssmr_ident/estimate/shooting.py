@@ -73,6 +73,8 @@ def shot(
             better = False
             for _ in range(4):
                 trial = _joined(current, point, states, local, mean, precision, weight, sizes, damping, held)
+                if trial is None:
+                    break
                 moved = bounded(node, trial[0])
                 new = _shooting(
                     problem,
@@ -108,7 +110,7 @@ def shot(
     return Start(point, tuple(nuisances))
 
 
-@np.errstate(over="ignore", invalid="ignore")  # a cost that is not finite is refused
+@np.errstate(over="ignore", invalid="ignore")  # what is not finite is refused
 def _shooting(problem, node, point, states, local, borders, weights, weight, local_scales, mean, precision):
     """Cost of stretches and defects, and what their elimination takes."""
     model = Compiled.of(problem, node, point, problem.pieces)
@@ -147,13 +149,17 @@ def _shooting(problem, node, point, states, local, borders, weights, weight, loc
         f[..., : k + p] = s.dends[..., : k + p]
         if driven:
             f[..., k + p] = s.dends[..., -1]
+        if not (np.isfinite(normal).all() and np.isfinite(f).all()):
+            return math.inf, ()
         gap = np.vstack([defect, np.zeros((1, k))])
         systems.append((normal[:, :-1, :-1].copy(), normal[:, :-1, -1].copy(), f, gap, driven + c, local_scales[index]))
     return cost, systems
 
 
+@np.errstate(over="ignore", invalid="ignore")
 def _joined(current, point, states, local, mean, precision, weight, sizes, damping, held):
-    """One Gauss-Newton step of everything: parameters, nuisances, states at the borders."""
+    """One Gauss-Newton step of everything: parameters, nuisances, states at the borders; None where slopes have grown
+    beyond all numbers."""
     p, kept = len(point), []
     left, right = np.diag(precision + 1e-12), -precision * (point - mean)
     for index, (h, g, f, gap, _, scale) in enumerate(current[1]):
@@ -167,6 +173,8 @@ def _joined(current, point, states, local, mean, precision, weight, sizes, dampi
         right = right - b[:p] + a[:p, p:] @ solved[:, -1]
         kept.append((gain, by_par, base, solved))
     whole = left + damping * np.diag(np.maximum(np.diag(left), 1e-12))
+    if not (np.isfinite(whole).all() and np.isfinite(right).all()):
+        return None
     step = np.zeros(p) if held else solved_evenly(whole, right)
     new_states, new_local = [], []
     for index, (gain, by_par, base, solved) in enumerate(kept):
