@@ -160,3 +160,11 @@ def test_a_law_of_another_kind_does_not_stand_for_a_kind_that_is_certainly_bette
     found = decide([BASE, law, shape, both, over_time])
     assert found.chosen is over_time
     assert not found.listed
+
+
+def test_where_the_first_ones_variable_leaves_noise_alone_a_second_law_of_it_is_its_formula() -> None:
+    first = row("dry_friction", "static_force", 22_440.0, 5120.0, 1.01, variables=("v",))
+    pair = row("dry_friction unlisted", "static_force static_force", 22_490.0, 5000.0, 0.98, variables=("v", "v"))
+    shape = row("dry_friction unlisted", "static_force static_force", 22_475.0, 4980.0, 0.978, True, ("v", "v"))
+    found = decide([BASE, first, pair, shape])
+    assert found.chosen is first

@@ -107,6 +107,25 @@ def test_kernel_is_the_simulator_and_its_slopes_are_differences(member, agree: f
         assert np.abs(differences - slopes).max() < 3e-3 * np.abs(differences).max()
 
 
+@pytest.mark.parametrize("variable", ["x", "v", ""])
+def test_a_shape_of_one_variable_moves_the_rig_beside_a_law(variable: str) -> None:
+    own = driven(2e5, 0.0, seconds=2.0)
+    p = problem(own)
+    paths = [smoothed(own, p.frequency, p.size)]
+    node = Node(p.baseline, (friction(5.0), static(p, paths, variable)))
+    start, borders = np.zeros((1, node.states)), np.array([0, len(own.y)])
+    point = np.array([c.mean for c in node.coordinates])
+    point[-2:] = 0.7, 0.1
+    found = simulate(compiled(p, node, point), 0, start, borders, 0.0)
+    for k in range(3, len(point) - 2):
+        moved = point.copy()
+        moved[k] += 1e-6
+        differences = (simulate(compiled(p, node, moved), 0, start, borders, 0.0).y - found.y)[:, 0] / 1e-6
+        slopes = found.dy[:, 0, node.states + k]
+        assert np.abs(differences).max() > 0.0
+        assert np.abs(differences - slopes).max() < 3e-3 * np.abs(differences).max()
+
+
 def test_elimination_is_dense_algebra() -> None:
     random = np.random.default_rng(5)
     count, n, m = 5, 2, 3

@@ -126,7 +126,7 @@ def stands(row: Row, rows: Sequence[Row]) -> bool:
     for alone in (rows for rows in found if rows):
         best = max(alone, key=lambda r: r.log_evidence)
         least = min(r.over for r in alone)
-        halved = row.over**2 - 1.0 < HALVED * max(least**2 - 1.0, 0.0)
+        halved = least > 1.0 and row.over**2 - 1.0 < HALVED * (least**2 - 1.0)
         explained = HALVED * row.over**2 < min(r.over for r in rows if math.isfinite(r.over)) ** 2
         only_noise = explained and row.left.follows < FOLLOWS and row.left.uneven < UNEVEN
         takes = halved or (only_noise and row.chi2 < (1.0 - FORMULA) * best.chi2)

@@ -407,7 +407,7 @@ def merged(node: Node) -> Tables:
     """The tables of a node's generic members side by side; each kind fills places of its own."""
     found = Tables()
     for own in (m.tables for m in node.members if m.tables):
-        if own.by_position.shape[1]:
+        if own.size > len(own.kinds) + len(own.yields):
             found = replace(own, courses=found.courses, kinds=found.kinds, yields=found.yields)
         if len(own.kinds):
             found = replace(found, courses=own.courses, kinds=own.kinds)
