@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 import time
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
 
 from ssmr_ident.doctor.fitted import (
     BEGUN,
     FAR_OFF,
-    FULL,
     SHORT,
     Progress,
     Search,
@@ -25,7 +25,7 @@ from ssmr_ident.doctor.fitted import (
 from ssmr_ident.doctor.kinds import kinds
 from ssmr_ident.doctor.named import named_along
 from ssmr_ident.doctor.networks import members_of_network
-from ssmr_ident.doctor.rules import FORMULA
+from ssmr_ident.doctor.rules import FORMULA, TIE
 from ssmr_ident.doctor.second import FULL_KINDS, exchanged, second
 from ssmr_ident.doctor.table import Row
 from ssmr_ident.estimate.coarser import coarser
@@ -38,7 +38,7 @@ from ssmr_ident.estimate.regression import regressed
 from ssmr_ident.estimate.shooting import shot
 from ssmr_ident.estimate.smoother import smoothed
 from ssmr_ident.estimate.stretches import in_stretches, predictable, sampled
-from ssmr_ident.estimate.values import Fit, Problem, Start, with_noises
+from ssmr_ident.estimate.values import Fit, Problem, Start, Stop, with_noises
 from ssmr_ident.physics.network import ONE
 
 NEAR = 200.0
@@ -46,8 +46,8 @@ NEAR = 200.0
 ``FORMULA`` of the misfit at the most, for means over several samples are a little off themselves."""
 
 
-ENDED = 2
-"""Models, the best ones on every sample, that are fitted to their end."""
+ROUNDS = 6
+"""Short fits, one after the other, by which a model that may still be the best goes to its end."""
 
 
 def searched(problem: Problem, budget: float = math.inf, progress: Progress | None = None) -> Search:
@@ -147,11 +147,32 @@ def _in_full(search: Search, whole: Problem, begins: Sequence[int], say: Progres
         start = Start(row.fit.point, carried(row.fit.node, found)) if chaotic else _at_begins(row.fit, begins)
         start = Start(found.point, found.nuisances) if row.fit is best else start
         new.add(polish(problem, row.fit.node, start, SHORT if row in near or not row.ids else BEGUN))
-    for fit in sorted(new.fits, key=lambda f: f.cost)[:ENDED]:
-        new.add(again(problem, fit, FULL))
+    _ended(new)
     offered_back(new, 1)
     offered_up(new)
     return new
+
+
+def _ended(search: Search) -> None:
+    """Models that may still come within a tie of the best go on until they have ended: those that promise half of what
+    they lack, for valleys bend."""
+    gone: Counter[str] = Counter()
+    while not search.late:
+        best = search.rows()[0].log_evidence
+        open_rows = [
+            r
+            for r in search.rows()
+            if r.fit is not None
+            and r.fit.stop is Stop.STEPS
+            and gone[r.name] < ROUNDS
+            and r.log_evidence + r.fit.promised > best - TIE
+        ]
+        if not open_rows:
+            return
+        fit = open_rows[0].fit
+        assert fit is not None
+        gone[fit.node.name] += 1
+        search.add(again(search.problem, fit, SHORT))
 
 
 def _at_begins(fit: Fit, begins: Sequence[int]) -> Start:

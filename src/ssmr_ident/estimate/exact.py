@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -86,7 +87,7 @@ def polish(problem: Problem, node: Node, start: Start, steps: int = 30, freeze: 
     cost = total(chi2, point, nuisances)
     if not math.isfinite(cost):
         return _failed(problem, node, point, nuisances)
-    damping, stop = 1e-3, Stop.STEPS
+    damping, gain, stop = 1e-3, 0.0, Stop.STEPS
     for _ in range(steps):
         lower_any, enough = False, LEAST_GAIN + LEAST_SHARE * cost
         for _ in range(6):
@@ -110,7 +111,11 @@ def polish(problem: Problem, node: Node, start: Start, steps: int = 30, freeze: 
         if gain < enough:
             stop = Stop.CONVERGED
             break
-    return _finished(node, point, nuisances, mean, precision, scales, chi2, residuals, parts, stop, held)
+    further = 0.0
+    if stop is Stop.STEPS:
+        further = max(gain, _step(parts, point, nuisances, mean, precision, scales, 0.0, held)[2])
+    found = _finished(node, point, nuisances, mean, precision, scales, chi2, residuals, parts, stop, held)
+    return replace(found, promised=further)
 
 
 def damped_next(ratio: float) -> float:

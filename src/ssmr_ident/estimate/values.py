@@ -100,6 +100,9 @@ class Fit:
     dof : float
         Parameters that the data decide, of those with a prior in part.
     stop : Stop
+    promised : float
+        Of a fit whose steps were used up, what the cost may fall by yet: what its last step gained, or what a straight
+        line promises where that is more.
     """
 
     node: Node
@@ -111,6 +114,7 @@ class Fit:
     prior: float
     dof: float
     stop: Stop = Stop.CONVERGED
+    promised: float = 0.0
 
     @property
     def cost(self) -> float:
