@@ -21,11 +21,11 @@ Array = np.ndarray
 
 FINER = (0.5, 0.25, 0.12)
 """Steps, in logarithms, by which the best shape of a grid is made better along the path."""
-VARIABLES = {"nonlinear_stiffness": "x", "free_play": "x", "quadratic_damping": "v", "dry_friction": "v"}
-"""Static forces of the catalogue by the one variable that they are a function of."""
 
 LEAST = 1e-3
 """Of an amplitude's usual size, what a coordinate's unit is at the least: of less data would seem to know nothing."""
+
+UNLISTED = "unlisted"
 
 SINE = "sine"
 """Of what turns alone."""
@@ -49,6 +49,8 @@ class Form:
         ``settle(coefficient, unit, k)``: the same at the amplitude that least squares found.
     moved : mapping of str to bool
         Parameters that are fitted; True for a logarithm.
+    variable : str
+        ``x`` or ``v``, of which alone it is a function.
     """
 
     effect: str
@@ -58,6 +60,7 @@ class Form:
     unit: Callable[[Shape, float, float, float, float], Shape]
     settle: Callable[[float, Shape, float], Shape]
     moved: Mapping[str, bool]
+    variable: str = ""
 
 
 def _scaled(*names: str) -> Callable[[float, Shape, float], Shape]:
@@ -72,11 +75,11 @@ def _loop(c: float, unit: Shape, k: float) -> Shape:
     return {**unit, "alpha": float(np.clip(1.0 - c * (1.0 - unit["alpha"]), 0.02, 0.98))}
 
 
-def _term(term: str, size: Callable[[float, float, float], float]) -> Form:
+def _term(term: str, size: Callable[[float, float, float], float], variable: str = "") -> Form:
     def unit(s: Shape, k: float, x: float, v: float, f: float) -> Shape:
         return {term: size(x, v, f)}
 
-    return Form("unlisted", STATIC, TERMS[term], _none, unit, _scaled(term), {term: False})
+    return Form(UNLISTED, STATIC, TERMS[term], _none, unit, _scaled(term), {term: False}, variable)
 
 
 def _grid(name: str, *shares: float) -> Callable[[float, float, float], Sequence[Shape]]:
@@ -90,21 +93,25 @@ def _travel(x: float, v: float, f: float) -> Sequence[Shape]:
 
 FORMS = (
     Form("nonlinear_stiffness", STATIC, "cubic", _none,
-         lambda s, k, x, v, f: {"k3_N_m3": f / x**3}, _scaled("k3_N_m3"), {"k3_N_m3": False}),
+         lambda s, k, x, v, f: {"k3_N_m3": f / x**3}, _scaled("k3_N_m3"), {"k3_N_m3": False},
+         "x"),
     Form("nonlinear_stiffness", STATIC, "two slopes", _grid("knee_m", 0.2, 0.4, 0.6, 0.8, 0.9),
-         lambda s, k, x, v, f: {"knee_share": 1.0, **s}, _scaled("knee_share"), {"knee_share": False, "knee_m": True}),
+         lambda s, k, x, v, f: {"knee_share": 1.0, **s}, _scaled("knee_share"), {"knee_share": False, "knee_m": True},
+         "x"),
     Form("nonlinear_stiffness", STATIC, "cubic and two slopes",
          _grid("knee_m", 0.3, 0.6, 0.85),
          lambda s, k, x, v, f: {"knee_share": 1.0, "k3_N_m3": 0.3 * k / x**2, **s}, _scaled("knee_share", "k3_N_m3"),
-         {"knee_share": False, "knee_m": True, "k3_N_m3": False}),
+         {"knee_share": False, "knee_m": True, "k3_N_m3": False}, "x"),
     Form("nonlinear_stiffness", STATIC, SINE, _none,
-         lambda s, k, x, v, f: {"sine_share": 1.0}, _scaled("sine_share"), {"sine_share": False}),
+         lambda s, k, x, v, f: {"sine_share": 1.0}, _scaled("sine_share"), {"sine_share": False}, "x"),
     Form("free_play", STATIC, "", _grid("gap_m", 0.05, 0.15, 0.3, 0.5, 0.8, 1.2),
-         lambda s, k, x, v, f: {"rounding": 0.1, **s}, lambda c, unit, k: unit, {"gap_m": True, "rounding": True}),
+         lambda s, k, x, v, f: {"rounding": 0.1, **s}, lambda c, unit, k: unit, {"gap_m": True, "rounding": True},
+         "x"),
     Form("quadratic_damping", STATIC, "", _none, lambda s, k, x, v, f: {"d2_N_s2_m2": f / v**2}, _scaled("d2_N_s2_m2"),
-         {"d2_N_s2_m2": False}),
+         {"d2_N_s2_m2": False}, "v"),
     Form("dry_friction", STATIC, "tanh", _grid("rounding_m_s", 0.01, 0.03, 0.1, 0.3),
-         lambda s, k, x, v, f: {"F_c_N": f, **s}, _scaled("F_c_N"), {"F_c_N": False, "rounding_m_s": True}),
+         lambda s, k, x, v, f: {"F_c_N": f, **s}, _scaled("F_c_N"), {"F_c_N": False, "rounding_m_s": True},
+         "v"),
     Form("dry_friction", MEMORY, "Dahl", _travel,
          lambda s, k, x, v, f: {"F_c_N": f, "slider": 0.0, **s}, _scaled("F_c_N", "element_stiffness_N_m"),
          {"F_c_N": False, "element_stiffness_N_m": True}),
@@ -116,17 +123,17 @@ FORMS = (
     Form("hysteresis", MEMORY, "Bouc-Wen, n = 1", _grid("yield_m", 0.05, 0.15, 0.35, 0.7, 1.2),
          lambda s, k, x, v, f: {"alpha": 0.5, "exponent": 1.0, "shape": 0.0, **s}, _loop,
          {"alpha": False, "yield_m": True, "shape": False}),
-    _term("c_abs_v_N_s_m", lambda x, v, f: f / v),
+    _term("c_abs_v_N_s_m", lambda x, v, f: f / v, "v"),
     Form("unlisted", STATIC, "|s - place|", _grid("place_m", -0.4, 0.0, 0.4),
          lambda s, k, x, v, f: {"c_abs_s_N_m": f / x, **s}, _scaled("c_abs_s_N_m"),
-         {"c_abs_s_N_m": False, "place_m": False}),
-    _term("c_s2_N_m2", lambda x, v, f: f / x**2),
-    _term("c_v2_N_s2_m2", lambda x, v, f: f / v**2),
+         {"c_abs_s_N_m": False, "place_m": False}, "x"),
+    _term("c_s2_N_m2", lambda x, v, f: f / x**2, "x"),
+    _term("c_v2_N_s2_m2", lambda x, v, f: f / v**2, "v"),
     _term("c_sv_N_s_m2", lambda x, v, f: f / (x * v)),
     _term("c_s2v_N_s_m3", lambda x, v, f: f / (x**2 * v)),
-    _term("c_v3_N_s3_m3", lambda x, v, f: f / v**3),
+    _term("c_v3_N_s3_m3", lambda x, v, f: f / v**3, "v"),
     _term("c_s_abs_v_N_s_m2", lambda x, v, f: f / (x * v)),
-    _term("c_root_v_N_s05_m05", lambda x, v, f: f / v**0.5),
+    _term("c_root_v_N_s05_m05", lambda x, v, f: f / v**0.5, "v"),
 )  # fmt: skip
 
 
@@ -173,10 +180,9 @@ def proposals(problem: Problem, found: Fit, paths: Sequence[Array], beside: Sequ
         column = law_along(problem, paths, first, law.id, own, stiff)
         plain = np.column_stack([plain, column / max(float(np.sqrt(np.mean(column**2))), 1e-300)])
     result = []
-    taken = {m.id for m in beside}
     sizes = reach, fastest, 0.3 * size
     turns = any(unit.startswith("rad") for unit in problem.pieces[0].units)
-    for form in (f for f in FORMS if f.effect not in taken and (turns or f.name != SINE)):
+    for form in (f for f in FORMS if _another(f, beside) and (turns or f.name != SINE)):
         along = partial(on_path, form, partial(law_along, problem, paths, first), plain, force, stiff, sizes)
         rest, shape, k, d, values = best_shape(along, form.shapes(*sizes))
         member = member_of(form, values, form.unit(shape, stiff, *sizes), reach)
@@ -186,6 +192,15 @@ def proposals(problem: Problem, found: Fit, paths: Sequence[Array], beside: Sequ
         promise = -0.5 * (np.log(max(rest, 1e-300)) + len(form.moved) * np.log(count) / count)
         result.append(Proposal(node, Start(point, paths=tuple(paths)), promise))
     return sorted(result, key=lambda p: -p.promise)
+
+
+def _another(form: Form, beside: Sequence[Member]) -> bool:
+    """Whether a form is another effect than those beside it: a term in no list, over the variable of a law, is that
+    law's formula."""
+    return not any(
+        m.id == form.effect or (form.variable and form.variable == m.variable and UNLISTED in (m.id, form.effect))
+        for m in beside
+    )
 
 
 def simpler(node: Node) -> list[Node]:
@@ -244,8 +259,7 @@ def member_of(form: Form, values: Shape, unit: Shape, reach: float) -> Member:
             low, high = max(low, 1e-3 * scale), min(high, 1e3 * scale)
         coordinates.append(Coordinate(name, scale, log, low, high, 0.0, 3.0 if log else np.inf, p.unit))
     held = {name: value for name, value in values.items() if name not in form.moved}
-    variable = VARIABLES.get(form.effect, "") if form.kind == STATIC else ""
-    return Member(form.effect, form.kind, form.name, tuple(coordinates), law=held, variable=variable)
+    return Member(form.effect, form.kind, form.name, tuple(coordinates), law=held, variable=form.variable)
 
 
 def _begun(node: Node, found: Fit, given: Sequence[float], member: Member, values: Shape) -> Array:
@@ -264,5 +278,5 @@ def law_along(
     e = effect_vector({effect: values})
     out = np.empty(first[-1])
     for piece, path, at in zip(problem.pieces, paths, first[:-1], strict=True):
-        force_along(path, piece.step * piece.every, stiffness, e, effect == "unlisted", out[at : at + len(path)])
+        force_along(path, piece.step * piece.every, stiffness, e, effect == UNLISTED, out[at : at + len(path)])
     return out

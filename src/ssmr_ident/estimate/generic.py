@@ -11,14 +11,14 @@ from scipy.interpolate import BSpline
 from scipy.linalg import eigh
 
 from ssmr_ident.estimate.motion_kernel import BY_INERTIA, BY_POSITION, BY_VELOCITY
-from ssmr_ident.estimate.node import BRANCH, LAG, RIDER, Coordinate, Member, Tables
+from ssmr_ident.estimate.node import BRANCH, LAG, MEMORY, RIDER, Coordinate, Member, Tables
 from ssmr_ident.estimate.pieces import Piece
 from ssmr_ident.estimate.values import Problem
 from ssmr_ident.physics.network import ONE
 
 Array = np.ndarray
 
-STATIC, MEMORY, EXTRA, CHANGING, SENSOR = "static_force", "memory", "extra_motion", "changing", "sensor_chain"
+STATIC, EXTRA, CHANGING, SENSOR = "static_force", "extra_motion", "changing", "sensor_chain"
 ANY, BY_RECORDING = "any shape", "by recording"
 
 CELLS = 400

@@ -52,7 +52,8 @@ def _force(x, v, z, time, row, drive, g, slopes, with_slopes):
     (reach, steep, tab_x, tab_v, tab_xv, courses, course_kind, c, linear, yields, has_law, e, law_index, law_scale,
      size_x, size_v, uses) = g  # fmt: skip
     jenkins = len(yields)
-    hidden = jenkins + (STATES if has_law else 0)
+    remembers = uses[3] or uses[4] or uses[5]
+    hidden = jenkins + (STATES if remembers else 0)
     f, fx, fv = 0.0, 0.0, 0.0
     at = 0
     first = hidden + linear.shape[1]
@@ -123,7 +124,7 @@ def _force(x, v, z, time, row, drive, g, slopes, with_slopes):
             slopes[first + at] = z[k]
         at += 1
     if has_law:
-        h = (z[jenkins], z[jenkins + 1], z[jenkins + 2])
+        h = (z[jenkins], z[jenkins + 1], z[jenkins + 2]) if remembers else (0.0, 0.0, 0.0)
         stiffness = linear[0, 2]
         dx, dv = TINY * size_x, TINY * size_v
         dk = TINY * stiffness if stiffness > 0.0 else TINY

@@ -18,6 +18,9 @@ from ssmr_ident.physics.slots import SLOTS, effect_vector
 Array = np.ndarray
 
 LAG, BRANCH, RIDER = "lag", "branch", "rider"
+
+MEMORY = "memory"
+"""The kind of what has states of its own that no log shows."""
 """Linear members: a slow sensor, a Maxwell branch, a part of the mass on a spring of its own."""
 
 
@@ -249,7 +252,7 @@ class Node:
     @property
     def hidden_states(self) -> int:
         jenkins = sum(len(m.tables.yields) for m in self.members if m.tables)
-        return jenkins + (STATES if any(m.law is not None for m in self.members) else 0)
+        return jenkins + (STATES if any(m.law is not None and m.kind == MEMORY for m in self.members) else 0)
 
     @property
     def states(self) -> int:

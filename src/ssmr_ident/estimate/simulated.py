@@ -10,17 +10,23 @@ from scipy.interpolate import CubicSpline
 
 from ssmr_ident.estimate.instrument import OUTPUT, passed_on
 from ssmr_ident.estimate.motion_kernel import run
-from ssmr_ident.estimate.node import Node, Tables, law_places, law_vector, merged, stepped_with_slopes
+from ssmr_ident.estimate.node import MEMORY, Node, Tables, law_places, law_vector, merged, stepped_with_slopes
 from ssmr_ident.estimate.pieces import Piece
 from ssmr_ident.estimate.values import Problem
 
 Array = np.ndarray
 
-REMEMBER = ("dry_friction", "hysteresis", "viscoelastic_relaxation", "unlisted")
-"""Laws by the hidden state of an element that they use; the last one by its terms."""
+REMEMBER = ("dry_friction", "hysteresis", "viscoelastic_relaxation")
+"""Laws by the hidden state of an element that they use."""
 
-SEES = {"v": (True, False, False), "x": (False, True, True)}
-"""Whether a law of one variable looks at speed, deflection, the rig's stiffness; others may look at all."""
+SEES = {
+    "v": (True, False, False),
+    "x": (False, True, True),
+    "dry_friction": (False, False, False),
+    "hysteresis": (False, True, True),
+}
+"""Whether a law looks at speed, deflection, the rig's stiffness: by the one variable that it is a function of, or by
+its id, where it has a state of its own; others may look at all."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,8 +57,9 @@ class Compiled:
         """(7,) bool: what the laws look at (speed, deflection, stiffness, three hidden states), and whether any has
         terms that no list holds."""
         laws = [m for m in self.node.members if m.law is not None]
-        sees = np.array([SEES.get(m.variable, (True, True, True)) for m in laws], dtype=bool).reshape(-1, 3)
-        return np.concatenate([sees.any(axis=0), [any(m.id == name for m in laws) for name in REMEMBER]])
+        sees = np.array([SEES.get(m.variable or m.id, (True, True, True)) for m in laws], dtype=bool).reshape(-1, 3)
+        remembers = [any(m.id == name and m.kind == MEMORY for m in laws) for name in REMEMBER]
+        return np.concatenate([sees.any(axis=0), remembers, [any(m.id == "unlisted" for m in laws)]])
 
     @property
     def turned(self) -> tuple[Array, Array, Array] | None:
