@@ -57,7 +57,9 @@ class Compiled:
         """(7,) bool: what the laws look at (speed, deflection, stiffness, three hidden states), and whether any has
         terms that no list holds."""
         laws = [m for m in self.node.members if m.law is not None]
-        sees = np.array([SEES.get(m.variable or m.id, (True, True, True)) for m in laws], dtype=bool).reshape(-1, 3)
+        sees = np.array(
+            [SEES.get(m.id if m.kind == MEMORY else m.variable, (True, True, True)) for m in laws], dtype=bool
+        ).reshape(-1, 3)
         remembers = [any(m.id == name and m.kind == MEMORY for m in laws) for name in REMEMBER]
         return np.concatenate([sees.any(axis=0), remembers, [any(m.id == "unlisted" for m in laws)]])
 
