@@ -168,3 +168,24 @@ def test_where_the_first_ones_variable_leaves_noise_alone_a_second_law_of_it_is_
     shape = row("dry_friction unlisted", "static_force static_force", 22_475.0, 4980.0, 0.978, True, ("v", "v"))
     found = decide([BASE, first, pair, shape])
     assert found.chosen is first
+
+
+def test_friction_that_never_slides_is_a_loop_by_another_name() -> None:
+    law = replace(row("dry_friction", "memory", 22_500.0, 5000.0), equal=("hysteresis",))
+    found = decide([BASE, law])
+    assert found.chosen is law
+    assert found.ties == ("hysteresis",)
+    assert found.confidence < 0.51
+
+
+def test_a_pair_stands_no_better_than_a_fallen_one_that_explains_more() -> None:
+    law = row("viscoelastic_relaxation", "memory", 7418.0, 3920.0, 1.236)
+    fallen = row("viscoelastic_relaxation unlisted", "memory static_force", 7508.0, 3724.0, 1.183, variables=("", "x"))
+    shape = row("viscoelastic_relaxation unlisted", "memory memory", 7483.0, 3741.0, 1.188, generic=True)
+    weaker = row("viscoelastic_relaxation hysteresis", "memory memory", 7490.0, 3759.0, 1.192)
+    weaker = replace(weaker, left=Left(2.0, 1.0))
+    base = row("", "", 0.0, 18_772.0, 3.286)
+    assert decide([base, law, weaker]).chosen is weaker
+    other_way = replace(weaker, ids=weaker.ids[::-1], kinds=weaker.kinds[::-1], log_evidence=7489.0)
+    assert decide([base, law, weaker, other_way]).confidence > 0.99
+    assert decide([base, law, fallen, shape, weaker]).chosen is law

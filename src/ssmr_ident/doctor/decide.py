@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ssmr_ident.doctor.rules import CERTAIN, FOLLOWS, FORMULA, HALVED, OVER_NOISE, SECOND, TIE, UNEVEN
-from ssmr_ident.doctor.table import Row
+from ssmr_ident.doctor.table import FRICTION, Row
 
-STATIC, MEMORY, FRICTION = "static_force", "memory", "dry_friction"
+STATIC, MEMORY = "static_force", "memory"
 MISSING, NOTHING, UNDETERMINED = "missing_physics", "nothing_missing", "undetermined"
 
 
@@ -62,7 +62,7 @@ def decide(rows: Sequence[Row]) -> Decision:
     """
     base = next(r for r in rows if not r.ids)
     everything = rows
-    rows = [r for r in rows if stands(r, rows)]
+    rows = standing(rows)
     best = max(rows, key=lambda r: r.log_evidence)
     if best.log_evidence - base.log_evidence < CERTAIN:
         noise = base.over < OVER_NOISE or (base.left.follows < FOLLOWS and base.left.uneven < UNEVEN)
@@ -79,7 +79,7 @@ def decide(rows: Sequence[Row]) -> Decision:
     if beaten and not needed(top, left, everything):
         return Decision(MISSING, best, False, (), _confidence(best, [r for r in rows if r.ids], left), shares, left)
     alike = [r for r in named if r.log_evidence > top.log_evidence - TIE]
-    ties = tuple(dict.fromkeys(i for r in alike for i in r.ids if i not in top.ids))
+    ties = tuple(dict.fromkeys(i for r in alike for i in (*r.ids, *r.equal) if i not in top.ids))
     return Decision(MISSING, top, True, ties, _confidence(top, named, left), shares, left)
 
 
@@ -111,6 +111,20 @@ def needed(law: Row, left: float, rows: Sequence[Row]) -> bool:
 def _formula(row: Row, variable: str) -> bool:
     """Whether a pair is a law with any shape of its own variable beside it; friction may be a memory as well."""
     return row.variables[1] == variable or (row.ids[0] == FRICTION and row.kinds[1] == MEMORY)
+
+
+def standing(rows: Sequence[Row]) -> list[Row]:
+    """Rows but for pairs that do not stand, and for pairs that one of these, with an effect in common, explains better:
+    they have no more to show for their second effect."""
+    found = [r for r in rows if stands(r, rows)]
+    fallen = [r for r in rows if r not in found and not r.generic]
+
+    def weaker(row: Row) -> bool:
+        return len(row.ids) > 1 and any(
+            set(row.ids) & set(other.ids) and other.log_evidence > row.log_evidence + TIE for other in fallen
+        )
+
+    return [r for r in found if not weaker(r)]
 
 
 def stands(row: Row, rows: Sequence[Row]) -> bool:
@@ -170,8 +184,9 @@ def _confidence(top: Row, others: Sequence[Row], left: float) -> float:
     """Posterior share of the chosen ids; evidence counts in sizes of what the explanation itself leaves, and what it
     leaves beside the best of any shape counts against it."""
     temper = max(top.chi2 / max(top.samples, 1.0), 1.0)
-    weights: dict[tuple[str, ...], float] = {}
+    weights: dict[frozenset[str], float] = {}
     for row in others:
         weight = math.exp(min((row.log_evidence - top.log_evidence) / temper, 0.0))
-        weights[row.ids] = max(weights.get(row.ids, 0.0), weight)
-    return (1.0 - min(left, 1.0)) * weights.get(top.ids, 1.0) / max(sum(weights.values()), 1.0)
+        for ids in (row.ids, row.equal) if row.equal else (row.ids,):
+            weights[frozenset(ids)] = max(weights.get(frozenset(ids), 0.0), weight)
+    return (1.0 - min(left, 1.0)) * weights.get(frozenset(top.ids), 1.0) / max(sum(weights.values()), 1.0)

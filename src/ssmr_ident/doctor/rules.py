@@ -33,3 +33,7 @@ nothing names it: one in thirty thousand under noise that knows nothing of the m
 UNEVEN = 10.0
 """Standard deviations in Gaussian noise by which the loudest window of what is left stands out of the mean one, from
 which something happened that no noise is. Set by judgement; heavy tails not calibrated."""
+
+LOOP = 0.5
+"""Travel of Dahl's friction, in RMS deflections, from which it is a loop as well: a swing from one end to the other,
+2.8 of these, no longer brings it within 1 % of what it slides at (5.3 travels); Dahl's law is Bouc's with n = 1."""

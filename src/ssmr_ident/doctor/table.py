@@ -8,7 +8,11 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ssmr_ident.doctor.left import Left
+from ssmr_ident.doctor.rules import LOOP
+from ssmr_ident.estimate.node import MEMORY
 from ssmr_ident.estimate.values import Fit, Problem
+
+FRICTION = "dry_friction"
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,6 +43,8 @@ class Row:
     fit : Fit or None
     variables : tuple of str
         Of which alone each member is a function; empty where it is of several, or is no static force.
+    equal : tuple of str
+        The same effects by other names, where another law makes the same force; else empty.
     """
 
     ids: tuple[str, ...]
@@ -53,6 +59,7 @@ class Row:
     heldout: float = math.nan
     fit: Fit | None = None
     variables: tuple[str, ...] = ()
+    equal: tuple[str, ...] = ()
 
 
 def log_evidence(fit: Fit, samples: float) -> float:
@@ -65,8 +72,19 @@ def row_of(fit: Fit, problem: Problem, zero: float = 0.0) -> Row:
     return Row(
         tuple(m.id for m in members), tuple(m.kind for m in members), fit.node.name, fit.node.generic,
         log_evidence(fit, problem.samples) - zero, fit.chi2, problem.samples, over_noise(problem, fit), fit=fit,
-        variables=tuple(m.variable for m in members),
+        variables=tuple(m.variable for m in members), equal=_equal(fit, problem.size),
     )  # fmt: skip
+
+
+def _equal(fit: Fit, size: float) -> tuple[str, ...]:
+    """Friction whose travel is as large as the motion is a loop by another name."""
+    names = [m.id for m in fit.node.members]
+    for k, member in enumerate(fit.node.members):
+        if member.id == FRICTION and member.kind == MEMORY:
+            own = fit.node.of(member, fit.point)
+            if own["F_c_N"] > LOOP * size * own["element_stiffness_N_m"]:
+                names[k] = "hysteresis"
+    return tuple(names) if names != [m.id for m in fit.node.members] else ()
 
 
 def over_noise(problem: Problem, fit: Fit) -> float:
