@@ -49,6 +49,14 @@ def test_a_named_law_beside_its_kind_in_any_shape() -> None:
     assert found.kinds[0].share > 0.99 > found.kinds[1].share
 
 
+def test_a_displaced_place_is_held_against_what_the_file_states() -> None:
+    """It has one place; a mast may lie anywhere in a band, and gains as much by chance."""
+    quiet = row("", "", 0.0, 5000.0, 1.0)
+    offset, mast = row("com_offset", "geometry", 9.0, 4990.0), row("flexible_mast", "extra_motion", 10.0, 4985.0)
+    assert decide([quiet, offset, mast]).chosen is offset
+    assert decide([quiet, replace(offset, log_evidence=7.0), mast]).verdict == NOTHING
+
+
 def test_two_laws_fit_alike() -> None:
     first = row("quadratic_damping", "static_force", 22_500.0, 5000.0)
     second = row("dry_friction", "static_force", 22_498.0, 5004.0)

@@ -12,7 +12,8 @@ from ssmr_ident.core.recording import Channel, Provenance, Recording
 from ssmr_ident.diagnose.setup import unknowns_of
 from ssmr_ident.doctor.decays.linear import fit_linear, system
 from ssmr_ident.doctor.decays.recordings import Decay, decay_of, segmented, thinned
-from ssmr_ident.doctor.decays.run import diagnose
+from ssmr_ident.doctor.decays.run import WEIGHED, alone, diagnose, diagnose_linear
+from ssmr_ident.doctor.table import Row
 from ssmr_ident.experiments import Scenario
 from ssmr_ident.experiments.campaign import Campaign, Measurement
 from ssmr_ident.identify.body.builder import RobotBuilder
@@ -146,3 +147,44 @@ def test_what_is_missing_is_named(effects, named: list[str]) -> None:
     found = diagnose(released(effects, trials=2))
     assert [effect.id for effect in found.effects] == named
     assert found.heldout.after < 1.4 * found.heldout.noise_floor
+
+
+def test_a_linear_effect_answers_alone() -> None:
+    def row(ids: str, kinds: str, evidence: float) -> Row:
+        return Row(tuple(ids.split()), tuple(kinds.split()), ids or "baseline", False, evidence, 5000.0, 5000.0)
+
+    base, mast = row("", "", 0.0), row("flexible_mast", "extra_motion", 33.0)
+    offset, belt = row("com_offset", "geometry", 12.0), row("motor_belt", "extra_motion", 19.0)
+    pair = row("flexible_mast motor_belt", "extra_motion extra_motion", 32.0)
+    assert alone(mast, [base, mast, pair, row("motor_belt", "extra_motion", 12.0)])
+    assert not alone(mast, [base, mast, pair, belt])
+    assert alone(offset, [base, offset, belt])
+    assert not alone(offset, [base, offset, mast])
+
+
+@pytest.mark.slow
+def test_a_displaced_centre_of_mass_is_named_with_what_to_weigh() -> None:
+    offset = {"offset_x_m": 0.02, "offset_y_m": -0.015}
+    found = diagnose_linear(released({"com_offset": offset}, trials=2), KNOWN)
+    assert found is not None
+    (effect,) = found.effects
+    assert effect.id == "com_offset"
+    for name, value in offset.items():
+        assert float(effect.parameters[name].value) == pytest.approx(value, abs=1.5e-3)
+    assert found.next_experiment == WEIGHED
+
+
+@pytest.mark.slow
+def test_relaxing_tires_are_simulated_from_what_closed_form_has_found() -> None:
+    """The simulator's branches hold a share of the release, closed form's anything."""
+    branch = {"K_m_N_m": 2e3, "tau_s": 0.03}
+    found = diagnose_linear(released({"viscoelastic_relaxation": branch}, trials=2), KNOWN)
+    assert found is not None
+    assert [effect.id for effect in found.effects] == ["viscoelastic_relaxation"]
+    assert found.heldout.after < 1.3 * found.heldout.noise_floor
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("effects", [{}, {"nonlinear_stiffness": {"k3_N_m3": 1.5e9}}], ids=["nothing", "hardening"])
+def test_what_no_linear_effect_explains_is_left_to_the_search_over_laws(effects) -> None:
+    assert diagnose_linear(released(effects, trials=2), KNOWN) is None

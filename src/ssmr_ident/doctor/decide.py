@@ -6,10 +6,10 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from ssmr_ident.doctor.rules import CERTAIN, FOLLOWS, FORMULA, HALVED, OVER_NOISE, SECOND, TIE, UNEVEN
+from ssmr_ident.doctor.rules import CERTAIN, FOLLOWS, FORMULA, HALVED, OVER_NOISE, SECOND, STATED, TIE, UNEVEN
 from ssmr_ident.doctor.table import FRICTION, Row
 
-STATIC, MEMORY = "static_force", "memory"
+STATIC, MEMORY, GEOMETRY = "static_force", "memory", "geometry"
 MISSING, NOTHING, UNDETERMINED = "missing_physics", "nothing_missing", "undetermined"
 
 
@@ -63,12 +63,13 @@ def decide(rows: Sequence[Row]) -> Decision:
     base = next(r for r in rows if not r.ids)
     everything = rows
     rows = standing(rows)
-    best = max(rows, key=lambda r: r.log_evidence)
-    if best.log_evidence - base.log_evidence < CERTAIN:
+    sure = [r for r in rows if certain(r, base)]
+    if not sure:
         noise = base.over < OVER_NOISE or (base.left.follows < FOLLOWS and base.left.uneven < UNEVEN)
         return Decision(NOTHING) if noise else Decision(UNDETERMINED, kinds=kind_shares(rows, base))
+    best = max(sure, key=lambda r: r.log_evidence)
     shares = kind_shares(rows, base)
-    named = [r for r in rows if r.ids and not r.generic and r.log_evidence > base.log_evidence + CERTAIN]
+    named = [r for r in sure if not r.generic]
     top = max(named, key=lambda r: r.log_evidence, default=None)
     if top is None:
         return Decision(MISSING, best, False, (), _confidence(best, [best], 0.0), shares)
@@ -81,6 +82,12 @@ def decide(rows: Sequence[Row]) -> Decision:
     alike = [r for r in named if r.log_evidence > top.log_evidence - TIE]
     ties = tuple(dict.fromkeys(i for r in alike for i in (*r.ids, *r.equal) if i not in top.ids))
     return Decision(MISSING, top, True, ties, _confidence(top, named, left), shares, left)
+
+
+def certain(row: Row, base: Row) -> bool:
+    """Whether a row says that something is missing."""
+    least = STATED if set(row.kinds) == {GEOMETRY} else CERTAIN
+    return bool(row.ids) and row.log_evidence - base.log_evidence >= least
 
 
 def needed(law: Row, left: float, rows: Sequence[Row]) -> bool:

@@ -26,6 +26,9 @@ and later."""
 BEGUN, LED, LAST = 2, 4, 3
 """Steps of every start, of what goes on, and on whole recordings."""
 
+STATES_FIRST = 8
+"""Steps of the states at the release alone, where closed form and simulator have other ones."""
+
 FAR = 3.0
 """Standard deviations of what is known that a baseline may have moved before laws are begun from what is known."""
 
@@ -74,21 +77,24 @@ def linear_states(decays: Sequence[Decay], model: Model, point: Array) -> list[A
 
 
 def nuisance_of(state: Array, model: Model) -> Array:
-    """A linear fit's state at the release as a trial's nuisances."""
+    """A linear fit's state at the release as a trial's nuisances; branches hold nothing."""
     found = np.zeros(len(STATES))
     found[:BODY] = state[:BODY]
-    rest = state[BODY:]
     if "flexible_mast" in model.held:
-        found[BODY : BODY + 4], rest = rest[:4], rest[4:]
-    if "viscoelastic_relaxation" in model.held:
-        found[STATES.index("loaded")] = float(rest[:6] @ state[:6]) / max(float(state[:6] @ state[:6]), 1e-30)
+        found[BODY : BODY + 4] = state[BODY : BODY + 4]
     return found / SCALES
 
 
 def exact(decays: Sequence[Decay], fit: LinearFit, steps: int) -> JointFit:
-    """A linear fit led on by the simulator, in which nothing is small."""
-    nuisances = [nuisance_of(x, fit.model) for x in fit.states]
-    return descend(evaluate([d.trial for d in decays], fit.model, fit.point, nuisances), steps, plain=True)
+    """A linear fit led on by the simulator, in which nothing is small.
+
+    There branches hold a share of what the release is displaced by; in closed form anything. So states come first.
+    """
+    trials, nuisances = [d.trial for d in decays], [nuisance_of(x, fit.model) for x in fit.states]
+    begun = evaluate(trials, fit.model, fit.point, nuisances)
+    if "viscoelastic_relaxation" in fit.model.held:
+        begun = descend(begun, STATES_FIRST, shared=False, plain=True)
+    return descend(begun, steps, plain=True)
 
 
 def on_whole(decays: Sequence[Decay], fit: JointFit, near: JointFit | None = None) -> JointFit:

@@ -48,6 +48,8 @@ class LinearFit:
         Of the residuals alone.
     states : tuple of (k,) float
         At the release, SI: the body's twelve first.
+    information : (p, p) float
+        Curvature of half the cost, the states eliminated; its priors, of unit width, are in it.
     """
 
     model: Model
@@ -55,6 +57,7 @@ class LinearFit:
     cost: float
     chi2: float
     states: tuple[Array, ...]
+    information: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +71,9 @@ class System:
     states: tuple[Array, ...]
 
 
-def fit_linear(decays: Sequence[Decay], model: Model, point: Array, steps: int = 25) -> LinearFit | None:
+def fit_linear(
+    decays: Sequence[Decay], model: Model, point: Array, steps: int = 25, temper: float = 1.0
+) -> LinearFit | None:
     """Levenberg-Marquardt from a point.
 
     Parameters
@@ -79,13 +84,15 @@ def fit_linear(decays: Sequence[Decay], model: Model, point: Array, steps: int =
     point : (p,) float
     steps : int
         At the most; 0 finds the states at the release alone.
+    temper : float
+        Variance of what counts as noise, in that of the recordings' white noise.
 
     Returns
     -------
     LinearFit or None
         None where there is no such robot at the point, or it falls over.
     """
-    now = system(decays, model, point)
+    now = system(decays, model, point, temper)
     if now is None:
         return None
     damping = 1e-3
@@ -98,7 +105,7 @@ def fit_linear(decays: Sequence[Decay], model: Model, point: Array, steps: int =
             move *= min(1.0, float(np.min(stride / np.maximum(np.abs(move), 1e-300))))
             if -float(move @ now.gradient) < LEAST_GAIN:
                 break
-            then = system(decays, model, point + move)
+            then = system(decays, model, point + move, temper)
             if then is not None and then.cost < now.cost:
                 moved = then
                 break
@@ -108,10 +115,10 @@ def fit_linear(decays: Sequence[Decay], model: Model, point: Array, steps: int =
         gain, point, now, damping = now.cost - moved.cost, point + move, moved, 0.2 * damping
         if gain < LEAST_GAIN:
             break
-    return LinearFit(model, point, now.cost, now.chi2, now.states)
+    return LinearFit(model, point, now.cost, now.chi2, now.states, now.information)
 
 
-def system(decays: Sequence[Decay], model: Model, point: Array) -> System | None:
+def system(decays: Sequence[Decay], model: Model, point: Array, temper: float = 1.0) -> System | None:
     """Normal equations at a point; None where there is no such robot, or it falls over."""
     first = decays[0]
     modes = modes_at(first.builder, model, point, first.log_step)
@@ -131,8 +138,9 @@ def system(decays: Sequence[Decay], model: Model, point: Array) -> System | None
             columns[grid] = waves(modes.kept, *grid, count)
         if sampling not in sensed:
             sensed[sampling] = decay.sensed(modes.kept, modes.bandwidth_hz, modes.of_sensor, bool(moved.by_band.any()))
-        white = decay.whitened(columns[grid][: len(decay.times)])
-        part = _of_decay(decay, white, modes, moved, sensed[sampling], scales)
+        white = decay.whitened(columns[grid][: len(decay.times)]) / math.sqrt(temper)
+        target = decay.trial.white_target / math.sqrt(temper)
+        part = _of_decay(decay, white, target, modes, moved, sensed[sampling], scales)
         x, rest, projected, slope = part
         chi2 += float(rest @ rest)
         cost += float(rest @ rest) + float(x @ x)
@@ -143,7 +151,7 @@ def system(decays: Sequence[Decay], model: Model, point: Array) -> System | None
 
 
 def _of_decay(
-    decay: Decay, white: Array, modes: Modes, moved: Slopes, sensed: Sensed, scales: Array
+    decay: Decay, white: Array, target: Array, modes: Modes, moved: Slopes, sensed: Sensed, scales: Array
 ) -> tuple[Array, Array, Array, Array]:
     """Scaled states at the release, residuals, and slopes with the states' share taken out and in."""
     axes, k = list(decay.axes), len(modes.kept)
@@ -152,8 +160,8 @@ def _of_decay(
     columns = np.concatenate([amplitude.real, -amplitude.imag], axis=1)
     design = (white[:, :, : 2 * k] @ columns).reshape(-1, columns.shape[2])
     factor = np.linalg.inv(np.linalg.cholesky(design.T @ design + np.eye(design.shape[1])))
-    x = factor.T @ (factor @ (design.T @ decay.trial.white_target))
-    rest = decay.trial.white_target - design @ x
+    x = factor.T @ (factor @ (design.T @ target))
+    rest = target - design @ x
     own = modes.into @ (scales * x)
     # what each exponential's amplitude changes by, and that of the same times t
     change = moved.read[:, axes] * own + read * (moved.between @ own)[:, None, :] - moved.back[:, axes] * own

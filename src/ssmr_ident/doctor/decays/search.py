@@ -26,8 +26,9 @@ from ssmr_ident.doctor.decays.laws import (
     stretches_of,
 )
 from ssmr_ident.doctor.decays.linear import fit_linear
-from ssmr_ident.doctor.decays.members import Member, any_static, members
+from ssmr_ident.doctor.decays.members import GEOMETRY, KINDS, Member, any_static, members
 from ssmr_ident.doctor.decays.recordings import Decay, thinned
+from ssmr_ident.doctor.rules import STATED
 from ssmr_ident.identify.fitting.coordinates import Model
 from ssmr_ident.identify.fitting.descent import descend
 from ssmr_ident.identify.fitting.joint import JointFit, differentiate, evaluate
@@ -45,8 +46,11 @@ TRIED, CLOSER, FULL = 3, 6, 12
 TO_THE_END = 10
 """Steps of the best law, at the most."""
 
-CHOSEN = 2
-"""Starts of a linear member that go on."""
+CHOSEN, LAST_ONES = 3, 2
+"""Starts of a linear member that go on, and of these to whole recordings."""
+
+OFFERED = 2
+"""Models, the best ones, that are offered to those below them."""
 
 FIELD, LAWS = 5, 3
 """Effects with laws that go on after their first steps, and of these to whole recordings; in two formulas at most."""
@@ -63,11 +67,15 @@ FORMULA_OVER = 1.1
 NEAR = 1.5
 """RMS of the baseline's whitened residuals up to which a law's releases are taken to be the baseline's."""
 
+MATTERS = 0.95
+"""Factor on the error, noise included, below which an effect makes it that matters on what it was not fitted to."""
+
 TINY = 1e-9
 """What has one sign begins at, where a member of any shape holds none of it."""
 
 REACH, SHARE = 50.0, 0.02
-"""Cost above the least, and share of the baseline's misfit, up to which a linear model is led on by the simulator."""
+"""Cost above the least, of what is linear too, and share of the baseline's misfit, up to which a linear model is led on
+by the simulator."""
 
 
 def searched(decays: Sequence[Decay], model: Model, progress: Progress | None = None) -> Search:
@@ -81,15 +89,11 @@ def searched(decays: Sequence[Decay], model: Model, progress: Progress | None = 
     progress : callable, optional
     """
     say = progress or (lambda stage, done, total: None)
-    decays = [d.coarse() for d in decays]
-    say("fitting the baseline", 0, 1)
-    begun = fit_linear(decays, model, np.zeros(len(model.unknowns)))
-    if begun is None:
+    search = _begun(decays, model, say)
+    if search is None:
         raise InputError(
             "robot file", "describes a robot that falls over on its tires", "Check stiffness, mass and height"
         )
-    search = Search(tuple(decays), Found((), begun, exact(decays, begun, 1)))
-    say("fitting the baseline", 1, 1)
     _beside(search, search.baseline, say)
     _offered_back(search)
     _settled(search, say)
@@ -103,6 +107,67 @@ def searched(decays: Sequence[Decay], model: Model, progress: Progress | None = 
     return search
 
 
+def searched_linear(decays: Sequence[Decay], model: Model, progress: Progress | None = None) -> Search | None:
+    """Fit the baseline and what is linear beside it, and laws where the baseline follows the recordings.
+
+    Returns
+    -------
+    Search or None
+        None where nothing gains on the baseline, or what does leaves more than noise, or the robot falls over.
+    """
+    say = progress or (lambda stage, done, total: None)
+    search = _begun(decays, model, say)
+    if search is None:
+        return None
+    _linear_beside(search, search.baseline, say)
+    _offered_back(search)
+    if search.over(search.best) > SECOND_OVER:
+        for first in _firsts(search):
+            _linear_beside(search, first, say)
+        _offered_down(search)
+    _finished(search, say)
+    if search.over(search.best) > NEAR or not (_matters(search) or _displaced(search)):
+        return None
+    if search.over(search.baseline) < NEAR:
+        _laws_beside(search, search.baseline, say)
+        _finished(search, say)
+    return search
+
+
+def _matters(search: Search) -> bool:
+    """Whether the best model leaves less than the baseline, noise included."""
+    return search.over(search.best) < MATTERS * search.over(search.baseline)
+
+
+def _displaced(search: Search) -> bool:
+    """Whether a displaced place may be certain, which makes no other error smaller."""
+    base = search.baseline.linear
+    places = [f.linear for f in search.found if f.linear is not None and {m.kind for m in f.members} == {GEOMETRY}]
+    return base is not None and any(base.cost - fit.cost > 2.0 * STATED for fit in places)
+
+
+def promised_beside(search: Search, found: Found) -> float:
+    """Fall of n ln RSS that a straight line promises of the best effect beside a simulated model, but for those that
+    were fitted beside it."""
+    assert found.fit is not None
+    own = [m.id for m in found.members]
+    fitted = {f.members[-1].id for f in search.found if [m.id for m in f.members[:-1]] == own}
+    asked = [CATALOGUE[name] for name in KINDS if name not in found.model.held and name not in fitted]
+    return max((suspect.gain for group in scan(differentiate(found.fit), asked) for suspect in group), default=0.0)
+
+
+def _begun(decays: Sequence[Decay], model: Model, say: Progress) -> Search | None:
+    """The baseline; None where the robot as the file has it falls over."""
+    decays = [d.coarse() for d in decays]
+    say("fitting the baseline", 0, 1)
+    begun = fit_linear(decays, model, np.zeros(len(model.unknowns)))
+    if begun is None:
+        return None
+    search = Search(tuple(decays), Found((), begun, exact(decays, begun, 1)))
+    say("fitting the baseline", 1, 1)
+    return search
+
+
 def _firsts(search: Search) -> list[Found]:
     named = [f for f in search.found if len(f.members) == 1 and not f.members[0].generic]
     return sorted(named, key=lambda f: f.cost)[:1]
@@ -110,19 +175,36 @@ def _firsts(search: Search) -> list[Found]:
 
 def _beside(search: Search, first: Found, say: Progress) -> None:
     """All members beside a fit."""
-    if first.fit is None:
-        first = _simulated(search, first)
+    first = _linear_beside(search, first, say)
+    _laws_beside(search, first, say)
+
+
+def _members_beside(search: Search, first: Found) -> list[Member]:
+    """All members beside a fit, from nought where that follows the recordings."""
     assert first.fit is not None
     follows = search.over(first) < NEAR
-    near = first.fit if follows or (first.members and not left_known(first.fit)) else None
-    ways = [m.from_nothing() if first.members or follows else m for m in members(first.fit)]
-    linear = [m for m in ways if m.linear]
+    return [m.from_nothing() if first.members or follows else m for m in members(first.fit)]
+
+
+def _linear_beside(search: Search, first: Found, say: Progress) -> Found:
+    """Linear members beside a fit, which is simulated for it."""
+    if first.fit is None:
+        first = _simulated(search, first)
+    linear = [m for m in _members_beside(search, first) if m.linear]
     for index, name in enumerate(names := list(dict.fromkeys(m.id for m in linear))):
         say("linear members", index, len(names))
         found = _linear(search, first, [m for m in linear if m.id == name])
         if found is not None:
             search.add(found)
-    laws = _promising(search, first, [m for m in ways if not m.linear])
+    return first
+
+
+def _laws_beside(search: Search, first: Found, say: Progress) -> None:
+    """Laws beside a fit."""
+    assert first.fit is not None
+    follows = search.over(first) < NEAR
+    near = first.fit if follows or (first.members and not left_known(first.fit)) else None
+    laws = _promising(search, first, [m for m in _members_beside(search, first) if not m.linear])
     laws += [any_static(first.fit)] if laws and not first.members else []
     begins, stretches = (stretches_of(search.decays, seconds) for seconds in (FIRST_S, STRETCHES_S))
     tried: list[tuple[Member, JointFit]] = []
@@ -171,10 +253,13 @@ def _linear(search: Search, first: Found, ways: Sequence[Member]) -> Found | Non
     ]
     whole = [
         (way, fit)
-        for way, begun in sorted(led, key=lambda pair: pair[1].cost)[:1]
+        for way, begun in sorted(led, key=lambda pair: pair[1].cost)[:LAST_ONES]
         if (fit := fit_linear(search.decays, way.model, begun.point, FULL)) is not None
     ]
-    return Found((*first.members, whole[0][0]), whole[0][1], None) if whole else None
+    if not whole:
+        return None
+    way, fit = min(whole, key=lambda pair: pair[1].cost)
+    return Found((*first.members, way), fit, None)
 
 
 def _field(tried: Sequence[tuple[Member, JointFit]], effects: int, most: float) -> list[tuple[Member, JointFit]]:
@@ -241,11 +326,27 @@ def _offered_back(search: Search) -> None:
     base = search.baseline
     assert base.linear is not None
     count = len(base.point)
-    for found in sorted(search.found, key=lambda f: f.cost)[:CHOSEN]:
+    for found in sorted(search.found, key=lambda f: f.cost)[:OFFERED]:
         fit = fit_linear(search.decays, base.model, found.point[:count])
         if fit is not None and fit.cost < base.linear.cost - 1.0:
             base = Found((), fit, exact(search.decays, fit, 1))
     search.baseline = base
+
+
+def _offered_down(search: Search) -> None:
+    """What the best two linear effects have found together, offered to each of them alone."""
+    pairs = [f for f in search.found if len(f.members) == 2 and f.linear is not None]
+    for pair in sorted(pairs, key=lambda f: f.cost)[:OFFERED]:
+        values = pair.model.split(pair.point)[1]
+        for member in pair.members:
+            single = next((f for f in search.found if [m.id for m in f.members] == [member.id]), None)
+            if single is None or single.linear is None:
+                continue
+            own = [c.unknown.scaled(values[c.effect][c.parameter.name]) for c in single.model.free]
+            point = np.concatenate([pair.point[: len(single.model.physics)], own])
+            fit = fit_linear(search.decays, single.model, point)
+            if fit is not None and fit.cost < single.linear.cost - 1.0:
+                search.found = [Found(single.members, fit, None) if f is single else f for f in search.found]
 
 
 def _parts(generic: Member, fit: JointFit, laws: Sequence[Member]) -> list[tuple[Member, JointFit]]:
@@ -272,11 +373,23 @@ def _finished(search: Search, say: Progress) -> None:
         fit = fit_linear(search.decays, best.model, best.point)
         if fit is not None and fit.cost < best.cost:
             search.add(replace(best, linear=fit))
-    least = search.best.cost
-    near = least + max(REACH * max(search.over(search.best), 1.0) ** 2, SHARE * (search.baseline.cost - least))
-    for index, found in enumerate(going := [f for f in search.found if f.fit is None and f.cost < near]):
-        say("near the best", index, len(going))
+    while (found := _nearest(search)) is not None:
+        say("near the best", 0, 1)
         _simulated(search, found)
     base = search.baseline
     assert base.fit is not None
     search.baseline = replace(base, fit=descend(base.fit, LAST, plain=True))
+
+
+def _nearest(search: Search) -> Found | None:
+    """Of linear models that are not simulated the best, where it comes near the best of all, or in closed form near
+    those that do; or before a baseline that follows the recordings."""
+    best, base = search.best, search.baseline
+    reach = REACH * max(search.over(best), 1.0) ** 2
+    near = best.cost + max(reach, SHARE * (base.cost - best.cost))
+    alike = [f.linear.cost for f in search.all if f.linear is not None and f.fit is not None and f.cost < near]
+    limit = max(near, min(alike, default=-math.inf) + reach)
+    if base.linear is not None and search.over(base) < NEAR:
+        limit = max(limit, base.linear.cost - 2.0 * STATED)
+    left = [f for f in search.found if f.fit is None and f.cost < limit]
+    return min(left, key=lambda f: f.cost, default=None)
