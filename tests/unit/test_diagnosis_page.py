@@ -144,6 +144,13 @@ def test_the_formula_has_the_name_of_the_field_and_the_sentence_no_numbers() -> 
     assert verdict.sentence == CATALOGUE["dry_friction"].sentence.rstrip(".") + "."
 
 
+def test_a_kind_without_law_and_curve_has_no_formula() -> None:
+    effect = replace(hardening().effects[0], id="unlisted", equation="F = f(s, v), drawn", parameters={}, form="")
+    verdict = diagnosis_page(replace(hardening(), effects=(effect,)), "").verdict
+    assert verdict is not None
+    assert (verdict.label, verdict.equations) == ("Missing: a force that no listed law makes", ())
+
+
 def test_a_force_of_any_shape_is_drawn_with_its_band() -> None:
     (chart,) = next(s for s in page_of(undetermined).sections if s.title == "What it could be").charts
     assert (chart.x_label, chart.x_unit, chart.y_unit, chart.band) == ("displacement", "m", "N", True)

@@ -102,7 +102,8 @@ def verdict(diagnosis: Diagnosis) -> Verdict:
         if names:
             sentence = f"More than noise is left over. The likeliest explanation is {names}; it is not certain."
     facts = (_better(diagnosis), _where(diagnosis), _sure(diagnosis), _next(diagnosis))
-    law = tuple(_law(effect, turning(diagnosis)) for effect in diagnosis.effects) if tone == "found" else ()
+    known = [e for e in diagnosis.effects if e.parameters or e.curve] if tone == "found" else []
+    law = tuple(_law(effect, turning(diagnosis)) for effect in known)
     charts = overlay_charts(diagnosis)
     return Verdict(label, tone, sentence, facts, law, charts[0] if charts else None)
 

@@ -56,6 +56,8 @@
     const line = (role, label) => ({
       label, stroke: () => colour(role), width: role === "recorded" ? 3 : role === "limit" ? 0.5 : 1.4, points: { show: false }, spanGaps: false,
     });
+    const largest = courses.flat().reduce((most, v) => (v === null ? most : Math.max(most, Math.abs(v))), 0);
+    const room = largest < 0.02 || largest >= 1e4 ? 74 : 50; // for the digits of its ticks, alike in both panels
     let moving = false;
     const follow = (u) => {
       if (moving) return;
@@ -67,7 +69,7 @@
       const options = {
         width: holder.clientWidth, height, padding: [8, 14, 0, 0], legend: { show: false }, scales: { x: { time: false } },
         cursor: { y: false, sync: { key: spec.name }, drag: { x: true, y: false }, points: { size: 5 }, focus: { prox: -1 } },
-        axes: [axis(2, last ? `${spec.xLabel}${unit(spec.xUnit)}` : undefined, last ? 34 : 0), axis(3, yLabel, 48)],
+        axes: [axis(2, last ? `${spec.xLabel}${unit(spec.xUnit)}` : undefined, last ? 34 : 0), axis(3, yLabel, room)],
         series: [{}, ...series],
         hooks: { setCursor: [(u) => u === panels[0] && read(u.cursor.idx ?? null)], setScale: [(u, key) => key === "x" && follow(u)] },
       };
