@@ -205,7 +205,7 @@ def render_page(page: Page) -> str:
     numbered = count(1)
     environment.filters["payload"] = lambda chart: Markup(chart.payload(lambda text: str(_as_text(text))))
     environment.filters["math"] = Markup
-    environment.filters["inline"] = lambda d: Markup(inline(d.svg, f"d{next(numbered)}", d.alt, d.white))
+    environment.filters["inline"] = lambda d: Markup(inline(d.svg, f"d{next(numbered)}", str(_as_text(d.alt)), d.white))
     parts = {"css": "report.css", "js": "report.js", "plot_css": "uplot/uPlot.min.css",
              "plot_js": "uplot/uPlot.iife.min.js", "charts_js": "charts.js"}  # fmt: skip
     inside = {name: Markup((folder / file).read_text(encoding="utf-8")) for name, file in parts.items()}
