@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import os
+import re
 from pathlib import Path
 
+import numpy as np
 import pytest
+from scipy.io import loadmat
 from typed_command import typed
 
 from ssmr_ident.readers import read_one
@@ -83,6 +86,28 @@ def test_one_line_and_nothing_lost(folder: Path, call: str) -> None:
     assert len(done.stderr) < 1000
     left = {path.name: path.read_text(encoding="utf-8") for path in folder.iterdir() if path.is_file()}
     assert left == {"session.yaml": SESSION, "rig.yaml": RIG, "log.csv": LOG}
+
+
+def test_stamps_that_no_clock_gives_and_names_that_matlab_has_not(folder: Path) -> None:
+    rows = [f"{k}e-320,{k}" for k in range(50)]
+    (folder / "tiny.csv").write_text("time [s],F [N]\n" + "\n".join(rows) + "\n", encoding="utf-8")
+    for call in (["inspect", "tiny.csv"], ["spectrum", "tiny.csv", "-o", "out"]):
+        done = typed(*call, cwd=folder)
+        assert done.returncode == 2
+        assert "s apart, which no clock tells" in done.stderr
+        assert len(done.stderr.splitlines()) == 1
+    names = ("💪", "a-b", "a_b", "x" * 70)
+    rows = [f"{k / 100}," + ",".join(str(k % (3 + n)) for n in range(len(names))) for k in range(50)]
+    head = "time [s]," + ",".join(f"{name} [N]" for name in names)
+    (folder / "odd.csv").write_text("\n".join([head, *rows]) + "\n", encoding="utf-8")
+    log = read_one(folder / "odd.csv")
+    done = typed("export", "odd.csv", "--to", "mat", "-o", "odd.mat", cwd=folder)
+    assert done.returncode == 0, done.stderr
+    found = loadmat(folder / "odd.mat", simplify_cells=True)
+    for channel in log.channels:
+        name = next((new for new, old in found["names"].items() if old == channel.name), channel.name)
+        assert re.fullmatch("[A-Za-z][A-Za-z0-9_]{0,62}", name)
+        np.testing.assert_array_equal(found[name], channel.samples)
 
 
 VOCABULARIES = {

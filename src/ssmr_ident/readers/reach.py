@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ssmr_ident.core.recording import Recording
+from ssmr_ident.readers.options import RATE
 from ssmr_ident.readers.source import Source
 
 FARTHEST = 1e100
@@ -12,7 +13,7 @@ FARTHEST = 1e100
 
 
 def refuse_out_of_reach(source: Source, recordings: tuple[Recording, ...]) -> None:
-    """Refuse a log with a sample beyond ``FARTHEST``.
+    """Refuse a log with a sample beyond ``FARTHEST``, or with stamps that no clock gives.
 
     Raises
     ------
@@ -20,6 +21,13 @@ def refuse_out_of_reach(source: Source, recordings: tuple[Recording, ...]) -> No
         Names the channel, when it is read, and what stands there.
     """
     for recording in recordings:
+        step = float(np.median(np.diff(recording.time)))
+        if not 1.0 / RATE.most <= step <= 1.0 / RATE.least:
+            raise source.error(
+                f"has samples {step:.3g} s apart, which no clock tells; expected {1.0 / RATE.most:g} to "
+                f"{1.0 / RATE.least:g} s",
+                "Say which column the time is by --columns time=… and its unit by --time-unit, or give --fs",
+            )
         for channel in recording.channels:
             beyond = np.abs(channel.samples) > FARTHEST
             if beyond.any():

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import io
+import re
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Container
+from itertools import chain, count
 from pathlib import Path
 
 import numpy as np
@@ -33,14 +35,29 @@ def parquet_of(recording: Recording) -> bytes:
 
 
 def mat_of(recording: Recording) -> bytes:
-    """MATLAB 5 file: a column vector ``time`` and one a channel, and ``units``, a struct."""
+    """MATLAB 5 file: a column vector ``time`` and one a channel, and ``units``, a struct.
+
+    Where MATLAB does not take the log's names there is another struct, ``names``.
+    """
     from scipy.io import savemat
 
-    columns = {"time": recording.time, **{c.name: c.samples for c in recording.channels}}
-    units = {"time": "s", **{c.name: c.unit for c in recording.channels}}
+    columns, units, names = {"time": recording.time}, {"time": "s"}, {}
+    for channel in recording.channels:
+        name = _matlab_name(channel.name, {*columns, "units", "names"})
+        columns[name], units[name] = channel.samples, channel.unit
+        if name != channel.name:
+            names[name] = channel.name
     stream = io.BytesIO()
-    savemat(stream, {**columns, "units": units}, oned_as="column", long_field_names=True)
+    more = {"names": names} if names else {}
+    savemat(stream, {**columns, "units": units, **more}, oned_as="column", long_field_names=True)
     return stream.getvalue()
+
+
+def _matlab_name(name: str, taken: Container[str]) -> str:
+    """A letter, then letters, digits and underscores, 63 at the most."""
+    plain = re.sub(r"[^A-Za-z0-9_]", "_", name)[:50]
+    plain = plain if plain[:1].isalpha() else f"c{plain}"
+    return next(word for word in chain([plain], (f"{plain}_{k}" for k in count(2))) if word not in taken)
 
 
 def uff_of(recording: Recording) -> bytes:
