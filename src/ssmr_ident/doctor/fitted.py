@@ -120,9 +120,11 @@ def finished(search: Search, near: Fit, base: Fit, paths: Sequence[Array], point
 
 
 def offered_back(search: Search, count: int = OFFERED) -> None:
-    """What the best models' fits have found is offered to the poorer ones with a member, or a part of its formula,
-    dropped."""
-    for fit in sorted(search.fits, key=lambda f: f.cost)[:count]:
+    """What the best models' fits, and the best two named effects', have found is offered to the poorer ones with a
+    member, or a part of its formula, dropped."""
+    ranked = sorted(search.fits, key=lambda f: f.cost)
+    pairs = [f for f in ranked[count:] if len(f.node.members) > 1 and not f.node.generic]
+    for fit in ranked[:count] + pairs[:1]:
         for member in fit.node.members:
             node = fit.node.without(member)
             poorer = next((f for f in search.fits if f.node.name == node.name), None)

@@ -26,6 +26,12 @@ NEWTON = 4
 NEAR = 1e-5
 """Of the largest velocity, how near the first guess is where a straight line goes the rest of the way."""
 
+GRADES = 8
+"""Halvings of a velocity toward nought, at which a force that may jump there is averaged."""
+
+SHARP = 0.05
+"""Of a force's change while the motion turns, what slopes do not explain of a force that jumps."""
+
 BY_POSITION, BY_VELOCITY, CONSTANT, BY_INERTIA = range(4)
 """What a course over time multiplies."""
 
@@ -159,6 +165,77 @@ def _force(x, v, z, time, row, drive, g, slopes, with_slopes):
 
 
 @kernel
+def _toward_rest(x, v, z, time, row, drive, g, slopes, mean_slopes, with_slopes):
+    """The force's mean over the velocities from 0 to ``v``, and what ``_force`` says at ``v``; ``mean_slopes`` : those
+    of the mean, ``slopes`` those at ``v``."""
+    mean, f, fx, fv = 0.0, 0.0, 0.0, 0.0
+    for q in range(GRADES, -1, -1):  # from rest, so that what is left in ``slopes`` is that of ``v``
+        at = 2.0**-q if q < GRADES else 0.0
+        above, below = 2.0 ** (1 - q) if q else 1.0, 0.5 * at if q < GRADES - 1 else 0.0
+        weight = 0.5 * (above - below) if q < GRADES else 2.0**-GRADES
+        slopes[:] = 0.0
+        f, fx, fv = _force(x, v * at, z, time, row, drive, g, slopes, with_slopes)
+        mean += weight * f
+        if with_slopes:
+            for k in range(len(slopes)):
+                mean_slopes[k] += weight * slopes[k]
+    return mean, f, fx, fv
+
+
+@kernel
+def _turned(v, v_was, moved, kick, x, z, time, row, drive, g, slopes, more_slopes, mean_slopes):
+    """What a force that jumps where the motion turns does over a step beyond its mean of begin and end.
+
+    Velocity goes along a straight line from ``v_was`` to what is returned, so that the jump lies within the step where
+    it does, and not at its middle.
+
+    Returns
+    -------
+    v : float [m/s]
+    f, fx, fv : float
+        The force there, with its slopes; those over states and parameters in ``slopes``.
+    more, by_v, by_was : float
+        Force [N] that the kick at the end has besides, its slopes over both velocities; those over parameters in
+        ``more_slopes``. All 0 where the force does not jump.
+    """
+    f, fx, fv, more, by_v, by_was = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    mean_was, f_was, fv_was = 0.0, 0.0, 0.0
+    turn, last = 0, False
+    while True:  # the begin of the step, its end until that has settled, and both with slopes
+        begin = turn == 0 or turn == NEWTON + 2
+        mean_slopes[:] = 0.0
+        mean, f, fx, fv = _toward_rest(x, v_was if begin else v, z, time, row, drive, g, slopes, mean_slopes, last)
+        change = v - v_was
+        share = -v_was / change
+        if begin:
+            mean_was, f_was, fv_was = mean, f, fv
+            if last:
+                for k in range(len(slopes)):
+                    more_slopes[k] = 2.0 * share * mean_slopes[k] - slopes[k]
+            turn += 1
+            continue
+        if last:
+            for k in range(len(slopes)):
+                more_slopes[k] += 2.0 * (1.0 - share) * mean_slopes[k] - slopes[k]
+            break
+        if turn == 1 and abs(f - f_was - 0.5 * (fv + fv_was) * change) <= SHARP * abs(f - f_was):
+            break
+        average = share * mean_was + (1.0 - share) * mean
+        more = 2.0 * average - f_was - f
+        by_v, by_was = 2.0 * (f - average) / change - fv, 2.0 * (average - f_was) / change - fv_was
+        away = (v - moved + kick * (f + more)) / max(1.0 + kick * (fv + by_v), 0.1)
+        if abs(away) <= 1e-7 * g[15] or turn == NEWTON + 1:
+            turn, last = NEWTON + 2, True
+            continue
+        if v_was * (v - away) >= 0.0:  # it comes to rest
+            more, by_v, by_was = 0.0, 0.0, 0.0
+            break
+        v -= away
+        turn += 1
+    return v, f, fx, fv, more, by_v, by_was
+
+
+@kernel
 def _advance(z, tangents, change, change_slopes, step, first, by_v, g):
     """Hidden states one step later, with their slopes; ``change`` : deflection over the step,
     ``first`` : column of the first parameter of a law; ``by_v`` : (3,) float to work in."""
@@ -255,6 +332,9 @@ def run(
     dz = np.zeros((max(hidden, 1), columns))
     df, change = np.zeros(columns), np.zeros(columns)
     slopes, by_v = np.zeros(hidden + columns), np.zeros(STATES)
+    was, beyond = np.zeros(columns), np.zeros(columns)
+    slopes_now, more_slopes = np.zeros(hidden + columns), np.zeros(hidden + columns)
+    mean_slopes = np.zeros(hidden + columns)
     last = len(drive) - 1
     for stretch in range(starts.shape[0]):
         ds[:], dz[:], df[:] = 0.0, 0.0, 0.0
@@ -294,8 +374,20 @@ def run(
                     # once it has settled, a last turn takes the slopes as well
                     turn = NEWTON if abs(away) <= 1e-7 * g[15] else turn + 1
                     v -= away
+                more, more_v = 0.0, 0.0
+                if n and v * v_was < 0.0:
+                    at_v, at_f, at_fx, at_fv, more, more_v, more_was = _turned(
+                        v, v_was, moved, kick[1], s[0], z, time, row, here, g, slopes_now, more_slopes, mean_slopes
+                    )
+                    if more != 0.0:
+                        v, f, fx, fv = at_v, at_f, at_fx, at_fv
+                        slopes[:] = slopes_now
+                        for j in range(columns):
+                            beyond[j] = more_was * was[j]
+                            if j >= states:
+                                beyond[j] += more_slopes[hidden + j - states]
                 v_was = v
-                denominator = 1.0 + half * kick[1] * fv
+                denominator = 1.0 + half * kick[1] * (fv + more_v)
                 for j in range(columns):
                     own = fx * ds[0, j]
                     if j >= states:
@@ -303,20 +395,21 @@ def run(
                     for k in range(hidden):
                         own += slopes[k] * dz[k, j]
                     change[j] = own
-                for p in range(n_par):
-                    j = states + p
-                    dv = ds[1, j] - half * (kick[1] * change[j] + d_kick[p, 1] * f)
-                    df[j] = change[j] + fv * dv / denominator
                 for j in range(columns):
-                    if j < states or j >= states + n_par:
-                        df[j] = change[j] + fv * (ds[1, j] - half * kick[1] * change[j]) / denominator
+                    dv = ds[1, j] - half * kick[1] * (change[j] + beyond[j])
+                    if states <= j < states + n_par:
+                        dv -= half * d_kick[j - states, 1] * (f + more)
+                    df[j] = change[j] + fv * dv / denominator
+                    beyond[j] += more_v * dv / denominator
                 if n:
                     for k in range(n_lin):
-                        s[k] -= kick[k] * f
+                        s[k] -= kick[k] * (f + more)
                         for j in range(columns):
-                            ds[k, j] -= kick[k] * df[j]
+                            ds[k, j] -= kick[k] * (df[j] + beyond[j])
                         for p in range(n_par):
-                            ds[k, states + p] -= d_kick[p, k] * f
+                            ds[k, states + p] -= d_kick[p, k] * (f + more)
+                if more != 0.0:
+                    beyond[:] = 0.0
             if n % every == 0 and n < total:
                 row = at // every
                 for k in range(channels):
@@ -342,6 +435,8 @@ def run(
             if n == total:
                 break
             if beside:
+                for j in range(columns):
+                    was[j] = ds[1, j]
                 for k in range(n_lin):
                     s[k] -= kick[k] * f
                     for j in range(columns):
