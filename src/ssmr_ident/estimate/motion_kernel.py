@@ -1,8 +1,9 @@
 """The rig's motion with its slopes, stretch by stretch: exact linear steps, kicks of the forces beside them.
 
 The scheme is the simulator's own (``simulate/rig.py``: Strang splitting about the exact propagator), so that a fit and
-the simulator agree; here every state carries its derivatives with respect to where its stretch begins, to the model's
-parameters and to what else drives it (forward sensitivities).
+the simulator agree, but for forces that jump where the motion turns (``_turned``). Here every state carries its
+derivatives with respect to where its stretch begins, to the model's parameters and to what else drives it (forward
+sensitivities).
 """
 
 from __future__ import annotations
