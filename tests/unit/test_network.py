@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import jsonschema
@@ -11,6 +12,7 @@ import yaml
 from made_networks import Chain, noisy, pushed, write_log, write_session, written
 
 from ssmr_ident.core.errors import InputError
+from ssmr_ident.core.parameter import Estimate
 from ssmr_ident.estimate.network import bare
 from ssmr_ident.estimate.node import stepped
 from ssmr_ident.estimate.pieces import Seen
@@ -118,6 +120,37 @@ def test_the_motion_is_that_of_an_integrator(tmp_path: Path) -> None:
     exact = chain.motion(time, push, 1, np.zeros(4)).transpose(0, 2, 1).reshape(len(time), -1)
     found = simulated(tmp_path, "forced", "m2", force=str(tmp_path / "F.csv"))
     assert np.abs(found - exact).max(axis=0) == pytest.approx(np.zeros(6), abs=2e-3 * np.abs(exact).max())
+
+
+def test_a_law_at_a_spring_moves_as_an_integrator_says(tmp_path: Path) -> None:
+    known = CHAIN.known()
+    law = {"nonlinear_stiffness@s2": {"k3_N_m3": Estimate(2e9, None, "N/m^3")}}
+    write_parameters(tmp_path / "rig.yaml", replace(known, effects=law))
+    time, push = pushed(CHAIN, np.random.default_rng(2), 60.0, 0.1, 2000.0)
+    write_log(tmp_path / "F.csv", time, {"force [N]": push})
+    plain = Chain(CHAIN.masses, CHAIN.stiffness, tuple(2.0 * c for c in CHAIN.damping))
+    chain = replace(plain, laws={1: lambda s, v: 2e9 * s**3})
+    exact, linear = (
+        c.motion(time, push, 1, np.zeros(4)).transpose(0, 2, 1).reshape(len(time), -1) for c in (chain, plain)
+    )
+    found = simulated(tmp_path, "forced", "m2", force=str(tmp_path / "F.csv"))
+    assert np.abs(found - exact).max() < 2e-3 * np.abs(exact).max()
+    assert np.abs(linear - exact).max() > 0.1 * np.abs(exact).max()
+
+
+WRONG_EFFECTS = {
+    "which is no spring": "nonlinear_stiffness: {element: blad, k3_N_m3: {value: 1}}",
+    "acts at no spring": "nonlinear_stiffness: {k3_N_m3: {value: 1}}",
+    "act at blade and foot": "nonlinear_stiffness: [{element: blade, k3_N_m3: {value: 1}}, {element: foot}]",
+    "stands twice": "nonlinear_stiffness: [{element: blade, k3_N_m3: {value: 1}}, {element: blade}]",
+}
+
+
+@pytest.mark.parametrize("problem", WRONG_EFFECTS)
+def test_effects_say_where_they_act(tmp_path: Path, problem: str) -> None:
+    (tmp_path / "rig.yaml").write_text(TEXT + f"effects:\n  {WRONG_EFFECTS[problem]}\n")
+    with pytest.raises(InputError, match=problem):
+        simulated(tmp_path, "free_response", "tip")
 
 
 def test_what_pushes_at_one_and_is_felt_at_the_other_may_be_exchanged(tmp_path: Path) -> None:

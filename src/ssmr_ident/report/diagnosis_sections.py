@@ -12,11 +12,13 @@ import numpy as np
 from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.diagnose.diagnosis import MISSING, NOTHING, UNIT, Conflict, Diagnosis, NamedEffect
 from ssmr_ident.physics.effects import CATALOGUE
+from ssmr_ident.physics.network import layout_of
 from ssmr_ident.report.diagnosis_charts import after_name, curve_charts, overlay_charts
 from ssmr_ident.report.diagnosis_places import places
 from ssmr_ident.report.figures_diagnosis import evidence_text, readable
-from ssmr_ident.report.html import Cell, Formula, Number, Section, Table
+from ssmr_ident.report.html import Cell, Formula, Number, Section, Table, picture
 from ssmr_ident.report.mathml import symbol
+from ssmr_ident.report.network_figure import network_figure
 from ssmr_ident.report.numbers import NONE, alike, interval, measured, number, share
 from ssmr_ident.report.numbers import unit as printed
 
@@ -27,6 +29,7 @@ SHOWN_TRIED = 15
 def sections(diagnosis: Diagnosis) -> tuple[Section, ...]:
     """All sections that have something to say, in reading order."""
     made = (
+        _network(diagnosis),
         _proof(diagnosis),
         _effects(diagnosis),
         _where(diagnosis),
@@ -37,9 +40,21 @@ def sections(diagnosis: Diagnosis) -> tuple[Section, ...]:
     return tuple(s for s in made if s.paragraphs or s.points or s.tables or s.figures or s.charts)
 
 
+def _network(diagnosis: Diagnosis) -> Section:
+    """A network with what the answer is about in colour; a body that was found stands in the drawing."""
+    if not diagnosis.before.between:
+        return Section("")
+    marked = tuple(e.element for e in diagnosis.effects)
+    new = tuple(name for name in diagnosis.after.between if name not in diagnosis.before.between)
+    named = " and ".join((*marked, *new))
+    caption = f"The network; {named} in colour." if named else "The network."
+    drawn = network_figure(layout_of(diagnosis.after), (*marked, *new))
+    return Section("The network", figures=(picture(drawn, caption, f"Bodies and springs. {caption}"),))
+
+
 def turning(diagnosis: Diagnosis) -> bool:
     """Whether it is of a rotary rig."""
-    return "inertia_kg_m2" in diagnosis.before
+    return any(key.endswith("inertia_kg_m2") for key in diagnosis.before)
 
 
 def quantity(effect: str, name: str) -> str:

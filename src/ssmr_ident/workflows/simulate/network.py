@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.signal import lfilter, lfilter_zi
 
-from ssmr_ident.core.errors import InputError, did_you_mean
+from ssmr_ident.compare.network import laws_of
+from ssmr_ident.core.errors import InputError, SimulationError, did_you_mean
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.core.recording import Recording
 from ssmr_ident.estimate.foot import foot_motion
 from ssmr_ident.estimate.network import bare
-from ssmr_ident.estimate.node import stepped
-from ssmr_ident.estimate.pieces import Seen
+from ssmr_ident.estimate.node import Member
+from ssmr_ident.estimate.pieces import STEPS, Piece
+from ssmr_ident.estimate.simulated import Compiled, simulate
+from ssmr_ident.estimate.values import Problem
 from ssmr_ident.experiments.experiment import BASES
 from ssmr_ident.experiments.quantities import UNITS
 from ssmr_ident.physics.network import Network, network_from_parameters
@@ -28,10 +32,13 @@ Array = np.ndarray
 FINER = 4
 """Steps a sample at least, between which a drive is straight."""
 
+PART = 20_000
+"""Steps that are run at once."""
+
 
 def driven(parameters: ParameterSet, request: Request) -> Recording:
     """Under a measured force, or torque, at one body."""
-    network = _network(parameters)
+    network = network_from_parameters(parameters)
     body = _body(network, request, 0)
     name = "torque" if network.layout.rotary else "force"
     time, rate, force = drive_of(request, "force", (name,))[:3]
@@ -41,7 +48,7 @@ def driven(parameters: ParameterSet, request: Request) -> Recording:
 
 def let_go(parameters: ParameterSet, request: Request) -> Recording:
     """Pushed at one body, and let go at rest: the start is the static shape of that push."""
-    network, conditions = _network(parameters), request.conditions
+    network, conditions = network_from_parameters(parameters), request.conditions
     layout = network.layout
     body = _body(network, request, len(layout.bodies) - 1)
     if not layout.grounded:
@@ -64,7 +71,7 @@ def let_go(parameters: ParameterSet, request: Request) -> Recording:
 
 def shaken(parameters: ParameterSet, request: Request) -> Recording:
     """On a foot whose motion was measured: what the bodies do is absolute."""
-    network = _network(parameters)
+    network = network_from_parameters(parameters)
     if network.layout.rotary or not network.layout.grounded:
         raise InputError("--experiment", "base_motion shakes along a line what springs join to the ground",
                          "Drive it: forced")  # fmt: skip
@@ -91,24 +98,64 @@ def _motion(
     based: bool = False,
 ) -> Array:  # fmt: skip
     """Coordinates and rates, relative to a foot that is shaken, and accelerations, (n, 3, bodies) float."""
-    bodies = len(network.layout.bodies)
-    every = FINER
-    seen = Seen(tuple(np.repeat(np.arange(3), bodies).tolist()), tuple(range(bodies)) * 3, based, into)
-    (transition, now, later, _), (rows, by_drive, _) = stepped(bare(network), network.values, seen, 1 / (rate * every))
+    bodies, members = len(network.layout.bodies), laws_of(parameters)
+    fastest = float(max(network.modes()[0], default=0.0))
+    every = max(FINER, math.ceil(STEPS * fastest / rate) if members else 0)
     fine = band_limited(drive, every)
-    states = np.zeros((len(fine), 2 * bodies))
-    if start is not None:
-        states[0, :bodies] = start
-    added = np.outer(fine[:-1], now) + np.outer(fine[1:], later)
-    for k, own in enumerate(added):
-        states[k + 1] = transition @ states[k] + own
-    found = (states @ rows.T + np.outer(fine, by_drive)).reshape(-1, 3, bodies)
+    states = np.zeros(2 * bodies)
+    states[:bodies] = 0.0 if start is None else start
+    run = Run(network, every * rate, into, based)
+    found = run.along(fine, states, ())
+    if members:  # how far the linear network goes is the scale on which a law's own velocity is found
+        found = run.along(fine, states, members, float(np.std(found[:, 0])))
     slow = low_pass_coefficients(parameters.number("accelerometer.bandwidth_hz", math.inf), 1 / (rate * every))
     if slow[0] != 1.0:
         over, under = slow[:3], np.array([1.0, *slow[3:]])
         begun = np.outer(lfilter_zi(over, under), found[0, 2])
         found[:, 2] = lfilter(over, under, found[:, 2], axis=0, zi=begun)[0]
     return np.array(found[::every])
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """A network at a step of 1/rate [s], driven at body ``into`` or by its foot."""
+
+    network: Network
+    rate: float
+    into: int
+    based: bool
+
+    def along(self, drive: Array, start: Array, members: tuple[Member, ...], size: float = 1.0) -> Array:
+        """(n, 3, bodies) float, part by part so that long runs need no more memory than short ones.
+
+        Parameters
+        ----------
+        drive : (n,) float [N], or [m/s^2] of the foot
+        start : (2·bodies,) float
+        members : tuple of Member
+            Laws at one spring.
+        size : float [m]
+            Of the motion.
+        """
+        bodies, node = len(self.network.layout.bodies), replace(bare(self.network), members=members)
+        point = np.array([c.mean for c in node.coordinates])
+        hertz = float(max(self.network.modes()[0], default=self.rate / STEPS))
+        state, found = np.concatenate([start, np.zeros(node.states - len(start))])[None], []
+        for first in range(0, len(drive), PART):
+            count = min(PART, len(drive) - first)
+            shape = count, 3 * bodies
+            piece = Piece(
+                "", 0, ("",) * 3 * bodies, np.repeat(np.arange(3), bodies), (first + np.arange(count)) / self.rate,
+                np.zeros(shape), np.ones(shape, dtype=bool), drive[first : first + PART + 1], self.based, True,
+                1.0 / self.rate, 1, np.ones(3 * bodies), bodies=tuple(range(bodies)) * 3, into=self.into,
+            )  # fmt: skip
+            problem = Problem((piece,), node.baseline, (), hertz, size, layout=node.layout)
+            moved = simulate(Compiled.of(problem, node, point, [piece]), 0, state, np.array([0, count]), 0.0)
+            if not np.isfinite(moved.y).all():
+                raise SimulationError(f"the network left the finite numbers before {piece.time[-1]:.4g} s")
+            found.append(moved.y)
+            state = moved.ends
+        return np.vstack(found).reshape(-1, 3, bodies)
 
 
 def _channels(network: Network, motion: Array) -> dict[str, tuple[Array, str]]:
@@ -119,10 +166,3 @@ def _channels(network: Network, motion: Array) -> dict[str, tuple[Array, str]]:
         for k, body in enumerate(network.layout.bodies)
         for order, name in enumerate(names)
     }
-
-
-def _network(parameters: ParameterSet) -> Network:
-    if parameters.effects:
-        where = f"{parameters.file or parameters.name}: effects"
-        raise InputError(where, "do not act in a simulated network", "Leave them out")
-    return network_from_parameters(parameters)
