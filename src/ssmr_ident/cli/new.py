@@ -37,7 +37,8 @@ def command(
     baseline: Annotated[
         str,
         typer.Option(
-            help="rigid6, decoupled, sdof or drag; left out, the logs decide.", autocompletion=completion.baselines
+            help="rigid6, decoupled, sdof, network or drag; left out, the logs decide.",
+            autocompletion=completion.baselines,
         ),
     ] = "",
     experiment: Annotated[

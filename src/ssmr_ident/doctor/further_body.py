@@ -10,7 +10,7 @@ from functools import partial
 import numpy as np
 
 from ssmr_ident.core.parameter import Estimate, ParameterSet
-from ssmr_ident.estimate.node import RIDER, Member
+from ssmr_ident.estimate.node import ADDED, RIDER, Member
 from ssmr_ident.estimate.values import Fit
 from ssmr_ident.physics.network import BODY_KEY, SPRING_KEYS, network_from_parameters
 
@@ -71,9 +71,14 @@ def shapes_told(after: ParameterSet) -> str:
 
 
 def _numbers(values: Mapping[str, float], host: str) -> tuple[float, float, float, float]:
-    share, turning = values["rider_share"], 2.0 * math.pi * values["rider_Hz"]
-    mass = share * values[host]
-    return mass, values[host] - mass, 2.0 * values["rider_ratio"] * turning * mass, turning**2 * mass
+    beside, turning = ADDED in values, 2.0 * math.pi * values["rider_Hz"]
+    mass = values[ADDED if beside else "rider_share"] * values[host]
+    return (
+        mass,
+        values[host] - (0.0 if beside else mass),
+        2.0 * values["rider_ratio"] * turning * mass,
+        turning**2 * mass,
+    )
 
 
 def _with_std(fit: Fit, numbers: Callable[[Mapping[str, float]], tuple[float, ...]]) -> list[tuple[float, float]]:

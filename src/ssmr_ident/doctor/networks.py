@@ -15,7 +15,7 @@ from ssmr_ident.doctor.rules import TIE
 from ssmr_ident.doctor.table import Row
 from ssmr_ident.estimate.generic import branch, changing, delay, memory, rider, static
 from ssmr_ident.estimate.network import motion_of
-from ssmr_ident.estimate.node import Coordinate, Member
+from ssmr_ident.estimate.node import ADDED, Coordinate, Member
 from ssmr_ident.estimate.values import Fit, Problem, Start
 
 Array = np.ndarray
@@ -54,7 +54,9 @@ def members_of_network(problem: Problem, base: Fit, paths: Sequence[Array]) -> l
         found += [replace(member, element=spring) for member in kinds]
     for body in layout.bodies:
         for hz in lines_left(problem, base):
-            found.append(replace(rider(problem, hz), id=MAST, form=f"near {hz:.3g} Hz", element=body))
+            part, beside = rider(problem, hz), rider(problem, hz, ADDED)
+            found.append(replace(part, id=MAST, form=f"near {hz:.3g} Hz, a part of the body", element=body))
+            found.append(replace(beside, id=MAST, form=f"near {hz:.3g} Hz", element=body))
     if any(p.driven for p in problem.pieces):
         piece = problem.pieces[0]
         found.append(delay(piece.step * piece.every, problem.begin))

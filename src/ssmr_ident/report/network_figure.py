@@ -29,9 +29,9 @@ def network_figure(layout: Layout, marked: tuple[str, ...] = ()) -> Figure:
     axes = figure.add_axes((0.02, 0.02, 0.96, 0.96))
     for spring, (first, second) in zip(layout.springs, layout.ends, strict=True):
         colour = style.ORANGE if spring in marked else style.INK
-        ends = [np.array(places[end] if end >= 0 else (0.0, places[max(first, second)][1])) for end in (first, second)]
+        start, end = (np.array(places[k] if k >= 0 else (0.0, places[max(first, second)][1])) for k in (first, second))
         alike = [s for s, e in zip(layout.springs, layout.ends, strict=True) if set(e) == {first, second}]
-        _spring(axes, *ends, spring, colour, (alike.index(spring) - 0.5 * (len(alike) - 1)) * 0.3)
+        _spring(axes, start, end, spring, colour, (alike.index(spring) - 0.5 * (len(alike) - 1)) * 0.3)
     for number, name in enumerate(layout.bodies):
         x, y = places[number]
         colour = style.ORANGE if name in marked else style.INK
@@ -55,9 +55,9 @@ def _spring(axes: Axes, first: np.ndarray, second: np.ndarray, name: str, colour
     swing = np.array([0.0, *([SWING, -SWING] * COILS), 0.0])
     path = first + np.outer(share, along) + np.outer(swing + aside, across)
     path = np.vstack([first + aside * across, path, second + aside * across])
-    axes.plot(*path.T, color=colour, lw=1.2, zorder=1)
+    axes.plot(path[:, 0], path[:, 1], color=colour, lw=1.2, zorder=1)
     at = first + 0.51 * along + (aside + 0.2) * across
-    axes.text(*at, name, ha="center", va="center", fontsize=7, color=colour)
+    axes.text(float(at[0]), float(at[1]), name, ha="center", va="center", fontsize=7, color=colour)
 
 
 def _places(layout: Layout) -> dict[int, tuple[float, float]]:

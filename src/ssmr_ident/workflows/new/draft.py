@@ -166,7 +166,7 @@ class Draft(Shown):
             keys = ("motion", "direction", "yaw_rate_deg_s", "speed_mm_s", "release_s")
             about = [_about(key, guess.fields[key]) for key in keys if key in guess.fields]
             channels = guess.fields.get("channels", {})
-            about += [", ".join(f"{quantity} = {header}" for quantity, header in channels.items())] if channels else []
+            about += [", ".join(f"{q} = {_header(header)}" for q, header in channels.items())] if channels else []
             about += [f" # {guess.reasons['channels']}"] if "?" in guess.reasons.get("channels", "") else []
             lines.append(f"  {guess.file:<{width}}  {' '.join([str(guess.fields['experiment']), *about])}")
         lines += [f"  {file:<{width}}  left out: {reason}" for file, reason in self.aside]
@@ -180,6 +180,10 @@ class Draft(Shown):
 
 
 _SHOWN = ("mass_kg:", "inertia_kg_m2: {", "stiffness_", "damping_", "mu_")
+
+
+def _header(said: Any) -> str:
+    return f"{said['column']} of {said['body']}" if isinstance(said, dict) else str(said)
 
 
 def _about(key: str, value: Any) -> str:

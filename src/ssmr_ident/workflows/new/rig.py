@@ -34,7 +34,7 @@ def rig_text(name: str, guesses: Sequence[LogGuess], mass: float | None) -> str:
             f"nobody said: with 1 {unit}, stiffness and damping are those of a {unit}; give it by --{_option(rotary)}"
         )
     held = found.mass is None  # without a measured force only ratios to it show, and nothing could move it
-    values = (own, _digits(found.damping * own), _digits(found.stiffness * own))
+    values = (own, rounded(found.damping * own), rounded(found.stiffness * own))
     estimates = {
         keys[0]: Estimate(own, None, UNITS[keys[0]], source, fixed=held),
         keys[1]: Estimate(values[1], None, UNITS[keys[1]], FIRST_LOOK),
@@ -52,5 +52,6 @@ def _option(rotary: bool) -> str:
     return "inertia-kg-m2" if rotary else "mass-kg"
 
 
-def _digits(value: float) -> float:
+def rounded(value: float) -> float:
+    """To six digits, as a first look is printed."""
     return float(f"{value:.6g}")

@@ -14,16 +14,18 @@ import yaml
 from ssmr_ident.core.errors import InputError, did_you_mean
 from ssmr_ident.core.place import Place
 from ssmr_ident.experiments import EXPERIMENTS
+from ssmr_ident.physics.network import NETWORK
 from ssmr_ident.readers import ReadOptions, read
 from ssmr_ident.readers.folder import logs_in
 from ssmr_ident.readers.options import RATE
 from ssmr_ident.session import bundled_robots
 from ssmr_ident.session.entry import BASELINES
-from ssmr_ident.workflows.new.answers import Answers, answered, mass_in
+from ssmr_ident.workflows.new.answers import MASSES, Answers, answered, mass_in
 from ssmr_ident.workflows.new.block import block_text, guess_pull
 from ssmr_ident.workflows.new.draft import Draft, Guess
 from ssmr_ident.workflows.new.log import LogGuess, guess_log
 from ssmr_ident.workflows.new.machines import pairs_among
+from ssmr_ident.workflows.new.network import modes_seen, network_text, placed
 from ssmr_ident.workflows.new.rig import rig_text
 from ssmr_ident.workflows.new.rig_log import guess_rig
 from ssmr_ident.workflows.new.robot import robot_text
@@ -126,8 +128,17 @@ def draft_session(folder: Path, told: Told | None = None, progress: Callable[[in
     mass = mass_in(of_parameters, told.mass) if system != "robot" else None
     name = re.sub(r"[^\w.-]+", "-", folder.resolve().name).strip("-") or "session"
     baseline = told.baseline or BASELINE[system]
+    modes = modes_seen(listed) if system == "rig" and told.baseline in ("", NETWORK) else None
+    if baseline == NETWORK and (modes is None or modes.bodies < 2):
+        problem = "needs accelerations of two bodies or more, in which as many modes are seen"
+        raise InputError("--baseline", f"{NETWORK} {problem}", "Leave it out, or write bodies and springs yourself")
     text = {"rig": rig_text, "block": block_text}.get(system)
-    parameters = text(name, listed, mass) if text else robot_text(name, told.robot, listed, of_parameters)
+    if modes is not None and modes.bodies > 1:
+        baseline, listed = NETWORK, tuple(placed(guess, modes) for guess in listed)
+        why = f"{len(modes.hz)} modes are seen by {len(modes.sensors)} accelerometers"
+        parameters = network_text(name, modes, mass)
+    else:
+        parameters = text(name, listed, mass) if text else robot_text(name, told.robot, listed, of_parameters)
     file_name = "rig.yaml" if text else "robot.yaml"
     session = session_text(name, file_name, baseline, listed, wheels, aside)
     return Draft(
@@ -197,7 +208,9 @@ def _with_reading(guess: LogGuess, told: Told) -> LogGuess:
 def _mass_guess(parameters: str) -> Guess | None:
     """The mass where it is a guess: no log tells it, and nobody said it."""
     content = yaml.safe_load(parameters)
-    key = "inertia_kg_m2" if "inertia_kg_m2" in content else "mass_kg"
+    key = next((key for key in MASSES if key in content), "")
+    if not key:  # of a network
+        return None
     source = str(content[key].get("source", ""))
     guessed = source.startswith(("nobody", "a guess"))
     return Guess(key, content[key]["value"], source) if guessed else None

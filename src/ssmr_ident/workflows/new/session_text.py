@@ -16,7 +16,7 @@ HEAD = """\
 # Written by `ident new` from what the logs in this folder hold, and from their names where no sample can say it.
 # A line that says TODO needs you; a comment with a question mark is a guess to check. All keys: docs/howto/session.md
 """
-_BASELINE = "rigid6: the 6-DOF robot; decoupled: pure rotations; sdof: a rig with one mass; drag: a pulled block"
+_BASELINE = "rigid6: the 6-DOF robot; decoupled: pure rotations; sdof: a rig; network: bodies on springs; drag: a block"
 
 
 def session_text(

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from ssmr_ident.core.recording import Recording
 from ssmr_ident.experiments.experiment import ACCELERATIONS, ROBOT
+from ssmr_ident.physics.network import NETWORK
 from ssmr_ident.workflows.new.names import hints_of
 
 WHEELS = {"v_left", "v_right"}
@@ -48,7 +49,7 @@ def system_of(logs: Sequence[Log], baseline: str, template: str, mass_given: boo
         Whether a single mass or inertia was: no robot is told by one number.
     """
     if baseline:
-        return {"sdof": "rig", "drag": "block"}.get(baseline, "robot"), "by --baseline"
+        return {"sdof": "rig", NETWORK: "rig", "drag": "block"}.get(baseline, "robot"), "by --baseline"
     if template:
         return "robot", "by --robot"
     moves, forces = any(moving(log.recording) for log in logs), any(pulling(log.recording) for log in logs)
