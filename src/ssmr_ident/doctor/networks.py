@@ -55,8 +55,8 @@ def members_of_network(problem: Problem, base: Fit, paths: Sequence[Array]) -> l
     for body in layout.bodies:
         for hz in lines_left(problem, base):
             part, beside = rider(problem, hz), rider(problem, hz, ADDED)
-            found.append(replace(part, id=MAST, form=f"near {hz:.3g} Hz, a part of the body", element=body))
-            found.append(replace(beside, id=MAST, form=f"near {hz:.3g} Hz", element=body))
+            found.append(replace(part, id=MAST, form="a part of the body", element=body))
+            found.append(replace(beside, id=MAST, form="a further body", element=body))
     if any(p.driven for p in problem.pieces):
         piece = problem.pieces[0]
         found.append(delay(piece.step * piece.every, problem.begin))

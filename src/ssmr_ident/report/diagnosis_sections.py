@@ -16,7 +16,7 @@ from ssmr_ident.physics.network import layout_of
 from ssmr_ident.report.diagnosis_charts import after_name, curve_charts, overlay_charts
 from ssmr_ident.report.diagnosis_places import places
 from ssmr_ident.report.figures_diagnosis import evidence_text, readable
-from ssmr_ident.report.html import Cell, Formula, Number, Section, Table, picture
+from ssmr_ident.report.html import Cell, Formula, Number, Picture, Section, Table, drawing
 from ssmr_ident.report.mathml import symbol
 from ssmr_ident.report.network_figure import network_figure
 from ssmr_ident.report.numbers import NONE, alike, interval, measured, number, share
@@ -49,7 +49,8 @@ def _network(diagnosis: Diagnosis) -> Section:
     named = " and ".join((*marked, *new))
     caption = f"The network; {named} in colour." if named else "The network."
     drawn = network_figure(layout_of(diagnosis.after), (*marked, *new))
-    return Section("The network", figures=(picture(drawn, caption, f"Bodies and springs. {caption}"),))
+    item = drawing(drawn, f"Bodies and springs. {caption}", "network")
+    return Section("The network", figures=(Picture((item,), caption),))
 
 
 def turning(diagnosis: Diagnosis) -> bool:
