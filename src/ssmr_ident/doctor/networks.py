@@ -52,11 +52,8 @@ def members_of_network(problem: Problem, base: Fit, paths: Sequence[Array]) -> l
             branch(problem, 0.5 / (2 * math.pi * f)),
         ]
         found += [replace(member, element=spring) for member in kinds]
-    for body in layout.bodies:
-        for hz in lines_left(problem, base):
-            part, beside = rider(problem, hz), rider(problem, hz, ADDED)
-            found.append(replace(part, id=MAST, form="a part of the body", element=body))
-            found.append(replace(beside, id=MAST, form="a further body", element=body))
+    riders = [replace(rider(problem, hz, ADDED), id=MAST, form="a further body") for hz in lines_left(problem, base)]
+    found += [replace(member, element=body) for body in layout.bodies for member in riders]
     if any(p.driven for p in problem.pieces):
         piece = problem.pieces[0]
         found.append(delay(piece.step * piece.every, problem.begin))

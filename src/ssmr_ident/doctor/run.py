@@ -91,7 +91,7 @@ def examined(campaign: Campaign, known: ParameterSet, progress: Progress | None,
             spans = ", ".join(f"{p.time[0]:.4g} to {p.time[-1]:.4g} s" for p in kept.pieces)
             notes.append(f"{targets[0].name} is the only recording: {spans} were kept back, with starts of their own")
     if alone and any("acceleration_2" in m.recording for m in campaign.measurements):
-        notes.append("acceleration_2 was not compared: a rig of one mass moves as one")
+        notes.append("acceleration_2 was not compared: a rig of one mass moves as one, a network has several bodies")
     search = searched(fitted, budget, progress)
     horizon = search.problem.horizon
     if math.isfinite(horizon):
