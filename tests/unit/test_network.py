@@ -50,6 +50,19 @@ def test_a_file_comes_back_bit_for_bit(tmp_path: Path) -> None:
     jsonschema.validate(yaml.safe_load((tmp_path / "again.yaml").read_text()), parameters_schema())
 
 
+def test_an_effect_at_two_springs_is_a_list(tmp_path: Path) -> None:
+    laws = {
+        "nonlinear_stiffness@foot": {"k3_N_m3": Estimate(1e9, 1e7, "N/m^3")},
+        "nonlinear_stiffness@blade": {"k3_N_m3": Estimate(2e9, None, "N/m^3")},
+        "dry_friction@blade": {"F_c_N": Estimate(0.5, None, "N")},
+    }
+    write_parameters(tmp_path / "rig.yaml", replace(read(tmp_path, TEXT), effects=laws))
+    content = yaml.safe_load((tmp_path / "rig.yaml").read_text())
+    assert [one["element"] for one in content["effects"]["nonlinear_stiffness"]] == ["foot", "blade"]
+    jsonschema.validate(content, parameters_schema())
+    assert read_parameters(tmp_path / "rig.yaml").effects == laws
+
+
 WRONG = {
     "which is no body": ("[table, tip]", "[table, tipp]"),
     "is held to nothing else": ("[table, tip]", "[ground, table]"),

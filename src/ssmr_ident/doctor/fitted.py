@@ -13,7 +13,7 @@ from ssmr_ident.doctor.laws import simpler
 from ssmr_ident.doctor.rules import UNIT
 from ssmr_ident.doctor.table import Row, row_of
 from ssmr_ident.estimate.exact import polish
-from ssmr_ident.estimate.node import ADDED, Node
+from ssmr_ident.estimate.node import Node
 from ssmr_ident.estimate.regression import regressed
 from ssmr_ident.estimate.shooting import shot
 from ssmr_ident.estimate.values import Fit, Problem, Start
@@ -72,7 +72,7 @@ def from_paths(problem: Problem, node: Node, point: Array, paths: Sequence[Array
 def joined(node: Node, fit: Fit) -> Array:
     """A node's coordinates as another fit has them, at their usual values where it has them not."""
     old = {id(c): float(p) for c, p in zip(fit.node.coordinates, fit.point, strict=True)}
-    usual = {"K_m_N_m": 0.1, "rider_share": 0.03, ADDED: 0.03, "delay_s": 0.3}
+    usual = {"K_m_N_m": 0.1, "rider_share": 0.03, "delay_s": 0.3}
     return np.array([old.get(id(c), usual.get(c.name, c.mean)) for c in node.coordinates])
 
 

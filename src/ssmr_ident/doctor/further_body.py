@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
 
 from ssmr_ident.core.parameter import Estimate, ParameterSet
-from ssmr_ident.estimate.node import ADDED, RIDER, Member
+from ssmr_ident.estimate.node import RIDER, Member
 from ssmr_ident.estimate.values import Fit
 from ssmr_ident.physics.network import BODY_KEY, SPRING_KEYS, network_from_parameters
 
@@ -31,10 +32,11 @@ def with_further_bodies(fit: Fit, known: ParameterSet) -> ParameterSet:
     for member in riders(fit):
         rotary = fit.node.layout.rotary
         body, host = f"on_{member.element}", f"bodies.{member.element}.{BODY_KEY[rotary]}"
-        mass, damping, stiffness = _with_std(fit, partial(_numbers, host=host))
+        mass, left, damping, stiffness = _with_std(fit, partial(_numbers, host=host))
         unit = known[host].unit
         units = [known[f"springs.{fit.node.layout.springs[0]}.{key}"].unit for key in SPRING_KEYS[rotary]]
         new = {
+            host: replace(known[host], value=left[0], std=left[1], source=SOURCE),
             f"bodies.{body}.{BODY_KEY[rotary]}": Estimate(*mass, unit, SOURCE),
             f"springs.{body}.{SPRING_KEYS[rotary][1]}": Estimate(*stiffness, units[1], SOURCE),
             f"springs.{body}.{SPRING_KEYS[rotary][0]}": Estimate(*damping, units[0], SOURCE),
@@ -68,10 +70,10 @@ def shapes_told(after: ParameterSet) -> str:
     return f"Modes, damping ratios and shapes with it are {'; '.join(told)}."
 
 
-def _numbers(values: Mapping[str, float], host: str) -> tuple[float, float, float]:
-    """Mass, damping and stiffness."""
-    mass, turning = values[ADDED] * values[host], 2.0 * math.pi * values["rider_Hz"]
-    return mass, 2.0 * values["rider_ratio"] * turning * mass, turning**2 * mass
+def _numbers(values: Mapping[str, float], host: str) -> tuple[float, float, float, float]:
+    share, turning = values["rider_share"], 2.0 * math.pi * values["rider_Hz"]
+    mass = share * values[host]
+    return mass, values[host] - mass, 2.0 * values["rider_ratio"] * turning * mass, turning**2 * mass
 
 
 def _with_std(fit: Fit, numbers: Callable[[Mapping[str, float]], tuple[float, ...]]) -> list[tuple[float, float]]:

@@ -15,7 +15,7 @@ from ssmr_ident.doctor.rules import TIE
 from ssmr_ident.doctor.table import Row
 from ssmr_ident.estimate.generic import branch, changing, delay, memory, rider, static
 from ssmr_ident.estimate.network import motion_of
-from ssmr_ident.estimate.node import ADDED, Coordinate, Member
+from ssmr_ident.estimate.node import Coordinate, Member
 from ssmr_ident.estimate.values import Fit, Problem, Start
 
 Array = np.ndarray
@@ -52,7 +52,7 @@ def members_of_network(problem: Problem, base: Fit, paths: Sequence[Array]) -> l
             branch(problem, 0.5 / (2 * math.pi * f)),
         ]
         found += [replace(member, element=spring) for member in kinds]
-    riders = [replace(rider(problem, hz, ADDED), id=MAST, form="a further body") for hz in lines_left(problem, base)]
+    riders = [replace(rider(problem, hz), id=MAST, form="a further body") for hz in lines_left(problem, base)]
     found += [replace(member, element=body) for body in layout.bodies for member in riders]
     if any(p.driven for p in problem.pieces):
         piece = problem.pieces[0]

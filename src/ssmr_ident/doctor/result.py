@@ -184,9 +184,7 @@ def named_effects(decision: Decision, chosen: Row, after: ParameterSet) -> tuple
         kind = member.kind.replace("_", " ")
         sentence = told(effect, values) if values else f"Something of the kind {kind} acts that no listed law makes."
         if further:
-            sentence = (
-                f"A body that the file has not moves on {member.element}: {_listed(values)}. {shapes_told(after)}"
-            )
+            sentence = f"A body that the file has not moves on {member.element}. {shapes_told(after)}"
         found.append(
             NamedEffect(
                 effect, sentence, text, values | _riding_mass(values, after), min(decision.confidence, 1.0),
@@ -201,10 +199,6 @@ def _shown(member: Member, after: ParameterSet) -> dict[str, Estimate]:
     """What its formula has: what was fitted, and what the formula holds."""
     own = {c.name for c in member.coordinates} | set(member.law or {})
     return {name: e for name, e in after.effects[at_element(member.id, member.element)].items() if name in own}
-
-
-def _listed(values: Mapping[str, Estimate]) -> str:
-    return ", ".join(f"{name} = {estimate}" for name, estimate in values.items())
 
 
 def _riding_mass(values: Mapping[str, Estimate], after: ParameterSet) -> dict[str, Estimate]:

@@ -118,12 +118,12 @@ def _courses(problem: Problem, courses: Callable[[Piece], Array], kinds: Sequenc
     return Member("unlisted", CHANGING, f"{ANY}, {form}", coordinates, tables)
 
 
-def rider(problem: Problem, hz: float, share: str = "rider_share") -> Member:
-    """A part of the mass on a spring of its own, or as much beside it (``ADDED``)."""
+def rider(problem: Problem, hz: float) -> Member:
+    """A part of the mass on a spring of its own."""
     return Member(
         "unlisted", EXTRA, "a part of the mass rides",
         (
-            Coordinate(share, 1.0, False, 1e-5, 0.9, 0.0, 0.5, "1"),
+            Coordinate("rider_share", 1.0, False, 1e-5, 0.9, 0.0, 0.5, "1"),
             Coordinate("rider_Hz", hz, True, 0.05 * hz, 20.0 * hz, 0.0, 1.0, "Hz"),
             Coordinate("rider_ratio", 0.02, True, 2e-4, 0.1, 0.0, 1.5, "1"),
         ),

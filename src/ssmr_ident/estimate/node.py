@@ -23,9 +23,6 @@ MEMORY = "memory"
 """The kind of what has states of its own that no log shows."""
 """Linear members: a slow sensor, a Maxwell branch, a part of the mass on a spring of its own."""
 
-ADDED = "added_share"
-"""Of a mass that rides beside what is known of the body under it, and is no part of that."""
-
 
 @dataclass(frozen=True)
 class Coordinate:
@@ -298,7 +295,7 @@ def matrices(node: Node, values: Array, seen: Seen) -> tuple[Array, ...]:
         element = names.index(member.element) if member.element else 0
         places.setdefault(member.linear, []).append((place, element, own))
         at, place = at + size, place + {LAG: 2, BRANCH: 1, RIDER: 2}[member.linear]
-        if member.linear == RIDER and member.coordinates[0].name != ADDED:
+        if member.linear == RIDER:
             share[element] += own[0]
     body = np.diag(mass) * (1.0 - share)
     a[:count, rates] = np.eye(count)

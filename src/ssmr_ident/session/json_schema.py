@@ -59,15 +59,16 @@ def parameters_schema() -> Schema:
         block, last = path.split(".")
         properties[block]["anyOf"][0]["properties"][last] = choice.schema() | {"description": meaning}
     properties |= network_schemas()
-    properties["effects"] = _effects()
+    properties["effects"], effects = _effects()
     properties["provenance"] = {"type": ["object", "null"], "description": "where the numbers come from"}
     absent = {"anyOf": [{"const": 0}, {"type": "object", "properties": {"value": {"const": 0}}, "required": ["value"]}]}
     said = {"type": "object", "properties": {"fixed": {"const": True}}, "required": ["fixed"]}
-    shared = definitions() | {"none_is_fixed": {"if": absent, "then": said}}
+    shared = definitions() | effects | {"none_is_fixed": {"if": absent, "then": said}}
     return made | {"properties": properties, "required": ["schema"], "$defs": shared}
 
 
-def _effects() -> Schema:
+def _effects() -> tuple[Schema, Schema]:
+    """The block, and what it refers to."""
     element = {"element": Name().schema() | {"description": "of a network: the spring at which it acts"}}
     blocks: Schema = {
         effect: {
@@ -82,10 +83,18 @@ def _effects() -> Schema:
         }
         for effect, keys in effect_keys().items()
     }
-    several = {"type": "array", "minItems": 1}
-    blocks = {effect: {"anyOf": [block, several | {"items": block}]} for effect, block in blocks.items()}
+    references = {effect: {"$ref": f"#/$defs/effect_{effect}"} for effect in blocks}
+    one_or_several = {
+        effect: {"anyOf": [one, {"type": "array", "minItems": 1, "items": one}]} for effect, one in references.items()
+    }
     meaning = "physics beyond the baseline; ident effects lists what there is"
-    return {"type": ["object", "null"], "description": meaning, "additionalProperties": False, "properties": blocks}
+    made = {
+        "type": ["object", "null"],
+        "description": meaning,
+        "additionalProperties": False,
+        "properties": one_or_several,
+    }
+    return made, {f"effect_{effect}": block for effect, block in blocks.items()}
 
 
 MADE = {"session": session_schema, "parameters": parameters_schema}
