@@ -151,6 +151,22 @@ def test_a_law_at_a_spring_moves_as_an_integrator_says(tmp_path: Path) -> None:
     assert np.abs(linear - exact).max() > 0.1 * np.abs(exact).max()
 
 
+@pytest.mark.parametrize("law", ["hysteresis:alpha=0.5,yield_m=2e-4", "viscoelastic_relaxation:K_m_N_m=2e4,tau_s=0.02"])
+def test_a_network_of_one_body_is_a_rig(tmp_path: Path, law: str) -> None:
+    """What remembers, by the loop that fits and by the rig's own simulator."""
+    time, push = pushed(CHAIN, np.random.default_rng(2), 60.0, 0.3, 2000.0)
+    write_log(tmp_path / "F.csv", time, {"force [N]": push})
+    rig = "mass_kg: {value: 2.0}\nstiffness_N_m: {value: 9.0e4}\ndamping_N_s_m: {value: 12}\n"
+    read(tmp_path, f"schema: ssmr-ident/parameters/1\n{rig}")
+    alone = simulated(tmp_path, "forced", "", force=str(tmp_path / "F.csv"), effects=(law,))
+    effect, pairs = law.split(":")
+    values = ", ".join(f"{name}: {{value: {value}}}" for name, value in (pair.split("=") for pair in pairs.split(",")))
+    one = TEXT[: TEXT.index("  tip")] + TEXT[TEXT.index("springs") : TEXT.index("  blade")]
+    read(tmp_path, f"{one}effects:\n  {effect}: {{element: foot, {values}}}\n")
+    found = simulated(tmp_path, "forced", "", force=str(tmp_path / "F.csv"))
+    assert np.abs(found - alone).max() < 2e-3 * np.abs(alone).max()
+
+
 WRONG_EFFECTS = {
     "which is no spring": "nonlinear_stiffness: {element: blad, k3_N_m3: {value: 1}}",
     "acts at no spring": "nonlinear_stiffness: {k3_N_m3: {value: 1}}",

@@ -7,6 +7,7 @@ import numpy as np
 from ssmr_ident.compare.outcome import Prediction
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import ParameterSet, effect_and_element
+from ssmr_ident.estimate.generic import MEMORY, STATIC
 from ssmr_ident.estimate.network import followed, network_problem
 from ssmr_ident.estimate.node import Member, Node
 from ssmr_ident.experiments.campaign import Measurement
@@ -39,7 +40,8 @@ def laws_of(parameters: ParameterSet) -> tuple[Member, ...]:
         if not element or not CATALOGUE[effect].rig or Site.ELEMENT not in CATALOGUE[effect].acts:
             springs = ", ".join(parameters.between)
             raise InputError(f"{where}.{effect}", "acts at no spring of a network", f"element: one of {springs}")
-        found.append(Member(effect, "", "", (), law=values, element=element))
+        kind = MEMORY if Site.STATE in CATALOGUE[effect].acts else STATIC
+        found.append(Member(effect, kind, "", (), law=values, element=element))
     places = sorted({member.element for member in found})
     if len(places) > 1:
         raise InputError(where, f"act at {' and '.join(places)}", "One spring may have effects; leave the others out")
