@@ -8,13 +8,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from ssmr_ident.doctor.left import Left, left
+from ssmr_ident.doctor.left import Left, left, wandering
 from ssmr_ident.doctor.rules import FOLLOWS, UNEVEN
 
 RATE, HZ = 200.0, 4.0
 
 
-def asked(seconds: float, rest_of) -> Left:
+def asked(seconds: float, rest_of, ask=left) -> Left:
     """``rest_of(motion, white)`` : what is left beside a motion whose size falls from 1 to 0.2."""
     time = np.arange(int(seconds * RATE)) / RATE
     motion = np.sin(2.0 * np.pi * HZ * time) * np.linspace(1.0, 0.2, len(time))
@@ -22,7 +22,7 @@ def asked(seconds: float, rest_of) -> Left:
     piece = SimpleNamespace(
         channels=("position",), y=motion[:, None] - rest, counts=np.ones_like(rest, bool), rate=RATE, name="log.csv"
     )
-    return left(SimpleNamespace(pieces=(piece,), frequency=HZ), SimpleNamespace(residuals=(rest,)))  # type: ignore[arg-type]
+    return ask(SimpleNamespace(pieces=(piece,), frequency=HZ), SimpleNamespace(residuals=(rest,)))  # type: ignore[arg-type]
 
 
 def test_noise_follows_nothing() -> None:
@@ -46,3 +46,12 @@ def test_a_knock_stands_out() -> None:
 @pytest.mark.parametrize("seconds", [1.0, 3.0])
 def test_too_little_to_tell_is_not_taken_for_noise(seconds: float) -> None:
     assert math.isinf(asked(seconds, lambda motion, white: white).follows)
+
+
+def test_a_zero_that_wanders_is_slower_than_the_motion() -> None:
+    slow = 0.3 * np.sin(2.0 * np.pi * 0.07 * np.arange(int(30.0 * RATE)) / RATE)
+    ((name, hz),) = asked(30.0, lambda motion, white: white + slow, wandering)
+    assert name == "position"
+    assert 0.05 < hz < 0.2
+    assert asked(30.0, lambda motion, white: white, wandering) == []
+    assert asked(30.0, lambda motion, white: white + 0.1 * motion, wandering) == []

@@ -71,3 +71,26 @@ def _of_channel(problem: Problem, fit: Fit, name: str) -> Left:
     sizes = np.array([w[1] for w in windows])
     over = float(sizes.max()) / max(float(np.sqrt(np.mean(sizes**2))), 1e-300)
     return Left(follows, math.log(over) * math.sqrt(2.0 * width), windows[int(np.argmax(sizes))][2])
+
+
+MOST, LEAST = 0.9, 0.01
+"""Of what is left the part that lies below a frequency, and the part of the motion below it at the most, where what is
+left is slower than whatever moves."""
+
+
+def wandering(problem: Problem, fit: Fit) -> list[tuple[str, float]]:
+    """Channels of which most of what is left is slower than what moves, and the frequency [Hz] that it lies below: a
+    zero that wanders, for no force makes a rig follow it so slowly and nothing else."""
+    found = []
+    for name in problem.pieces[0].channels:
+        spectra = []
+        for piece, rest in zip(problem.pieces, fit.residuals, strict=True):
+            own = rest[:, piece.channels.index(name)]
+            model = own + piece.y[:, piece.channels.index(name)]
+            power = [np.abs(np.fft.rfft(x - x.mean())) ** 2 for x in (own, model)]
+            spectra.append(np.column_stack([np.fft.rfftfreq(len(own), 1.0 / piece.rate), *power]))
+        hz, left_over, moves = np.vstack(spectra)[np.argsort(np.concatenate([s[:, 0] for s in spectra]))].T
+        at = int(np.searchsorted(np.cumsum(left_over), MOST * left_over.sum()))
+        if np.sum(moves[: at + 1]) < LEAST * moves.sum():
+            found.append((name, float(hz[at])))
+    return found

@@ -21,6 +21,7 @@ from ssmr_ident.doctor.decide import MISSING, NOTHING, UNDETERMINED, Decision
 from ssmr_ident.doctor.fitted import Search
 from ssmr_ident.doctor.further_body import mode_parameters, riders, shapes_told, with_further_bodies
 from ssmr_ident.doctor.held import held_fit
+from ssmr_ident.doctor.left import wandering
 from ssmr_ident.doctor.rules import OVER_NOISE, UNEVEN
 from ssmr_ident.doctor.table import Row
 from ssmr_ident.estimate.node import Member, effects_of
@@ -83,13 +84,14 @@ def answer(found: Examined) -> Diagnosis:
     rows = (*found.rows, *found.search.far)
     tried = tuple(Tried("+".join(r.ids) or "baseline", r.heldout, r.log_evidence) for r in rows)
     shown = training if math.isnan(heldout.before) else heldout
+    slow = _wandering(found.search.problem, chosen)
     if named:
         summary = missing(effects, shown, METRIC, conflicts)
     elif decision.verdict == NOTHING:
         summary = nothing(shown, METRIC, len(rows) - 1)
     else:
-        event = ""
-        if base.left.uneven > UNEVEN:
+        event = "; ".join(slow)
+        if not slow and base.left.uneven > UNEVEN:
             event = f"{base.left.loudest} holds what noise of no colour reads in it"
         summary = undetermined(shown, METRIC, [r.name for r in found.rows if r.ids], event)
     if shown is training:
@@ -108,7 +110,12 @@ def answer(found: Examined) -> Diagnosis:
         before=before_file,
         after=after_file,
         summary=summary,
-        notes=(*found.notes, *_notes(decision, chosen, heldout), *_colour(decision, base)),
+        notes=(
+            *found.notes,
+            *_notes(decision, chosen, heldout),
+            *_colour(decision, base),
+            *_wandering(found.search.problem, chosen),
+        ),
         evidence=Evidence(overlays=drawn),
         kinds=tuple(
             KindShare(s.kind, element_of(s.row.fit.node.members[0]), float(s.share), float(s.log_evidence))
@@ -291,6 +298,16 @@ def _colour(decision: Decision, base: Row) -> tuple[str, ...]:
     return (
         f"what is left is {base.over:.1f} times what is white in it; it does not follow the motion, so it is taken for "
         "noise of another colour",
+    )
+
+
+def _wandering(problem: Problem, chosen: Row) -> tuple[str, ...]:
+    if chosen.over < OVER_NOISE or chosen.fit is None:
+        return ()
+    return tuple(
+        f"most of what is left in {name} lies below {hz:.2g} Hz, slower than anything that moves there: the zero of "
+        "its sensor wanders"
+        for name, hz in wandering(problem, chosen.fit)
     )
 
 
