@@ -144,11 +144,11 @@ def test_two_static_forces_are_two_where_no_shape_over_the_first_ones_variable_i
 
 
 def test_where_much_is_left_a_pair_has_to_gain_in_sizes_of_that() -> None:
-    law = row("nonlinear_stiffness", "static_force", 20_000.0, 9000.0, 9.0)
-    play = row("free_play", "static_force", 20_100.0, 8800.0, 9.0)
-    pair = row("nonlinear_stiffness sensor_bandwidth", "static_force sensor_chain", 20_200.0, 8600.0, 6.0)
+    law = row("nonlinear_stiffness", "static_force", 20_000.0, 99_000.0, 9.0)
+    play = row("free_play", "static_force", 20_100.0, 98_800.0, 9.0)
+    pair = row("nonlinear_stiffness sensor_bandwidth", "static_force sensor_chain", 20_150.0, 49_000.0, 6.0)
     assert decide([BASE, law, play, pair]).chosen is play
-    certain = row("nonlinear_stiffness sensor_bandwidth", "static_force sensor_chain", 20_800.0, 7400.0, 6.0)
+    certain = row("nonlinear_stiffness sensor_bandwidth", "static_force sensor_chain", 20_800.0, 47_400.0, 6.0)
     assert decide([BASE, law, play, certain]).chosen is certain
 
 

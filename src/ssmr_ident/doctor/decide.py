@@ -142,7 +142,7 @@ def stands(row: Row, rows: Sequence[Row]) -> bool:
         return True
     found = [_alone(row, k, rows) for k in (0, 1)]
     single = [r.log_evidence for r in rows if len(r.ids) == 1 and not r.generic]
-    if not found[0] or row.log_evidence < max(single, default=-math.inf) + SECOND * max(row.over, 1.0) ** 2:
+    if not found[0] or row.log_evidence < max(single, default=-math.inf) + SECOND * _temper(row):
         return False
     for alone in (rows for rows in found if rows):
         best = max(alone, key=lambda r: r.log_evidence)
@@ -187,10 +187,15 @@ def kind_shares(rows: Sequence[Row], base: Row) -> tuple[Share, ...]:
     return tuple(found.values())
 
 
+def _temper(row: Row) -> float:
+    """Mean square of what a row leaves, in that of the noise which the evidence is counted in; 1 at the least."""
+    return max(row.chi2 / max(row.samples, 1.0), 1.0)
+
+
 def _confidence(top: Row, others: Sequence[Row], left: float) -> float:
     """Posterior share of the chosen ids; evidence counts in sizes of what the explanation itself leaves, and what it
     leaves beside the best of any shape counts against it."""
-    temper = max(top.chi2 / max(top.samples, 1.0), 1.0)
+    temper = _temper(top)
     weights: dict[frozenset[str], float] = {}
     for row in others:
         weight = math.exp(min((row.log_evidence - top.log_evidence) / temper, 0.0))

@@ -26,7 +26,7 @@ from ssmr_ident.doctor.kinds import kinds
 from ssmr_ident.doctor.named import named_along
 from ssmr_ident.doctor.networks import members_of_network
 from ssmr_ident.doctor.rules import FORMULA, TIE
-from ssmr_ident.doctor.second import FULL_KINDS, exchanged, second
+from ssmr_ident.doctor.second import FULL_KINDS, exchanged, paired, second
 from ssmr_ident.doctor.table import Row
 from ssmr_ident.estimate.coarser import coarser
 from ssmr_ident.estimate.exact import polish
@@ -93,7 +93,9 @@ def searched(problem: Problem, budget: float = math.inf, progress: Progress | No
     search = _with_own_noise(search)
     if alone:
         second(search, say)
-        exchanged(search, say)
+        paired(search, say)
+    offered_back(search)
+    exchanged(search, say)
     return search if problem is whole else _in_full(search, whole, begins, say)
 
 

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import math
+from dataclasses import replace
+
 from ssmr_ident.doctor.decide import FRICTION
-from ssmr_ident.doctor.fitted import BEGUN, FULL, SHORT, Progress, Search, again, carried, joined, offered_back
+from ssmr_ident.doctor.fitted import BEGUN, FAR_OFF, FULL, SHORT, Progress, Search, again, carried, joined, offered_back
 from ssmr_ident.doctor.kinds import kinds
+from ssmr_ident.doctor.laws import Proposal, proposals
 from ssmr_ident.doctor.named import named, named_along
 from ssmr_ident.doctor.rules import SECOND, TIE, UNIT
 from ssmr_ident.doctor.table import row_of
@@ -12,6 +16,7 @@ from ssmr_ident.estimate.exact import polish
 from ssmr_ident.estimate.generic import STATIC, memory, static
 from ssmr_ident.estimate.motion import motion
 from ssmr_ident.estimate.node import Member
+from ssmr_ident.estimate.shooting import shot
 from ssmr_ident.estimate.values import Fit, Problem, Start
 
 OVER_NOISE_SECOND = 1.25
@@ -19,6 +24,9 @@ OVER_NOISE_SECOND = 1.25
 
 FULL_KINDS = 4
 """Members that get a full fit, those that a short one has brought farthest."""
+
+PAIRS = 3
+"""Pairs, the most promising along the motion of any shape, that are fitted at once."""
 
 FIRSTS = 2
 """Named effects, the best ones, beside which a second is looked for."""
@@ -40,6 +48,40 @@ def second(search: Search, say: Progress) -> None:
         best = search.rows()[0]
         if row.over < OVER_NOISE_SECOND or (not best.generic and best.over < OVER_NOISE_SECOND):
             return
+
+
+def paired(search: Search, say: Progress) -> None:
+    """Two laws at once, along the motion of a shape that is certainly better than any one law."""
+    problem, rows = search.problem, search.rows()
+    single = max((r.log_evidence for r in rows if len(r.ids) == 1 and not r.generic), default=-math.inf)
+    shape = next((r for r in rows if len(r.ids) == 1 and r.generic), None)
+    if search.late or shape is None or shape.fit is None or shape.log_evidence < single + SECOND:
+        return
+    found = shape.fit
+    paths = motion(problem, found)
+    offers: dict[frozenset[str], Proposal] = {}
+    firsts = {o.node.members[-1].id: o for o in reversed(proposals(problem, found, paths))}
+    for first in sorted(firsts.values(), key=lambda o: -o.promise):
+        begun = replace(found, node=first.node, point=first.start.point, nuisances=carried(first.node, found))
+        for offer in proposals(problem, begun, paths, first.node.members):
+            names = frozenset(m.id for m in offer.node.members)
+            if names not in offers or offer.promise > offers[names].promise:
+                offers[names] = offer
+    best, pairs = sorted(offers.values(), key=lambda o: -o.promise)[:PAIRS], []
+    for index, offer in enumerate(best):
+        say("two laws at once", index, len(best))
+        if search.late:
+            search.untried.append(offer.node.name)
+            continue
+        near = polish(problem, offer.node, Start(offer.start.point, carried(offer.node, found)), SHORT)
+        if near.cost > FAR_OFF * found.cost:
+            far = polish(problem, offer.node, shot(problem, offer.node, offer.start), SHORT)
+            near = min(near, far, key=lambda f: f.cost)
+        pairs.append(search.add(again(problem, near, FULL)))
+    if pairs:  # along a motion that two laws follow, either is asked for again
+        pair = min(pairs, key=lambda f: f.cost)
+        for member in pair.node.members:
+            named(search, say, pair, [member])
 
 
 def exchanged(search: Search, say: Progress) -> None:
