@@ -184,6 +184,12 @@ def _toward_rest(x, v, z, time, row, drive, g, slopes, mean_slopes, with_slopes)
 
 
 @kernel
+def _sharp(change, by_slopes):
+    """Whether slopes do not explain a force's change while the motion turns."""
+    return abs(change - by_slopes) > SHARP * abs(change)
+
+
+@kernel
 def _turned(v, v_was, moved, kick, x, z, time, row, drive, g, slopes, more_slopes, mean_slopes):
     """What a force that jumps where the motion turns does over a step beyond its mean of begin and end.
 
@@ -219,7 +225,7 @@ def _turned(v, v_was, moved, kick, x, z, time, row, drive, g, slopes, more_slope
             for k in range(len(slopes)):
                 more_slopes[k] += 2.0 * (1.0 - share) * mean_slopes[k] - slopes[k]
             break
-        if turn == 1 and abs(f - f_was - 0.5 * (fv + fv_was) * change) <= SHARP * abs(f - f_was):
+        if turn == 1 and not _sharp(f - f_was, 0.5 * (fv + fv_was) * change):
             break
         average = share * mean_was + (1.0 - share) * mean
         more = 2.0 * average - f_was - f
@@ -337,6 +343,7 @@ def run(
     slopes_now, more_slopes = np.zeros(hidden + columns), np.zeros(hidden + columns)
     mean_slopes = np.zeros(hidden + columns)
     last = len(drive) - 1
+    jumps = g[16][0] or g[3].shape[1] > 0 or g[4].shape[2] > 0  # what does not look at speed does not jump with it
     for stretch in range(starts.shape[0]):
         ds[:], dz[:], df[:] = 0.0, 0.0, 0.0
         for k in range(n_lin):
@@ -346,6 +353,7 @@ def run(
             z[k] = starts[stretch, n_lin + k]
             dz[k, n_lin + k] = 1.0
         f, fx, fv, x_was, v_was = 0.0, 0.0, 0.0, 0.0, 0.0
+        f_was, fx_was, fv_was = 0.0, 0.0, 0.0
         first, after = borders[stretch], borders[stretch + 1]
         total = (after - first) * every
         for n in range(total + 1):
@@ -376,7 +384,12 @@ def run(
                     turn = NEWTON if abs(away) <= 1e-7 * g[15] else turn + 1
                     v -= away
                 more, more_v = 0.0, 0.0
-                if n and v * v_was < 0.0:
+                if (
+                    n
+                    and jumps
+                    and v * v_was < 0.0
+                    and _sharp(f - f_was, 0.5 * ((fv + fv_was) * (v - v_was) + (fx + fx_was) * (s[0] - x_was)))
+                ):
                     at_v, at_f, at_fx, at_fv, more, more_v, more_was = _turned(
                         v, v_was, moved, kick[1], s[0], z, time, row, here, g, slopes_now, more_slopes, mean_slopes
                     )
@@ -387,7 +400,7 @@ def run(
                             beyond[j] = more_was * was[j]
                             if j >= states:
                                 beyond[j] += more_slopes[hidden + j - states]
-                v_was = v
+                v_was, f_was, fx_was, fv_was = v, f, fx, fv
                 denominator = 1.0 + half * kick[1] * (fv + more_v)
                 for j in range(columns):
                     own = fx * ds[0, j]
