@@ -11,6 +11,7 @@ from dataclasses import replace
 from ssmr_ident.doctor.fitted import (
     BEGUN,
     FAR_OFF,
+    FULL,
     SHORT,
     Progress,
     Search,
@@ -137,9 +138,9 @@ def _in_full(search: Search, whole: Problem, begins: Sequence[int], say: Progres
     chaotic = math.isfinite(whole.horizon)
     if chaotic:  # what a start does to the motion is no longer linear: the best one's states begin all others
         paths = paths_of(whole, best.node, best.point)
-        found = polish(whole, best.node, shot(whole, best.node, Start(best.point, paths=tuple(paths))), SHORT)
+        found = polish(whole, best.node, shot(whole, best.node, Start(best.point, paths=tuple(paths))), FULL)
     else:
-        found = polish(whole, best.node, _at_begins(best, begins), SHORT)
+        found = polish(whole, best.node, _at_begins(best, begins), FULL)
     problem = left_white(whole, found)
     problem = with_noises(problem, own_noise(problem, found))
     new = replace(search, problem=problem, fits=[], far=[r for r in rows if r not in kept])
