@@ -10,7 +10,7 @@ import pytest
 from scipy.io import savemat
 
 from ssmr_ident.core.errors import InputError
-from ssmr_ident.readers import read, read_one
+from ssmr_ident.readers import apart_child, read, read_one
 from ssmr_ident.readers.apart import Apart
 from ssmr_ident.readers.options import ReadOptions
 from ssmr_ident.readers.source import open_source
@@ -64,3 +64,12 @@ def test_a_struct_of_more_members_than_bytes_is_refused_before_room_is_made_for_
     file.write_bytes(data)
     with pytest.raises(InputError, match="of 268435457 members in"):
         read(file)
+
+
+def test_a_library_that_lost_its_way_has_met_a_damaged_file(log: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def lost(*_: object) -> None:
+        raise SystemError("Negative size passed to PyUnicode_New")
+
+    monkeypatch.setattr(apart_child, "reader_for", lost)
+    folder = str(Path.cwd())
+    assert apart_child._read(folder, str(log), None, ReadOptions()) is None

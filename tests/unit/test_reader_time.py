@@ -231,3 +231,10 @@ def test_two_rows_at_one_time_are_refused(tmp_path: Path) -> None:
     (tmp_path / "log.csv").write_text("time_s,force_N\n1.0,1\n1.0,2\n1.0,3\n")
     with pytest.raises(InputError, match="time stands still"):
         read(tmp_path / "log.csv")
+
+
+def test_seconds_that_no_row_has_are_a_line(tmp_path: Path) -> None:
+    log = tmp_path / "parts.csv"
+    log.write_text("hour,min,sec,ms,force_N\n12,0,,0,0.0\n12,0,,500,0.1\n", encoding="utf-8")
+    with pytest.raises(InputError):
+        read(log)

@@ -34,6 +34,8 @@ def _read(folder: str, path: str, member: tuple[str, bytes] | None, options: Rea
         return list(reader_for(source, options).read(source, options))
     except InputError as error:
         return error.where, error.problem, error.mend
+    except SystemError:  # a library in C that lost its way in a damaged file, as one that ends there
+        return None
     except Exception as error:  # a fault of ours is one there, too, and no damage of the file
         return RuntimeError(f"{type(error).__name__}: {error}")
 

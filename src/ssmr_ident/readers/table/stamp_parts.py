@@ -70,7 +70,7 @@ def _of_calendar_parts(columns: list[Column], table: Table) -> list[Column]:
             parts[part] = column
     if not {"minute", "second"} <= parts.keys() or not _whole(parts["minute"].values):
         return columns
-    if np.nanmax(parts["minute"].values) > 59 or np.nanmax(parts["second"].values) > 61:
+    if np.any(parts["minute"].values > 59) or np.any(parts["second"].values > 61):
         return columns
     turns = np.diff(parts["second"].values) < 0
     if not np.array_equal(np.diff(parts["minute"].values) != 0, turns):
