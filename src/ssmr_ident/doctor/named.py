@@ -67,10 +67,7 @@ def named(search: Search, say: Progress, best: Fit, beside: Sequence[Member] = (
         if search.late:
             search.untried.append(offer.node.name)
             continue
-        near = polish(problem, offer.node, Start(offer.start.point, carried(offer.node, best)), SHORT)
-        if near.cost > FAR_OFF * best.cost and index < LOST:
-            far = polish(problem, offer.node, shot(problem, offer.node, offer.start), SHORT)
-            near = min(near, far, key=lambda f: f.cost)
+        near = begun(problem, offer, best, from_afar=index < LOST)
         short.append((near, offer.start.point))
         for node in simpler(near.node):
             less = polish(problem, node, Start(joined(node, near), carried(node, near)), SHORT)
@@ -80,10 +77,19 @@ def named(search: Search, say: Progress, best: Fit, beside: Sequence[Member] = (
         search.add(finished(search, near, base, paths, point) if whole else near)
 
 
+def begun(problem: Problem, offer: Proposal, best: Fit, from_afar: bool = True) -> Fit:
+    """A proposal's short fit; by multiple shooting too, where that stays far above the fit along whose motion it is."""
+    near = polish(problem, offer.node, Start(offer.start.point, carried(offer.node, best)), SHORT)
+    if not from_afar or near.cost <= FAR_OFF * best.cost:
+        return near
+    far = polish(problem, offer.node, shot(problem, offer.node, offer.start), SHORT)
+    return min(near, far, key=lambda f: f.cost)
+
+
 def _scored(problem: Problem, offer: Proposal, best: Fit) -> float:
     """Cost after the first steps, with Schwarz's price of an offer's parameters."""
-    begun = polish(problem, offer.node, Start(offer.start.point, carried(offer.node, best)), BEGUN)
-    return begun.cost + len(offer.node.members[-1].coordinates) * math.log(problem.samples)
+    first = polish(problem, offer.node, Start(offer.start.point, carried(offer.node, best)), BEGUN)
+    return first.cost + len(offer.node.members[-1].coordinates) * math.log(problem.samples)
 
 
 def _varied(offers: Sequence[Proposal]) -> list[Proposal]:

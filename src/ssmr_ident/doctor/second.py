@@ -6,17 +6,16 @@ import math
 from dataclasses import replace
 
 from ssmr_ident.doctor.decide import FRICTION
-from ssmr_ident.doctor.fitted import BEGUN, FAR_OFF, FULL, SHORT, Progress, Search, again, carried, joined, offered_back
+from ssmr_ident.doctor.fitted import BEGUN, FULL, SHORT, Progress, Search, again, carried, joined, offered_back
 from ssmr_ident.doctor.kinds import kinds
 from ssmr_ident.doctor.laws import Proposal, proposals
-from ssmr_ident.doctor.named import named, named_along
+from ssmr_ident.doctor.named import begun, named, named_along
 from ssmr_ident.doctor.rules import SECOND, TIE, UNIT
 from ssmr_ident.doctor.table import row_of
 from ssmr_ident.estimate.exact import polish
 from ssmr_ident.estimate.generic import STATIC, memory, static
 from ssmr_ident.estimate.motion import motion
 from ssmr_ident.estimate.node import Member
-from ssmr_ident.estimate.shooting import shot
 from ssmr_ident.estimate.values import Fit, Problem, Start
 
 OVER_NOISE_SECOND = 1.25
@@ -61,9 +60,9 @@ def paired(search: Search, say: Progress) -> None:
     paths = motion(problem, found)
     offers: dict[frozenset[str], Proposal] = {}
     firsts = {o.node.members[-1].id: o for o in reversed(proposals(problem, found, paths))}
-    for first in sorted(firsts.values(), key=lambda o: -o.promise):
-        begun = replace(found, node=first.node, point=first.start.point, nuisances=carried(first.node, found))
-        for offer in proposals(problem, begun, paths, first.node.members):
+    for first in firsts.values():
+        beside = replace(found, node=first.node, point=first.start.point, nuisances=carried(first.node, found))
+        for offer in proposals(problem, beside, paths, first.node.members):
             names = frozenset(m.id for m in offer.node.members)
             if names not in offers or offer.promise > offers[names].promise:
                 offers[names] = offer
@@ -73,11 +72,7 @@ def paired(search: Search, say: Progress) -> None:
         if search.late:
             search.untried.append(offer.node.name)
             continue
-        near = polish(problem, offer.node, Start(offer.start.point, carried(offer.node, found)), SHORT)
-        if near.cost > FAR_OFF * found.cost:
-            far = polish(problem, offer.node, shot(problem, offer.node, offer.start), SHORT)
-            near = min(near, far, key=lambda f: f.cost)
-        pairs.append(search.add(again(problem, near, FULL)))
+        pairs.append(search.add(again(problem, begun(problem, offer, found), FULL)))
     if pairs:  # along a motion that two laws follow, either is asked for again
         pair = min(pairs, key=lambda f: f.cost)
         for member in pair.node.members:
