@@ -19,7 +19,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -123,12 +123,17 @@ def stop(ground: Ground, verb: str, how: signal.Signals, moments: int) -> Row:
         place, token = ground.place(), f"{verb}-{how.name}-{moment}"
         call = ground.call(verb, place)
         run = subprocess.Popen(
-            call, env={**ground.env, MARK: token}, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
-        )
+            call, env={**ground.env, MARK: token}, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
+            start_new_session=True,
+        )  # fmt: skip
         waited = 0.05 + 0.95 * length * moment / moments
         time.sleep(waited)
         asked = time.monotonic()
-        run.send_signal(how)
+        if how is signal.SIGINT:
+            with suppress(ProcessLookupError):
+                os.killpg(run.pid, how)  # as a terminal's Ctrl-C: to all that the run has begun, too
+        else:
+            run.send_signal(how)
         _, said = run.communicate()
         spent = time.monotonic() - asked
         expected = {signal.SIGKILL: -9}.get(how, 128 + how)

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from driven_session import LOG, RIG, SESSION, written
 from scipy.io import loadmat
 from typed_command import typed
 
@@ -15,32 +16,12 @@ from ssmr_ident.readers import read_one
 from ssmr_ident.readers.table.vocabulary import SHIPPED, vocabulary_for
 from ssmr_ident.workflows.files_read import files_read
 
-SESSION = """\
-schema: ssmr-ident/session/1
-name: s
-robot: rig.yaml
-baseline: sdof
-recordings:
-  - file: log.csv
-    experiment: forced
-    channels: {force: F, acceleration: a}
-"""
-RIG = """\
-schema: ssmr-ident/parameters/1
-name: r
-mass_kg: {value: 8.0, std: 0.1, unit: kg}
-stiffness_N_m: {value: 20000, std: 2000, unit: N/m}
-damping_N_s_m: {value: 50, unit: N s/m}
-"""
-LOG = "time [s],F [N],a [m/s^2]\n" + "".join(f"{i / 1000},{(i % 7) - 3.0},{(i % 5) - 2.0}\n" for i in range(300))
 LONG = "x" * 4000
 
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    for name, text in (("session.yaml", SESSION), ("rig.yaml", RIG), ("log.csv", LOG)):
-        (tmp_path / name).write_text(text, encoding="utf-8")
-    return tmp_path
+    return written(tmp_path)
 
 
 CALLS = {

@@ -103,6 +103,21 @@ def test_a_run_stopped_at_its_beginning_or_its_work_says_so(tmp_path: Path, how:
         assert not list(tmp_path.iterdir())
 
 
+def test_a_sweep_whose_terminal_is_asked_to_stop_says_one_line(tmp_path: Path) -> None:
+    """Ctrl-C goes to the processes of a sweep as well, as they begin and as they work."""
+    call = [sys.executable, "-m", "ssmr_ident", "sweep", "p3at-extended", "-e", "free_response", "--duration-s", "5"]
+    call += ["--over", "lambda_max=0.2:1:4", "--workers", "2", "-o", str(tmp_path / "out"), "-q"]
+    with subprocess.Popen(call, stderr=subprocess.PIPE, text=True, start_new_session=True) as process:
+        while len(list((tmp_path / "out" / "runs").glob("*.json"))) < 1:  # the first run is the sweep's own
+            assert process.poll() is None
+            time.sleep(0.05)
+        time.sleep(0.5)
+        os.killpg(process.pid, signal.SIGINT)
+        _, told = process.communicate(timeout=60)
+    assert (process.returncode, told) == (130, "ident: stopped; what was being written is not there\n")
+    assert not [path for path in (tmp_path / "out" / "runs").iterdir() if path.name.startswith(".")]
+
+
 def test_a_run_asked_to_stop_when_it_has_just_ended_keeps_to_its_statuses(tmp_path: Path) -> None:
     """From its last line to the interpreter's end is a tenth of a second."""
     for wait in (0.0, 0.02, 0.04, 0.06, 0.1):

@@ -14,6 +14,7 @@ from typing import Any
 import jsonschema
 import pytest
 import yaml
+from driven_session import LOG, RIG, SESSION, written
 from typer.testing import CliRunner
 
 from ssmr_ident import cli
@@ -24,26 +25,6 @@ from ssmr_ident.session.json_schema import MADE, schema_file
 from ssmr_ident.session.parameters_file import parameters_of
 from ssmr_ident.session.session_file import FILE
 from ssmr_ident.session.yaml_file import load_mapping
-
-SESSION = """\
-schema: ssmr-ident/session/1
-name: s
-robot: rig.yaml
-baseline: sdof
-recordings:
-  - file: log.csv
-    experiment: forced
-    channels: {force: F, acceleration: a}
-"""
-RIG = """\
-schema: ssmr-ident/parameters/1
-name: r
-mass_kg: {value: 8.0, std: 0.1, unit: kg}
-stiffness_N_m: {value: 20000, std: 2000, unit: N/m}
-damping_N_s_m: {value: 50, unit: N s/m}
-effects: {nonlinear_stiffness: {k3_N_m3: {value: 6.0e+8, unit: N/m^3}}}
-"""
-LOG = "time [s],F [N],a [m/s^2]\n" + "".join(f"{i / 1000},{(i % 7) - 3.0},{(i % 5) - 2.0}\n" for i in range(300))
 
 IN_SESSION = {
     "a sample before the first": (
@@ -124,13 +105,6 @@ IN_RIG = {
 }
 
 
-def _folder(tmp_path: Path, session: str = SESSION, rig: str = RIG) -> Path:
-    (tmp_path / "session.yaml").write_text(session)
-    (tmp_path / "rig.yaml").write_text(rig)
-    (tmp_path / "log.csv").write_text(LOG)
-    return tmp_path
-
-
 @pytest.mark.parametrize(
     ("file", "old", "new", "line", "told"),
     [pytest.param("session.yaml", *case, id=f"session: {name}") for name, case in IN_SESSION.items()]
@@ -140,7 +114,7 @@ def test_one_line_before_any_work(tmp_path: Path, file: str, old: str, new: str,
     text = {"session.yaml": SESSION, "rig.yaml": RIG}[file]
     assert old in text
     changed = text.replace(old, new, 1)
-    folder = _folder(tmp_path, **{file.removesuffix(".yaml"): changed})
+    folder = written(tmp_path, **{file.removesuffix(".yaml"): changed})
     for verb in ("fit", "compare"):
         done = CliRunner().invoke(cli.app, [verb, str(folder)])
         assert isinstance(done.exception, InputError), done.exception
@@ -283,7 +257,7 @@ def test_a_sample_that_no_sensor_gives(tmp_path: Path, value: str) -> None:
 
 @pytest.mark.parametrize("values", [lambda i: 5.0, lambda i: 1e-200 * (i % 3)])
 def test_a_channel_that_does_not_change(tmp_path: Path, values: Callable[[int], float]) -> None:
-    folder = _folder(tmp_path)
+    folder = written(tmp_path)
     rows = "".join(f"{i / 1000},{(i % 7) - 3.0},{values(i)}\n" for i in range(300))
     (folder / "log.csv").write_text("time [s],F [N],a [m/s^2]\n" + rows)
     for verb in ("fit", "compare"):

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import csv
 import json
+import multiprocessing
+import time
 from pathlib import Path
 
 import numpy as np
@@ -22,6 +24,7 @@ from ssmr_ident.workflows.simulate.request import Request
 from ssmr_ident.workflows.sweep import run as running
 from ssmr_ident.workflows.sweep.axes import axis_of
 from ssmr_ident.workflows.sweep.files import write
+from ssmr_ident.workflows.sweep.processes import side_by_side
 from ssmr_ident.workflows.sweep.run import points_of, sweep
 
 SHORT = Request(SWIVEL, Conditions(yaw_rate_deg_s=60.0), duration_s=0.5)
@@ -126,3 +129,21 @@ def test_a_sweep_writes_everything_once(tmp_path: Path, monkeypatch: pytest.Monk
     again = sweep(axes, points, tmp_path, workers=1)
     assert done == [points[1].name, points[2].name]
     assert again.rows == found.rows
+
+
+def _interrupted(begun: Path) -> None:
+    with side_by_side(2, ()) as submit:
+        submit(begun.touch)
+        submit(time.sleep, 600.0)
+        submit(time.sleep, 600.0)
+        while not begun.exists():
+            time.sleep(0.05)
+        raise KeyboardInterrupt
+
+
+@pytest.mark.slow
+def test_processes_that_nobody_waits_for_are_ended(tmp_path: Path) -> None:
+    """Whatever they are at, and none is left behind."""
+    with pytest.raises(KeyboardInterrupt):
+        _interrupted(tmp_path / "begun")
+    assert not multiprocessing.active_children()

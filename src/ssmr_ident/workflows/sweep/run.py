@@ -5,12 +5,8 @@ from __future__ import annotations
 import hashlib
 import itertools
 import json
-import multiprocessing
-import os
-import threading
 from collections.abc import Callable, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
-from contextlib import ExitStack
+from concurrent.futures import as_completed
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -23,7 +19,6 @@ from ssmr_ident.core.recording import Channel, Recording
 from ssmr_ident.core.shown import Shown
 from ssmr_ident.core.threads import processors
 from ssmr_ident.experiments import EXPERIMENTS
-from ssmr_ident.physics.effects import effects_of
 from ssmr_ident.physics.robot import robot_from_parameters
 from ssmr_ident.physics.slots import effect_values
 from ssmr_ident.readers import writers
@@ -34,6 +29,7 @@ from ssmr_ident.workflows.simulate.request import Request, asked_for, check
 from ssmr_ident.workflows.simulate.robot import run_robot
 from ssmr_ident.workflows.sweep.axes import Axis, Value
 from ssmr_ident.workflows.sweep.measured import measured
+from ssmr_ident.workflows.sweep.processes import side_by_side
 
 _FIRST = {"robot": 0, "floor": 1}
 """A robot's file brings its own numbers, and a floor its own friction: what changes single numbers comes after."""
@@ -186,9 +182,8 @@ def sweep(
         tell(done, len(points))
     count = min(workers or processors(), len(rest))
     if count > 1:
-        spawned = multiprocessing.get_context("spawn")
-        with ProcessPoolExecutor(count, mp_context=spawned, initializer=_know, initargs=rest[0].laws) as pool:
-            waiting = {pool.submit(run_point, folder, point): point for point in rest}
+        with side_by_side(count, rest[0].laws) as submit:
+            waiting = {submit(run_point, folder, point): point for point in rest}
             for future in as_completed(waiting):
                 kept[waiting[future].name] = future.result()
                 done += 1
@@ -207,22 +202,6 @@ def sweep(
         for point, one in zip(points, found, strict=True)
     )
     return Sweep(tuple(axes), rows, tuple(one["spectrum"] for one in found), len(points) - len(todo))
-
-
-_OWN = ExitStack()
-"""Of a process of the pool: what its catalogue has beside the package's."""
-
-
-def _know(*laws: Path) -> None:
-    """Take effects into this process' catalogue for as long as it lives, which is no longer than who began it."""
-    threading.Thread(target=_end_with, args=(multiprocessing.parent_process(),), daemon=True).start()
-    _OWN.enter_context(effects_of(*laws))
-
-
-def _end_with(parent: Any) -> None:
-    """A process that was killed cannot end those of its pool, and they would wait for work for ever."""
-    parent.join()
-    os._exit(1)
 
 
 def _kept(folder: Path, point: Point) -> dict[str, Any] | None:
