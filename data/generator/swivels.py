@@ -42,7 +42,7 @@ def make(folder: Path, seed: int, frame: str) -> None:
     noise = Noise(truth.WHITE_M_S2, truth.HUM_M_S2)
     everything = []
     for part, floor in enumerate(truth.FLOORS):
-        parameters = truth.true_robot(frame, floor)
+        parameters = truth.on_flat_relays(truth.true_robot(frame, floor))
         robot = robot_from_parameters(parameters)
         runs = [(speed, 1) for speed in SPEEDS] + ([(REPEATED, 2)] if frame == "frame" else [])
         entries = []

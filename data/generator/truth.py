@@ -119,3 +119,9 @@ def true_robot(frame: str, floor: str = "concrete") -> ParameterSet:
         for key, entry in lab.items()
     }
     return ParameterSet(f"truth: {lab.name}", exact, provenance={"synthetic": True, "made_by": "data/make_raw.py"})
+
+
+def on_flat_relays(parameters: ParameterSet) -> ParameterSet:
+    """The same robot, whose file also names what swivels are simulated by: the relay (6.4) on a flat floor."""
+    flat = {"floor.height_m": Estimate(0.0, None, "m", "the generator's", fixed=True)}
+    return replace(parameters.updated(flat), choices={"tire.contact": "relay"})

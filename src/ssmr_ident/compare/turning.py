@@ -62,7 +62,9 @@ def predict(parameters: ParameterSet, measurement: Measurement) -> Prediction:
     simulation = simulate(robot, scenario, even.sample_rate, effects=active)
     skip = len(simulation.time) - len(even.samples)
     simulated = simulation.values[skip:][:, [AXES.index(name) for name in names]]
-    noise = np.sqrt(quietest_density(even.samples, even.sample_rate) * 0.5 * even.sample_rate)
+    # of the quietest part of a spectrum only what the motion does not put there itself is the sensor's
+    beyond = quietest_density(even.samples, even.sample_rate) - quietest_density(simulated, even.sample_rate)
+    noise = np.sqrt(np.maximum(beyond, 0.0) * 0.5 * even.sample_rate)
     simulated = simulated + noise * np.random.default_rng(_NOISE_SEED).standard_normal(simulated.shape)
     # a mounting that is not quite level shows as a constant: it is the sensor's, not the motion's
     simulated = simulated - simulated.mean(axis=0) + even.samples.mean(axis=0)

@@ -145,8 +145,15 @@ def robot_from_parameters(parameters: ParameterSet) -> Robot:
         accelerometer=accelerometer_from_parameters(parameters),
         sliding_speed=parameters.number("tire.sliding_speed_m_s", 0.0),
     )
-    contact = parameters.choices.get("tire.contact")
-    return robot if contact is None else robot.with_contact(contact)
+    contact = contact_named(parameters)
+    return robot.with_contact(contact) if contact else robot
+
+
+def contact_named(parameters: ParameterSet) -> str:
+    """The law of contact that a parameter file names, by itself or by its speed of sliding; empty for none."""
+    speed = parameters.get("tire.sliding_speed_m_s")
+    by_speed = "" if speed is None else "cone" if float(speed.value) > 0.0 else "relay"
+    return parameters.choices.get("tire.contact", by_speed)
 
 
 def accelerometer_from_parameters(parameters: ParameterSet) -> Accelerometer:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ssmr_ident.compare.turning import FLOOR_HEIGHT
+from ssmr_ident.compare.turning import FLOOR_HEIGHT, turning_robot
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.turning.bench import STEP, Bench, Run
 from ssmr_ident.diagnose.turning.conditions import Condition
@@ -41,8 +41,11 @@ class Prior:
 def priors_of(parameters: ParameterSet) -> tuple[Prior, ...]:
     """What the file knows of the parameters that a swivel depends on, wide where it does not say."""
     found = []
+    relay = turning_robot(parameters).sliding_speed == 0.0  # which knows no speed of sliding
     defaults = {"tire.sliding_speed_m_s": SLIDING_SPEED, "floor.height_m": FLOOR_HEIGHT}
     for path in FITTED:
+        if relay and path == "tire.sliding_speed_m_s":
+            continue
         known = parameters.get(path)
         if known is None and path in defaults:
             found.append(Prior(path, defaults[path], WIDE))

@@ -11,7 +11,7 @@ from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.turning.alone import searched_again, without
 from ssmr_ident.diagnose.turning.anchor import SEEDS, Anchor, scale_of
-from ssmr_ident.diagnose.turning.baseline import ROUNDS, anchored
+from ssmr_ident.diagnose.turning.baseline import ROUNDS
 from ssmr_ident.diagnose.turning.bench import STEP, Bench
 from ssmr_ident.diagnose.turning.candidates import Candidate, candidates
 from ssmr_ident.diagnose.turning.conditions import Condition, brief, conditions_of, held_back
@@ -22,6 +22,7 @@ from ssmr_ident.diagnose.turning.firm import STAGES as FIRM_ROUNDS
 from ssmr_ident.diagnose.turning.firm import firm
 from ssmr_ident.diagnose.turning.giving import screened_giving, slopes_alone
 from ssmr_ident.diagnose.turning.grip import PATH, TRIED, GripProfile, grip_profile
+from ssmr_ident.diagnose.turning.law import baseline_under_its_law
 from ssmr_ident.diagnose.turning.likelihood import Score
 from ssmr_ident.diagnose.turning.regimes import widened
 from ssmr_ident.diagnose.turning.search import Explained, explained, freed, polished, refined, screened
@@ -123,15 +124,15 @@ def examine(
         raise InputError(
             str(campaign.session.folder), "holds no target swivel long enough to diagnose", "Give one role: target"
         )
-    bench = Bench(known)
     fitted_on = calibration or targets
     seeds = tuple(1000 * seed + s for s in (SEEDS if len(targets) < MANY else SEEDS[:1]))
 
     count = Counter(show, "baseline", 1 + ROUNDS)
     scale = scale_of(fitted_on)
+    anchor, law_notes = baseline_under_its_law(known, fitted_on, bool(calibration), scale, count.advance, seeds)
+    bench = anchor.bench
     again = repeated(bench, calibration, targets, scale, seeds) if calibration else None
     quiet = again is not None and again.left <= LEFT
-    anchor = anchored(bench, fitted_on, bool(calibration), scale, count.advance, seeds=seeds)
     count.finish()
     several = tuple(1000 * seed + s for s in FINAL_SEEDS)
     if calibration:
@@ -167,7 +168,7 @@ def examine(
         seconds["explanations"] = 0.0
         final = _final(baseline, targets, seed)
         return Outcome(
-            bench, *whole, heldout, anchor, final, (), (), grip, (*kept_notes, *notes), seconds,
+            bench, *whole, heldout, anchor, final, (), (), grip, (*kept_notes, *notes, *law_notes), seconds,
         )  # fmt: skip
 
     every = candidates(pitches(anchor, targets), ceilings(targets), anchor.values.get("floor.height_m", 3e-5))
@@ -214,7 +215,7 @@ def examine(
     ranked = sorted(finals[1:], key=lambda one: one.evidence, reverse=True)
     seconds["baseline beside explanations"] = time.perf_counter() - clock - sum(seconds.values())
     return Outcome(
-        bench, *whole, heldout, anchor, finals[0], tuple(ranked), tuple(rest), grip, (*kept_notes, *notes),
+        bench, *whole, heldout, anchor, finals[0], tuple(ranked), tuple(rest), grip, (*kept_notes, *notes, *law_notes),
         seconds,
     )  # fmt: skip
 

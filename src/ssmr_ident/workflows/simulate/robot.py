@@ -76,12 +76,13 @@ def run_robot(
 ) -> Simulation:
     """The whole robot in one of the experiments that are done with it, begun ``offset`` further away.
 
-    N >= 0 (4.15) is part of the baseline here; in free responses it is the effect ``wheel_lift``, which decays tell.
+    N >= 0 (4.15) is part of the baseline of pulls; on wheels of its own and let go a robot has it by the effect
+    ``wheel_lift``, which recordings tell.
     """
     experiment = request.experiment
     if experiment.scenario is None:
         raise InputError("--experiment", f"{experiment.name} is not done with a whole robot")
-    if not experiment.free:
+    if experiment.on_a_testing_machine:
         effects = {"wheel_lift": {"active": 1.0}, **effects}
     scenario = experiment.scenario(robot, request.conditions, request.duration)
     if offset:

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from ssmr_ident import __version__
+from ssmr_ident.compare.turning import turning_robot
 from ssmr_ident.core.atomic import make_folder, write_text
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import ParameterSet
@@ -215,7 +216,8 @@ def _kept(folder: Path, point: Point) -> dict[str, Any] | None:
 
 def run_point(folder: Path, point: Point) -> dict[str, Any]:
     """Simulate one point, write its log, measure it, and write that."""
-    robot, effects = robot_from_parameters(point.parameters), effect_values(point.parameters)
+    effects = effect_values(point.parameters)
+    robot = (turning_robot if point.request.experiment.on_wheels else robot_from_parameters)(point.parameters)
     run = run_robot(robot, effects, point.request, offset={"y": 1e-7 * point.repeat} if point.repeat else {})
     names = [name for name in run.names if run.scenario.pulled or name not in ("force", "head")]
     slips = wheel_slips(robot, run)
