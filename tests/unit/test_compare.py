@@ -160,3 +160,11 @@ def test_strong_hum_counts_by_the_gain_of_the_low_pass_alone() -> None:
         prediction = Prediction(time, ("ay",), ("m/s^2",), (motion + hum)[:, None], motion[:, None])
         left = np.linalg.norm(hum) / (1 + (60 / 50) ** 20)
         assert measure(prediction)[0] == pytest.approx(100 * left / np.hypot(np.linalg.norm(motion), left), rel=0.03)
+
+
+@pytest.mark.parametrize("seconds", [0.01, 0.05])
+def test_a_stretch_too_short_for_the_mains_or_the_low_pass_is_compared(seconds: float) -> None:
+    """As a fast rig's single recording is held back in; 2 of 100 is 2 %, filtered or not."""
+    time = np.arange(round(1000 * seconds)) / 1000
+    motion = np.cos(2 * np.pi * 5 * time)[:, None]
+    assert measure(Prediction(time, ("a",), ("m/s^2",), motion, 0.98 * motion))[0] == pytest.approx(2.0, rel=1e-6)

@@ -238,3 +238,9 @@ def test_seconds_that_no_row_has_are_a_line(tmp_path: Path) -> None:
     log.write_text("hour,min,sec,ms,force_N\n12,0,,0,0.0\n12,0,,500,0.1\n", encoding="utf-8")
     with pytest.raises(InputError):
         read(log)
+
+
+def test_a_clock_that_goes_to_and_fro_and_nowhere(tmp_path: Path) -> None:
+    rows = [f"12,{k % 2 * 500},{k}" for k in range(11)]
+    with pytest.raises(InputError, match="time decreases 5 times, first from 0.5 to 0 s"):
+        log(tmp_path, "hour,ms,Load (N)", rows)

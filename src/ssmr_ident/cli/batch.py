@@ -45,8 +45,11 @@ def command(
     """Fit and diagnose every session below a folder; a run that was stopped goes on where it was."""
     from ssmr_ident.cli.called import called
     from ssmr_ident.cli.progress import counted
+    from ssmr_ident.session import read_parameters
     from ssmr_ident.workflows.batch.run import run_batch
 
+    if params:
+        read_parameters(params)  # told once, and not by every session
     with counted("sessions", hidden=quiet or as_json) as step:
         batch = run_batch(
             folder, output, params=params, diagnose=diagnose, report=report, seed=seed, jobs=jobs, scheduler=scheduler,

@@ -15,7 +15,7 @@ from ssmr_ident.core.shown import Shown, html_table
 from ssmr_ident.experiments.campaign import Campaign
 from ssmr_ident.signals.filters import ORDER, low_pass
 from ssmr_ident.signals.metrics import log_psd_db, nrmse_percent
-from ssmr_ident.signals.noise.hum import MAINS_HZ, mains_line
+from ssmr_ident.signals.noise.hum import MAINS_HZ, mains_line, shows_mains
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -146,9 +146,12 @@ def _below(samples: np.ndarray, sample_rate: float, low_pass_hz: float) -> np.nd
     """Low-passed channels, (n, c), with the mains line filtered as if the record had no ends.
 
     A zero-phase filter leaves the ends of a record as they are; a hum of several times the motion would count there
-    unfiltered. The line is taken off by least squares, and added again with the filter's gain at its frequency.
+    unfiltered. The line is taken off by least squares, and added again with the filter's gain at its frequency; not
+    of a stretch with fewer than four of its periods. One shorter than a period of the cut-off is compared as it is.
     """
-    if sample_rate <= 2.0 * MAINS_HZ:
+    if len(samples) * low_pass_hz < sample_rate:
+        return samples
+    if not shows_mains(len(samples), sample_rate):
         return low_pass(samples, sample_rate, low_pass_hz)
     lines = [mains_line(channel, sample_rate).samples(len(channel), sample_rate) for channel in samples.T]
     hum = np.column_stack(lines)

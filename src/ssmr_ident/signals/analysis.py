@@ -133,8 +133,7 @@ def analyse(
     peaks = find_peaks(spectrum, band_hz=options.band_hz)
     lines = read_lines(array[part.indices], spectrum, peaks)
     duration = len(array) / sample_rate
-    shows_mains = sample_rate / 2 > hum.MAINS_HZ and duration * hum.MAINS_HZ >= 4
-    mains = hum.mains_line(array, sample_rate) if shows_mains else None
+    mains = hum.mains_line(array, sample_rate) if hum.shows_mains(len(array), sample_rate) else None
     humless = array
     if mains is not None and options.low_pass_hz < hum.MAINS_HZ:
         humless = array - mains.samples(len(array), sample_rate)

@@ -145,8 +145,9 @@ def _shuffled(
 ) -> tuple[np.ndarray, list[int]]:
     """Many small steps back are a clock that trembles, no parts: rows keep their order and the stamps become even."""
     count = len(stamps)
-    slope, offset = np.polynomial.Polynomial.fit(np.arange(count), stamps, 1).convert().coef[::-1]
-    spread = float(np.abs(stamps - offset - slope * np.arange(count)).max())
+    even = np.polynomial.Polynomial.fit(np.arange(count), stamps, 1)(np.arange(count))
+    slope = float(even[-1] - even[0]) / (count - 1)
+    spread = float(np.abs(stamps - even).max())
     if slope <= 0 or spread > 20 * slope:
         row = int(backward[0])
         raise TimeProblem(

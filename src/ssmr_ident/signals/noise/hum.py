@@ -62,6 +62,11 @@ def offset(samples: np.ndarray, sample_rate: float, until: float = math.inf) -> 
     return float(mean) if np.ndim(mean) == 0 else mean
 
 
+def shows_mains(count: int, sample_rate: float, mains_hz: float = MAINS_HZ) -> bool:
+    """Whether a record of so many samples is dense and long enough for ``mains_line``."""
+    return sample_rate > 2 * mains_hz and count * mains_hz >= 4 * sample_rate
+
+
 def mains_line(samples: np.ndarray, sample_rate: float, mains_hz: float = MAINS_HZ) -> Line:
     """Amplitude and phase of the mains hum: least squares of offset, slope, cosine and sine at ``mains_hz``.
 

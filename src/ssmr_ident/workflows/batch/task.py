@@ -91,10 +91,12 @@ def find_tasks(
     Raises
     ------
     InputError
-        The folder is missing or holds no session.
+        The folder is missing or holds no session, or lies where results go.
     """
     if not folder.is_dir():
         raise InputError(str(folder), "is no folder", "Give the folder that the sessions are in")
+    if folder.absolute().is_relative_to(out.absolute()):
+        raise InputError(str(out), "holds the sessions themselves", "Give another name with -o")
     tasks = tuple(
         Task(name, str(place), str(out.absolute() / "sessions" / name), params, diagnose, report, seed, effects)
         for name, place in _sessions(folder.absolute(), out.absolute())
