@@ -242,5 +242,5 @@ def test_seconds_that_no_row_has_are_a_line(tmp_path: Path) -> None:
 
 def test_a_clock_that_goes_to_and_fro_and_nowhere(tmp_path: Path) -> None:
     rows = [f"12,{k % 2 * 500},{k}" for k in range(11)]
-    with pytest.raises(InputError, match="time decreases 5 times, first from 0.5 to 0 s"):
+    with pytest.raises(InputError, match="time decreases 5 times"):
         log(tmp_path, "hour,ms,Load (N)", rows)
