@@ -57,6 +57,12 @@ def priors_of(parameters: ParameterSet) -> tuple[Prior, ...]:
     return tuple(found)
 
 
+def stiffness_known(parameters: ParameterSet) -> bool:
+    """Whether the file knows any stiffness of the tires: a standard deviation of it, or that it is fixed."""
+    every = (parameters.get(path) for path in FITTED if path.startswith("tire.stiffness_"))
+    return any(one is not None and (one.fixed or one.std is not None) for one in every)
+
+
 def values_at(priors: tuple[Prior, ...], z: np.ndarray) -> dict[str, float]:
     """Parameters at ``z`` standard deviations from the priors; friction never rises with speed."""
     values = {p.path: p.value * float(np.exp(p.std * shift)) for p, shift in zip(priors, z, strict=True)}

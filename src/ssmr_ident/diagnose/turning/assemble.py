@@ -37,12 +37,20 @@ METRIC = "log_psd_db"
 NEW_UNITS = {"tire.sliding_speed_m_s": "m/s", "floor.height_m": "m"}
 MODEL_SPREAD = 0.07
 """Share of a size on top of its standard deviation: what errors of simulated sessions need (docs/theory/swivel.md)."""
+KNOW_THE_TIRES = (
+    "Pull the robot along and across on wheels that stand, press one wheel down, and let it go from a small roll and "
+    "pitch: ident fit makes stiffness, damping and friction of them; or record the same speeds without the puzzling "
+    "condition, as role: calibration"
+)
 CONFLICT = 3.0  # standard deviations of the prior
 
 
 def diagnosis_of(outcome: Outcome, session: str) -> Diagnosis:
     """Put into words and numbers what an examination found."""
-    decision = with_rivals(outcome, decide(findings_of(outcome)))
+    if outcome.unread:
+        decision = Decision(UNDETERMINED, (), 0.0, outcome.unread)
+    else:
+        decision = with_rivals(outcome, decide(findings_of(outcome)))
     best = _chosen(outcome, decision)
     before = parameter_set(outcome, outcome.anchor, None)
     after = before if best is None else parameter_set(outcome, best.anchor, best)
@@ -70,7 +78,7 @@ def diagnosis_of(outcome: Outcome, session: str) -> Diagnosis:
         metric=METRIC,
         training=training,
         heldout=heldout,
-        next_experiment=next_run(outcome, decision.named),
+        next_experiment=KNOW_THE_TIRES if outcome.unread else next_run(outcome, decision.named),
         before=before,
         after=after,
         summary=_summary(outcome, decision, best, heldout),
@@ -100,7 +108,7 @@ def parameter_set(outcome: Outcome, anchor: Anchor, best: Explained | None) -> P
     for path, value in anchor.fixed.items():
         low, high = outcome.grip.lower, outcome.grip.upper
         std = None if low is None or high is None else (high - low) / 3.92
-        changes[path] = Estimate(value, std, "1", f"profile over {fitted_on}")
+        changes[path] = Estimate(value, std, "1", f"{'yaw gain' if outcome.unread else 'profile'} over {fitted_on}")
     effects: dict[str, Mapping[str, Estimate]] = dict(known.effects)
     if best is not None:
         spreads = _spreads(best)
@@ -211,6 +219,9 @@ def _summary(outcome: Outcome, decision: Decision, best: Explained | None, heldo
             f"No explanation tried accounts for the spectra better than the fitted baseline "
             f"({outcome.baseline.target.rms_db:.1f} dB away)."
         )
+    if outcome.unread:
+        said = f"{outcome.turned}; {outcome.unread}" if outcome.turned else outcome.unread
+        return f"{said[0].upper()}{said[1:]}."
     if decision.verdict != MISSING:
         return f"Something is missing that these recordings cannot tell: {decision.reason}."
     if best is None or best.candidate is None:
@@ -223,7 +234,10 @@ def _summary(outcome: Outcome, decision: Decision, best: Explained | None, heldo
 
 
 def _notes(outcome: Outcome, decision: Decision) -> tuple[str, ...]:
-    notes = [*outcome.notes, str(outcome.grip)]
+    notes = [*outcome.notes, *_turning_notes(outcome)]
+    if outcome.unread:
+        return tuple(notes)
+    notes.append(str(outcome.grip))
     fit = outcome.anchor.fit
     if outcome.calibrated:
         notes.append(
@@ -236,7 +250,6 @@ def _notes(outcome: Outcome, decision: Decision) -> tuple[str, ...]:
             f"up part of what is missing ({fit.rms_db:.1f} dB stayed); an effect must be "
             "twice as evident to be named, and what resembles a parameter of the baseline cannot be seen"
         )
-    notes += _turning_notes(outcome)
     unknown = [p.path for p in outcome.anchor.priors
                if (known := outcome.bench.parameters.get(p.path)) is not None and known.std is None]  # fmt: skip
     if unknown:
@@ -247,18 +260,22 @@ def _notes(outcome: Outcome, decision: Decision) -> tuple[str, ...]:
 
 
 def _turning_notes(outcome: Outcome) -> list[str]:
-    """How much of the yaw rate that the wheels ask for is turned, where gyroscopes measured it."""
-    ratios = []
-    for c in outcome.targets:
-        run = outcome.bench.run(c, outcome.anchor.values, {}, outcome.anchor.seeds)
-        if c.yaw_rate is not None and run is not None and c.turning:
-            ratios.append((c.yaw_rate / c.turning, run.yaw_rate / c.turning))
-    if not ratios:
+    """How much of the yaw rate that the wheels ask for is turned, measured and simulated."""
+    if outcome.turned is None:
         return []
-    measured, simulated = np.mean(ratios, axis=0)
-    return [
-        f"the robot turns at {measured:.2f} of the rate that its wheels ask for, the fitted baseline at {simulated:.2f}"
-    ]
+    runs = [(c, outcome.bench.run(c, outcome.anchor.values, {}, outcome.anchor.seeds)) for c in outcome.targets]
+    simulated = float(np.mean([run.yaw_rate / c.turning for c, run in runs if run is not None and c.turning]))
+    whose = "the file's robot" if outcome.unread else "the fitted baseline"
+    held = yaw_gain_of(outcome.heldout)
+    seen = f", recordings kept back at {held:.2f}" if np.isfinite(held) else ""
+    said = [] if outcome.unread else [str(outcome.turned)]  # where nothing else is said it is the summary
+    return [*said, f"simulated, {whose} turns at {simulated:.2f} of the rate asked for{seen}"]
+
+
+def yaw_gain_of(conditions: tuple[Condition, ...]) -> float:
+    """Mean of measured over asked yaw rates, starts and stops included; NaN where none was measured."""
+    found = [c.yaw_rate / c.turning for c in conditions if c.yaw_rate is not None and c.turning]
+    return float(np.mean(found)) if found else np.nan
 
 
 def _lines(maps: tuple) -> tuple[str, ...]:

@@ -7,10 +7,11 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from ssmr_ident.compare.turning import turning_robot
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.turning.alone import searched_again, without
-from ssmr_ident.diagnose.turning.anchor import SEEDS, Anchor, scale_of
+from ssmr_ident.diagnose.turning.anchor import SEEDS, Anchor, scale_of, stiffness_known
 from ssmr_ident.diagnose.turning.baseline import ROUNDS
 from ssmr_ident.diagnose.turning.bench import STEP, Bench
 from ssmr_ident.diagnose.turning.candidates import Candidate, candidates
@@ -28,7 +29,9 @@ from ssmr_ident.diagnose.turning.regimes import widened
 from ssmr_ident.diagnose.turning.search import Explained, explained, freed, polished, refined, screened
 from ssmr_ident.diagnose.turning.starts import ceilings, pitches
 from ssmr_ident.diagnose.turning.wider import wider
+from ssmr_ident.diagnose.turning.yaw_gain import YawGain, yaw_gain
 from ssmr_ident.experiments.campaign import Campaign
+from ssmr_ident.physics.robot import contact_named
 
 REFINED = 5  # explanations whose own parameters are searched first, with calibration
 FREED, FREED_LOOSE, FREED_STRAIGHT = 5, 3, 3
@@ -68,6 +71,10 @@ class Outcome:
     grip : GripProfile
     notes : tuple of str
     seconds : dict
+    turned : YawGain or None
+        Of the targets, where gyroscopes measured it.
+    unread : str
+        Why spectra were asked nothing; empty where they were.
     """
 
     bench: Bench
@@ -81,6 +88,8 @@ class Outcome:
     grip: GripProfile
     notes: tuple[str, ...]
     seconds: dict[str, float] = field(default_factory=dict)
+    turned: YawGain | None = None
+    unread: str = ""
 
     @property
     def calibrated(self) -> bool:
@@ -124,6 +133,9 @@ def examine(
         raise InputError(
             str(campaign.session.folder), "holds no target swivel long enough to diagnose", "Give one role: target"
         )
+    turned = yaw_gain([m for m in measurements if m.entry.role == "target"], known)
+    if not calibration and not stiffness_known(known):
+        return unread(known, turned, all_targets, heldout, (*kept_notes, *notes))
     fitted_on = calibration or targets
     seeds = tuple(1000 * seed + s for s in (SEEDS if len(targets) < MANY else SEEDS[:1]))
 
@@ -169,6 +181,7 @@ def examine(
         final = _final(baseline, targets, seed)
         return Outcome(
             bench, *whole, heldout, anchor, final, (), (), grip, (*kept_notes, *notes, *law_notes), seconds,
+            turned,
         )  # fmt: skip
 
     every = candidates(pitches(anchor, targets), ceilings(targets), anchor.values.get("floor.height_m", 3e-5))
@@ -216,7 +229,37 @@ def examine(
     seconds["baseline beside explanations"] = time.perf_counter() - clock - sum(seconds.values())
     return Outcome(
         bench, *whole, heldout, anchor, finals[0], tuple(ranked), tuple(rest), grip, (*kept_notes, *notes, *law_notes),
-        seconds,
+        seconds, turned,
+    )  # fmt: skip
+
+
+def unread(
+    known: ParameterSet,
+    turned: YawGain | None,
+    targets: tuple[Condition, ...],
+    heldout: tuple[Condition, ...],
+    notes: tuple[str, ...],
+) -> Outcome:
+    """What there is to say where neither file nor calibration knows any stiffness: slip, and spectra as they are.
+
+    Every mode may then lie anywhere in the band, and whatever is added can be made up for.
+    """
+    grip = GripProfile(np.zeros(0), np.zeros(0), np.nan, None, None)
+    fixed: dict[str, float] = {}
+    if not contact_named(known):
+        relay = turned is not None and turned.relay
+        known = replace(known, choices={**known.choices, "tire.contact": "relay" if relay else "cone"})
+    if turned is not None and turned.relay and turning_robot(known).sliding_speed == 0.0:
+        own, *ends = (turned.lambda_max(gain) for gain in (turned.gain, turned.upper, turned.lower))
+        grip, fixed = replace(grip, best=own, lower=ends[0], upper=ends[1]), {PATH: own}
+    anchor = Anchor(Bench(known), scale_of(targets), (), np.zeros(0), (), Score(0.0, 0.0, 0.0), SEEDS[:1], fixed=fixed)
+    baseline = explained(anchor, None, {}, targets)
+    if baseline is None:
+        raise InputError(known.file or known.name, "makes no robot that can be simulated", "Check its values")
+    return Outcome(
+        anchor.bench, (), targets, heldout, anchor, baseline, (), (), grip, notes, turned=turned,
+        unread="what shakes the robot cannot be told: the parameter file does not know the stiffness of its tires "
+        "(no std), and no calibration recording shows the robot without what is asked for",
     )  # fmt: skip
 
 
