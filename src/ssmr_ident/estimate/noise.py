@@ -24,6 +24,9 @@ FAST = 0.02
 """Share of a channel's size, in its loudest recording, beyond which differences are taken to see the motion as well as
 noise, until a fit has told the two apart."""
 
+LEAST = 1e-4
+"""The same below which a log has no digits: in a stretch that stands still differences show nothing at all."""
+
 
 def first_white(pieces: Sequence[Piece]) -> tuple[Piece, ...]:
     """The same pieces with white noise as it is known before any fit: a channel's in its quietest recording, for
@@ -36,7 +39,8 @@ def first_white(pieces: Sequence[Piece]) -> tuple[Piece, ...]:
             size[name] = max(size.get(name, 0.0), float(spread))
     found = []
     for piece in pieces:
-        white = [min(density[name] * math.sqrt(piece.rate), FAST * size[name]) for name in piece.channels]
+        shown = [density[name] * math.sqrt(piece.rate) for name in piece.channels]
+        white = [min(max(w, LEAST * size[n]), FAST * size[n]) for w, n in zip(shown, piece.channels, strict=True)]
         found.append(replace(piece, white=np.array(white)))
     return tuple(found)
 

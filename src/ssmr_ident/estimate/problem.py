@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.estimate.node import Coordinate
 from ssmr_ident.estimate.noise import first_white
@@ -24,10 +25,6 @@ BANDWIDTH = "accelerometer.bandwidth_hz"
 
 VAGUE = 1.0
 """Standard deviation of the logarithm of a mass or stiffness of which the file says no uncertainty."""
-
-LEAST_NOISE = 1e-4
-"""Of a channel's size: below it a log has no digits."""
-
 
 FAR = 3.0
 """Factor between the file's natural frequency and the motion's from which the motion is believed."""
@@ -68,13 +65,13 @@ def made(
     """The problem of recordings of a rig, or of a network of given bodies; frequencies in Hz."""
     pieces = first_white([p for i, m in enumerate(measurements) for p in pieces_of(m, i, fastest, bandwidth, bodies)])
     size = float(np.sqrt(np.mean([_size(p, frequency) ** 2 for p in pieces])))
-    noises = tuple(
-        tuple(
-            AutoregressiveNoise(np.ones(1), max(w, LEAST_NOISE * s))
-            for w, s in zip(p.white, p.y.std(axis=0), strict=True)
+    if not size:
+        raise InputError(
+            ", ".join(m.name for m in measurements),
+            "nothing moves but single samples, which stand out as no motion does",
+            "Look whether the sensor was connected, or map another column by channels:",
         )
-        for p in pieces
-    )
+    noises = tuple(tuple(AutoregressiveNoise(np.ones(1), float(white)) for white in p.white) for p in pieces)
     return Problem(pieces, baseline, noises, frequency, size, bandwidth, fastest)
 
 

@@ -159,13 +159,16 @@ def _shooting(problem, node, point, states, local, borders, weights, weight, loc
 @np.errstate(over="ignore", invalid="ignore")
 def _joined(current, point, states, local, mean, precision, weight, sizes, damping, held):
     """One Gauss-Newton step of everything: parameters, nuisances, states at the borders; None where slopes have grown
-    beyond all numbers."""
+    beyond all numbers, or a state's has no digits left beside another's."""
     p, kept = len(point), []
     left, right = np.diag(precision + 1e-12), -precision * (point - mean)
     for index, (h, g, f, gap, _, scale) in enumerate(current[1]):
         k = states[index].shape[1]
         soft = damping * np.diagonal(h[:, :k, :k], axis1=1, axis2=2).mean(axis=0) + 1e-6 / sizes**2
-        a, b, gain, by_par, base = eliminate(h, g, f, gap, weight, k, soft)
+        try:
+            a, b, gain, by_par, base = eliminate(h, g, f, gap, weight, k, soft)
+        except np.linalg.LinAlgError:
+            return None
         own = a[p:, p:] + np.diag(1.0 / scale**2)
         line = b[p:] + local[index] / scale**2
         solved = np.linalg.solve(own, np.column_stack([a[p:, :p], line]))

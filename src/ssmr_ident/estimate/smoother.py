@@ -46,7 +46,7 @@ def smoothed(piece: Piece, frequency: float, size: float) -> Array:
         own = piece.drive[:: piece.every][: len(y)]
         y[:, piece.orders == 2] -= own[:, None]
     white = np.maximum(piece.white, 1e-3 * piece.y.std(axis=0))
-    variance = np.where(piece.counts, white**2, 1e6 * piece.y.var(axis=0))
+    variance = np.where(piece.counts, white**2, 1e6 * np.maximum(piece.y.var(axis=0), white**2))
     free = 0 not in piece.orders
     swing = (SWING * size) ** 2 * max(1.0, piece.rate / turning) if free else math.inf
     return _smooth(y, piece.orders.astype(np.int64), variance, transition, 0.5 * (noise + noise.T),
