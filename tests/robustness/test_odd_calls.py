@@ -31,6 +31,9 @@ CALLS = {
     "export /dev/zero --to mat -o x": "is a device or a socket",
     "inspect log.csv --save /dev/zero": "is a device or a socket",
     "simulate rig.yaml -e forced --force /dev/zero": "is a device or a socket",
+    "fit . -o pipe": "is a device or a socket, expected a file",
+    "diagnose . -o pipe": "is a file, expected a folder",
+    "simulate rig.yaml -e free_response -o pipe": "is a device or a socket, expected a file",
     "inspect log.csv --save log.csv": "is no session",
     "fit . -o session.yaml": "is read by this call and would be lost",
     "fit . -o log.csv": "is read by this call and would be lost",
@@ -68,9 +71,11 @@ CALLS = {
 }
 
 
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes with names here")
 @pytest.mark.parametrize("call", CALLS, ids=lambda call: call[:50])
 def test_one_line_and_nothing_lost(folder: Path, call: str) -> None:
     (folder / "logs").mkdir()
+    os.mkfifo(folder / "pipe")
     done = typed(*call.split(), cwd=folder)
     assert done.returncode == 2, done.stderr
     assert CALLS[call] in done.stderr

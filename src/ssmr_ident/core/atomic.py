@@ -5,9 +5,11 @@ from __future__ import annotations
 import errno
 import os
 import secrets
+import stat
 from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path
+from tempfile import TemporaryFile
 
 from ssmr_ident.core.errors import InputError
 
@@ -27,11 +29,12 @@ def write_bytes(path: str | Path, data: bytes) -> Path:
     Raises
     ------
     InputError
-        When the folder cannot be made or may not be written to, or the disk is full.
+        When the folder cannot be made or may not be written to, the disk is full, or a device is called so.
     """
     path = Path(path)
     if not path.name:
         raise InputError(str(path), "is a folder, expected a file", "Give a file's name with -o")
+    _refuse_device(path)
     if not path.parent.exists():
         make_folder(path.parent)
     # Named before it is made: a signal between its making and its name would leave it lying.
@@ -82,18 +85,24 @@ def make_folder(path: str | Path) -> Path:
 
 
 def refuse_unwritable(path: str | Path) -> None:
-    """Ask before long work whether its answer can be written, and change nothing.
+    """Ask before long work whether its answer can be written, and leave nothing behind.
 
     Raises
     ------
     InputError
-        When a folder on the way is a file, or may not be written to.
+        When a folder on the way is a file, or may not be written to, or nothing can be made in it.
     """
+    _refuse_device(Path(path))
     above = next(place for place in (Path(path), *Path(path).absolute().parents) if place.exists())
     if above != Path(path) and not above.is_dir():
         raise InputError(str(path), f"cannot be written ({above} is a file)", "Write elsewhere with -o")
     if not os.access(above, os.W_OK):
         raise InputError(str(path), f"cannot be written ({above} is read-only)", "Write elsewhere with -o")
+    try:
+        with TemporaryFile(dir=above if above.is_dir() else above.parent):
+            pass  # a file system has rules of its own, of which its rights say nothing
+    except OSError as error:
+        raise _unwritable(Path(path), error) from error
 
 
 def refuse_overwriting(path: str | Path, read: Iterable[str | Path]) -> None:
@@ -106,6 +115,14 @@ def refuse_overwriting(path: str | Path, read: Iterable[str | Path]) -> None:
     """
     if any(Path(path).resolve() == Path(file).resolve() for file in read):
         raise InputError(str(path), "is read by this call and would be lost", "Give another name with -o")
+
+
+def _refuse_device(path: Path) -> None:
+    """What takes the place of /dev/null is another's loss."""
+    with suppress(OSError):
+        mode = path.stat().st_mode
+        if not (stat.S_ISREG(mode) or stat.S_ISDIR(mode)):
+            raise InputError(str(path), "is a device or a socket, expected a file", "Give another name with -o")
 
 
 def remove_begun() -> None:
