@@ -16,6 +16,7 @@ from ssmr_ident.experiments import EXPERIMENTS, Conditions
 from ssmr_ident.session.parameters_file import bundled_robots
 from ssmr_ident.signals.metrics import log_psd_db
 from ssmr_ident.workflows.compare import compare_session
+from ssmr_ident.workflows.diagnose import diagnose_session
 from ssmr_ident.workflows.simulate.request import Request
 from ssmr_ident.workflows.simulate.run import simulate_to_file
 
@@ -55,6 +56,23 @@ def test_bundled_robots(tmp_path: Path, robot: str) -> None:
 def test_files_of_the_campaign(tmp_path: Path, file: Path, experiment: str) -> None:
     shutil.copy(file, tmp_path / "robot.yaml")
     apart(tmp_path, "robot.yaml", experiment)
+
+
+@pytest.mark.slow
+def test_a_file_in_which_all_is_fixed_is_diagnosed_and_lacks_nothing(tmp_path: Path) -> None:
+    """`benchmarks/bench_same.py` does this with every file."""
+    file = RAW / "swivel-frame" / "truth-concrete.yaml"
+    shutil.copy(file, tmp_path / "robot.yaml")
+    rows = []
+    for role, seed in (("calibration", 3), ("target", 4)):
+        request = Request(
+            EXPERIMENTS["swivel"], Conditions(yaw_rate_deg_s=45.0), duration_s=12.0, seed=seed, noise=True
+        )
+        simulate_to_file(str(file), request, tmp_path / f"{role}.csv")
+        rows.append(f"  - {{file: {role}.csv, experiment: swivel, {ON_WHEELS['swivel']}, role: {role}}}")
+    head = ["schema: ssmr-ident/session/1", "name: same", "robot: robot.yaml", "recordings:"]
+    (tmp_path / "session.yaml").write_text("\n".join([*head, *rows]) + "\n", encoding="utf-8")
+    assert diagnose_session(tmp_path).verdict == "nothing_missing"
 
 
 @pytest.mark.slow

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -213,6 +213,15 @@ def between(positions: np.ndarray, wanted: float) -> np.ndarray:
         weights[order[j]] = np.interp(clipped, positions[order], unit)
     same = np.isclose(positions, wanted, rtol=1e-3)
     return same / same.sum() if same.any() else weights
+
+
+def as_columns(parts: Sequence[np.ndarray], length: int) -> np.ndarray:
+    """(length, n) float; n is 0 for a file that holds all of its parameters fixed.
+
+    >>> as_columns([np.zeros(3)], 3).shape, as_columns([], 3).shape
+    ((3, 1), (3, 0))
+    """
+    return np.array(parts).reshape(len(parts), length).T
 
 
 def scale_of(conditions: tuple[Condition, ...]) -> np.ndarray:

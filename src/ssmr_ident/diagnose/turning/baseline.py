@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ssmr_ident.diagnose.turning.anchor import SEEDS, Anchor, Prior, priors_of
+from ssmr_ident.diagnose.turning.anchor import SEEDS, Anchor, Prior, as_columns, priors_of
 from ssmr_ident.diagnose.turning.bench import COARSE, Bench
 from ssmr_ident.diagnose.turning.conditions import Condition
 from ssmr_ident.diagnose.turning.likelihood import NEPER_DB, Score
@@ -102,7 +102,8 @@ def _slopes(free: Anchor, conditions: tuple[Condition, ...], z: np.ndarray) -> n
     if base is None:
         return None
     columns = [_residual(free, conditions, at) for at in ahead]
-    return np.column_stack([np.zeros_like(base) if c is None else (c - base) / _DIFFERENCE for c in columns])
+    found = [np.zeros_like(base) if c is None else (c - base) / _DIFFERENCE for c in columns]
+    return as_columns(found, len(base))
 
 
 def _step(

@@ -13,7 +13,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ssmr_ident.diagnose.turning.anchor import Anchor
+from ssmr_ident.diagnose.turning.anchor import Anchor, as_columns
 from ssmr_ident.diagnose.turning.bench import COARSE
 from ssmr_ident.diagnose.turning.candidates import Candidate, Values
 from ssmr_ident.diagnose.turning.conditions import Condition
@@ -46,7 +46,8 @@ def slopes_alone(anchor: Anchor, targets: tuple[Condition, ...]) -> np.ndarray |
     base = residuals[0]
     if base is None:
         return None
-    return np.column_stack([np.zeros_like(base) if r is None else (r - base) / DIFFERENCE for r in residuals[1:]])
+    found = [np.zeros_like(base) if r is None else (r - base) / DIFFERENCE for r in residuals[1:]]
+    return as_columns(found, len(base))
 
 
 def given_way(z: np.ndarray, residual: np.ndarray, slopes: np.ndarray) -> np.ndarray:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.optimize import minimize
 
-from ssmr_ident.diagnose.turning.anchor import Anchor
+from ssmr_ident.diagnose.turning.anchor import Anchor, as_columns
 from ssmr_ident.diagnose.turning.bench import COARSE, STEP
 from ssmr_ident.diagnose.turning.candidates import Candidate, Values
 from ssmr_ident.diagnose.turning.conditions import Condition
@@ -231,7 +231,7 @@ def _together(now: Explained, targets: tuple[Condition, ...], step: float) -> Ex
     columns = [residual(at, step) for at in ahead]
     fresh = [np.zeros_like(base) if c is None else (c - rough) / d
              for c, d in zip(columns, difference[first:], strict=True)]  # fmt: skip
-    jacobian = np.column_stack([*(() if now.slopes is None else now.slopes.T), *fresh])
+    jacobian = as_columns([*(() if now.slopes is None else now.slopes.T), *fresh], len(base))
     tau = max(now.target.tau_db, 0.8) / NEPER_DB
     known = np.concatenate([np.ones(size), 0.05 / np.maximum(steps, 1e-9) ** 2])
     pull = np.concatenate([anchor.z, np.zeros(len(own))])
