@@ -8,8 +8,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from ssmr_ident.doctor.left import Left, left, wandering
+from ssmr_ident.doctor.left import Beyond, Left, beyond, left, wandering
 from ssmr_ident.doctor.rules import FOLLOWS, UNEVEN
+from ssmr_ident.estimate.network import bare
+from ssmr_ident.estimate.pieces import Piece
+from ssmr_ident.physics.network import ONE, Network
 
 RATE, HZ = 200.0, 4.0
 
@@ -19,10 +22,33 @@ def asked(seconds: float, rest_of, ask=left) -> Left:
     time = np.arange(int(seconds * RATE)) / RATE
     motion = np.sin(2.0 * np.pi * HZ * time) * np.linspace(1.0, 0.2, len(time))
     rest = rest_of(motion, 0.01 * np.random.default_rng(1).standard_normal(len(time)))[:, None]
-    piece = SimpleNamespace(
-        channels=("position",), y=motion[:, None] - rest, counts=np.ones_like(rest, bool), rate=RATE, name="log.csv"
-    )
+    piece = Piece(
+        "log.csv", 0, ("position",), np.zeros(1, int), time, motion[:, None] - rest, np.ones_like(rest, bool),
+        np.zeros(2), False, False, 1.0 / RATE, 1, np.array([0.01]),
+    )  # fmt: skip
     return ask(SimpleNamespace(pieces=(piece,), frequency=HZ), SimpleNamespace(residuals=(rest,)))  # type: ignore[arg-type]
+
+
+def far_off(hz: float) -> Beyond | None:
+    """What is said of a rig of 5 Hz that leaves a decay of another frequency beside noise."""
+    time = np.arange(4000) / 400.0
+    swing = np.exp(-time) * np.sin(2.0 * np.pi * hz * time)
+    rest = (swing + 0.05 * np.random.default_rng(2).standard_normal(len(time)))[:, None]
+    piece = Piece(
+        "log.csv", 0, ("acceleration",), np.array([2]), time, rest, np.ones_like(rest, bool),
+        np.zeros(2), False, False, 1.0 / 400.0, 1, np.array([0.05]),
+    )  # fmt: skip
+    node = bare(Network(ONE, np.array([1.0, 0.3, (2.0 * np.pi * 5.0) ** 2])))
+    point = np.array([c.mean for c in node.baseline])
+    return beyond(SimpleNamespace(pieces=(piece,)), SimpleNamespace(node=node, point=point, residuals=(rest,)))  # type: ignore[arg-type]
+
+
+def test_a_mode_beyond_the_model_proposes_a_band_without_it() -> None:
+    found = far_off(80.0)
+    assert found is not None
+    assert (found.found, found.highest) == pytest.approx((80.0, 5.0), rel=0.01)
+    assert found.band_hz == (0.0, 20.0)
+    assert far_off(8.0) is None
 
 
 def test_noise_follows_nothing() -> None:

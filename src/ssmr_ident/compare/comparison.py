@@ -131,7 +131,9 @@ def measure(prediction: Prediction) -> tuple[float, dict[str, float]]:
         channels = np.atleast_1d(log_psd_db(measured, simulated, rate))
         # the mean of squares over channels, as over frequencies
         return float(np.sqrt(np.mean(channels**2))), dict(zip(prediction.names, map(float, channels), strict=True))
-    if prediction.low_pass_hz is not None:
+    if prediction.high_pass_hz > 0.0:
+        measured, simulated = (prediction.judged(c) for c in (measured, simulated))
+    elif prediction.low_pass_hz is not None:
         measured, simulated = (_below(c, rate, prediction.low_pass_hz) for c in (measured, simulated))
 
     def distance(columns: slice | int) -> float:

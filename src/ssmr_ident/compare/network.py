@@ -10,19 +10,26 @@ from ssmr_ident.core.parameter import ParameterSet, effect_and_element
 from ssmr_ident.estimate.generic import MEMORY, STATIC
 from ssmr_ident.estimate.network import followed, network_problem
 from ssmr_ident.estimate.node import Member, Node
+from ssmr_ident.estimate.problem import natural_hz
 from ssmr_ident.experiments.campaign import Measurement
 from ssmr_ident.physics.effect import Site
 from ssmr_ident.physics.effects import CATALOGUE
 from ssmr_ident.physics.network import network_from_parameters
 from ssmr_ident.physics.slots import effect_values
+from ssmr_ident.signals.band import Band
 from ssmr_ident.signals.metrics import LOW_PASS_HZ
 
 NO_GROUND = "no spring leads to the ground: the network as a whole moves freely"
 
 
-def band_of(parameters: ParameterSet) -> float:
-    """Below which a network is judged [Hz]."""
-    return float(max(LOW_PASS_HZ, *(4.0 * network_from_parameters(parameters).modes()[0])))
+def band_of(parameters: ParameterSet, given: Band | None = None) -> Band:
+    """In which a recording of a rig or a network is judged [Hz]: as its entry says, or up to four times the highest
+    natural frequency."""
+    if given is not None:
+        return given
+    if not parameters.between:  # a rig that nothing holds, or that creeps back, has no mode
+        return 0.0, max(LOW_PASS_HZ, 4.0 * natural_hz(parameters))
+    return 0.0, float(max(LOW_PASS_HZ, *(4.0 * network_from_parameters(parameters).modes()[0])))
 
 
 def laws_of(parameters: ParameterSet) -> tuple[Member, ...]:
@@ -59,7 +66,8 @@ def predict(parameters: ParameterSet, measurement: Measurement) -> Prediction:
     zero = {}
     if first.driven:
         zero = {f"drive_zero_{first.seen.into}": float(fit.nuisances[0][node.states])}
+    low, high = band_of(parameters, first.band)
     return Prediction(
         np.concatenate([piece.time for piece in problem.pieces]), first.channels, first.units, measured,
-        measured + rest, low_pass_hz=band_of(parameters), nuisances=zero,
+        measured + rest, low_pass_hz=high, nuisances=zero, high_pass_hz=low,
     )  # fmt: skip

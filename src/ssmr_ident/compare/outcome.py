@@ -8,6 +8,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ssmr_ident.core.shown import Shown
+from ssmr_ident.signals.band import passed
+from ssmr_ident.signals.filters import ORDER
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,6 +29,8 @@ class Prediction(Shown):
         ``nrmse_percent`` or ``log_psd_db``.
     low_pass_hz : float or None
         Of the metric; None as logged.
+    high_pass_hz : float
+        Of the metric, where a recording is judged in a band.
     """
 
     time: np.ndarray
@@ -37,10 +41,33 @@ class Prediction(Shown):
     metric: str = "nrmse_percent"
     low_pass_hz: float | None = 50.0
     nuisances: Mapping[str, float] = field(default_factory=dict)
+    high_pass_hz: float = 0.0
 
     @property
     def sample_rate(self) -> float:
         return (len(self.time) - 1) / float(self.time[-1] - self.time[0])
+
+    @property
+    def filtered(self) -> bool:
+        """Whether the metric's filter takes away anything to speak of."""
+        if self.low_pass_hz is None:
+            return False
+        return self.high_pass_hz > 0.0 or self.low_pass_hz < 0.45 * self.sample_rate
+
+    def judged(self, samples: np.ndarray) -> np.ndarray:
+        """Samples as the metric sees them, (n, c)."""
+        if self.low_pass_hz is None:
+            return samples
+        return passed(samples, self.sample_rate, (self.high_pass_hz, self.low_pass_hz))
+
+    def gain(self, frequency: np.ndarray) -> np.ndarray:
+        """What the metric's filter makes of a sine of each frequency [Hz]."""
+        if not self.filtered or self.low_pass_hz is None:
+            return np.ones(np.shape(frequency))
+        upper = 1.0 / (1.0 + (frequency / self.low_pass_hz) ** (2 * ORDER))
+        if self.high_pass_hz <= 0.0:
+            return np.asarray(upper)
+        return np.asarray(upper / (1.0 + (self.high_pass_hz / np.maximum(frequency, 1e-9)) ** (2 * ORDER)))
 
     def __str__(self) -> str:
         lines = [f"{', '.join(self.names)}: {len(self.time)} samples at {self.sample_rate:.6g} Hz, by {self.metric}"]

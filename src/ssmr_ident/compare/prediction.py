@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from ssmr_ident.compare import block, network, turning
@@ -13,6 +15,7 @@ from ssmr_ident.identify.fitting.coordinates import Model
 from ssmr_ident.identify.trials import trial_of
 from ssmr_ident.physics.network import NETWORK
 from ssmr_ident.physics.slots import effect_values
+from ssmr_ident.session.entry import BANDED
 
 __all__ = ["Prediction", "predict"]
 
@@ -45,4 +48,8 @@ def predict(campaign: Campaign, measurement: Measurement, parameters: ParameterS
     trial = trial_of(baseline, measurement, parameters)
     model = Model((), (), effect_values(parameters))
     fit = follow([trial], model, np.zeros(0))
-    return predicted(trial, *model.split(fit.point), fit.nuisances[0])
+    found = predicted(trial, *model.split(fit.point), fit.nuisances[0])
+    if baseline not in BANDED:
+        return found
+    low, high = network.band_of(parameters, measurement.entry.band_hz)
+    return replace(found, low_pass_hz=high, high_pass_hz=low)

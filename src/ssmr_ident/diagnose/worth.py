@@ -15,7 +15,7 @@ from ssmr_ident.diagnose.diagnosis import PredictionQuality
 from ssmr_ident.diagnose.evidence import Overlay
 from ssmr_ident.identify.fitting.joint import JointFit
 from ssmr_ident.identify.trials.trial import Trial
-from ssmr_ident.signals.filters import ORDER, low_pass
+from ssmr_ident.signals.band import series
 from ssmr_ident.signals.noise import rounding, white_noise, without_mains
 
 Array = np.ndarray
@@ -78,16 +78,15 @@ def noise_floor(prediction: Prediction) -> float:
     """The metric that white noise, rounding and hum alone would leave, from what a prediction leaves at its fastest.
 
     Second differences see white noise and hardly any motion; the noise below the metric's low-pass is taken to be as
-    dense as above it. Mains lines pass the low-pass by its gain at theirs.
+    dense as above it, and in a band as dense as its own. Mains lines pass the low-pass by its gain at theirs.
     """
     rate, rest = prediction.sample_rate, prediction.measured - prediction.simulated
-    measured, share = prediction.measured, passed(prediction)
+    measured = prediction.judged(prediction.measured) if prediction.filtered else prediction.measured
+    share = passed(prediction)
     clean, lines, waves = without_mains(rest, prediction.time)
-    gain = np.ones(len(lines))
-    if prediction.low_pass_hz is not None and prediction.low_pass_hz < 0.45 * rate:
-        measured = low_pass(measured, rate, prediction.low_pass_hz)
-        gain = 1.0 / (1.0 + (lines / prediction.low_pass_hz) ** (2 * ORDER))
-    power = 0.5 * np.sum(np.repeat(gain, 2)[:, None] ** 2 * waves**2, axis=0)
+    if prediction.high_pass_hz > 0.0 and prediction.low_pass_hz is not None:
+        clean = series(clean, rate, (prediction.high_pass_hz, prediction.low_pass_hz))  # what lies beyond is filtered
+    power = 0.5 * np.sum(np.repeat(prediction.gain(lines), 2)[:, None] ** 2 * waves**2, axis=0)
     scale = np.ones(measured.shape[1]) if len(set(prediction.units)) == 1 else measured.std(axis=0)
     noise = 0.0
     for column, logged, own, size in zip(clean.T, prediction.measured.T, power, scale, strict=True):
@@ -99,11 +98,7 @@ def noise_floor(prediction: Prediction) -> float:
 
 def passed(prediction: Prediction) -> float:
     """Share of white noise's variance that the metric's low-pass lets through."""
-    rate = prediction.sample_rate
-    if prediction.low_pass_hz is None or prediction.low_pass_hz >= 0.45 * rate:
-        return 1.0
-    frequency = np.linspace(0.0, 0.5 * rate, 4000)
-    return float(np.mean(1.0 / (1.0 + (frequency / prediction.low_pass_hz) ** (2 * ORDER)) ** 2))
+    return float(np.mean(prediction.gain(np.linspace(0.0, 0.5 * prediction.sample_rate, 4000)) ** 2))
 
 
 def reddest(found: Sequence[Prediction]) -> float:
@@ -132,9 +127,8 @@ def grows_with_motion(found: Sequence[Prediction]) -> float:
         rate, rest = prediction.sample_rate, prediction.measured - prediction.simulated
         # a loud line rings where the low-pass sets in, and that is where decays are loud
         rest = without_mains(rest, prediction.time)[0]
-        smooth = prediction.low_pass_hz is not None and prediction.low_pass_hz < 0.45 * rate
-        if smooth:
-            rest = low_pass(rest, rate, prediction.low_pass_hz)  # type: ignore[arg-type]
+        if prediction.filtered:
+            rest = prediction.judged(rest)
         width = max(4, round(WINDOW_S * rate))
         count = len(rest) // width
         scale = prediction.measured.std(axis=0)
@@ -183,11 +177,9 @@ def overlays(
 def _overlay(
     name: str, before: Prediction, after: Prediction, heldout: bool, measured_by: tuple[float, float]
 ) -> Overlay:
-    rate = before.sample_rate
-    smooth = before.low_pass_hz is not None and before.low_pass_hz < 0.45 * rate
     courses = [before.measured, before.simulated, after.simulated]
-    if smooth:
-        courses = [low_pass(course, rate, before.low_pass_hz) for course in courses]  # type: ignore[arg-type]
+    if before.filtered:
+        courses = [before.judged(course) for course in courses]
     channel = int(np.argmax(courses[0].std(axis=0)))
     every = max(1, len(before.time) // LONGEST)
     measured, first, second = (course[::every, channel] for course in courses)

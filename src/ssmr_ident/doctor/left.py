@@ -9,9 +9,14 @@ import numpy as np
 from scipy.signal import lfilter
 from scipy.stats import spearmanr
 
+from ssmr_ident.estimate.node import matrices
 from ssmr_ident.estimate.noise import LARGEST_ORDER
+from ssmr_ident.estimate.pieces import Piece
 from ssmr_ident.estimate.values import Fit, Problem
+from ssmr_ident.signals.band import Band
 from ssmr_ident.signals.noise import fit_noise
+
+Array = np.ndarray
 
 PERIODS = 2.0
 """Of the motion, that a window lasts."""
@@ -49,16 +54,15 @@ def left(problem: Problem, fit: Fit) -> Left:
 
 
 def _of_channel(problem: Problem, fit: Fit, name: str) -> Left:
-    chosen = [(p, r, p.channels.index(name)) for p, r in zip(problem.pieces, fit.residuals, strict=True)]
-    _, longest, at = max(chosen, key=lambda own: len(own[1]))
-    whitening = fit_noise(longest[:, at] - longest[:, at].mean(), LARGEST_ORDER).filter
-    overall = float(np.sqrt(np.mean([np.mean(r[:, c] ** 2) for _, r, c in chosen])))
+    chosen = [(p, *_counted(p, r, name)) for p, r in zip(problem.pieces, fit.residuals, strict=True)]
+    longest = max((rest for _, rest, _ in chosen), key=len)
+    whitening = fit_noise(longest, LARGEST_ORDER).filter
+    overall = float(np.sqrt(np.mean([np.mean(rest**2) for _, rest, _ in chosen])))
     windows: list[tuple[float, float, str]] = []
     width = 16
-    for piece, rest, c in chosen:
-        width = max(16, round(PERIODS * piece.rate / problem.frequency))
-        white = lfilter(whitening, [1.0], np.where(piece.counts[:, c], rest[:, c] - rest[:, c].mean(), 0.0))
-        model = rest[:, c] + piece.y[:, c]
+    for piece, rest, model in chosen:
+        width = max(16, round(PERIODS * piece.counted_rate / problem.frequency))
+        white = lfilter(whitening, [1.0], rest)
         for first in range(len(whitening) - 1, len(rest) - width + 1, width):
             own = slice(first, first + width)
             windows.append((float(model[own].std()), float(np.sqrt(np.mean(white[own] ** 2))), piece.name))
@@ -73,6 +77,62 @@ def _of_channel(problem: Problem, fit: Fit, name: str) -> Left:
     return Left(follows, math.log(over) * math.sqrt(2.0 * width), windows[int(np.argmax(sizes))][2])
 
 
+def _counted(piece: Piece, rest: Array, name: str) -> tuple[Array, Array]:
+    """What counts of what is left in a channel, and of what the model says there."""
+    at = piece.channels.index(name)
+    both = piece.counted(np.stack([rest - rest.mean(axis=0), rest + piece.y], axis=2))
+    return both[:, at, 0], both[:, at, 1]
+
+
+BEYOND = 2.0
+"""Factor over a model's highest natural frequency from which a mode is none of its own."""
+
+NARROW = 0.1
+"""Share of the frequencies beyond in which half of what is left there lies, where modes leave it."""
+
+
+@dataclass(frozen=True)
+class Beyond:
+    """Modes beyond a model's own that rule what it leaves: about where they lie, its highest one, and a band without
+    them [Hz]."""
+
+    found: float
+    highest: float
+    band_hz: Band
+
+    def __str__(self) -> str:
+        low, high = self.band_hz
+        return (
+            f"most of what is left lies near {self.found:.3g} Hz, beyond the highest mode of the model at "
+            f"{self.highest:.3g} Hz: with band_hz: [{low:g}, {high:g}] in session.yaml it is fitted and judged where "
+            "it has modes"
+        )
+
+
+def beyond(problem: Problem, fit: Fit) -> Beyond | None:
+    """Whether half of what a fit leaves over white noise lies in few lines beyond ``BEYOND`` its highest mode."""
+    node = fit.node
+    a = matrices(node, node.values(fit.point)[: node.linear_count], problem.pieces[0].seen)[0]
+    highest = float(np.abs(np.linalg.eigvals(a).imag).max()) / (2.0 * math.pi)
+    grids, powers = [], []
+    for piece, rest in zip(problem.pieces, fit.residuals, strict=True):
+        own = piece.counted(rest - rest.mean(axis=0)) / piece.white
+        powers.append((np.abs(np.fft.rfft(own, axis=0)) ** 2 / len(own) - 1.0).sum(axis=1))
+        grids.append(piece.counted_from + np.fft.rfftfreq(len(own), 1.0 / piece.counted_rate))
+    hz, power = np.concatenate(grids), np.concatenate(powers)
+    order = np.argsort(hz)
+    hz, power = hz[order], power[order]
+    far = hz > BEYOND * highest
+    if highest <= 0.0 or power.sum() <= 0.0 or power[far].sum() < 0.5 * power.sum():
+        return None
+    hz, power = hz[far], np.maximum(power[far], 0.0)
+    loudest = np.cumsum(np.sort(power)[::-1])
+    if np.searchsorted(loudest, 0.5 * loudest[-1]) > NARROW * len(power):
+        return None
+    first, middle = np.interp([0.1, 0.5], np.cumsum(power) / power.sum(), hz)
+    return Beyond(float(middle), highest, (0.0, float(f"{math.sqrt(highest * first):.2g}")))
+
+
 MOST, LEAST = 0.9, 0.01
 """Of what is left the part that lies below a frequency, and the part of the motion below it at the most, where what is
 left is slower than whatever moves."""
@@ -85,10 +145,10 @@ def wandering(problem: Problem, fit: Fit) -> list[tuple[str, float]]:
     for name in problem.pieces[0].channels:
         spectra = []
         for piece, rest in zip(problem.pieces, fit.residuals, strict=True):
-            own = rest[:, piece.channels.index(name)]
-            model = own + piece.y[:, piece.channels.index(name)]
-            power = [np.abs(np.fft.rfft(x - x.mean())) ** 2 for x in (own, model)]
-            spectra.append(np.column_stack([np.fft.rfftfreq(len(own), 1.0 / piece.rate), *power]))
+            parts = _counted(piece, rest, name)
+            power = [np.abs(np.fft.rfft(x - x.mean())) ** 2 for x in parts]
+            grid = piece.counted_from + np.fft.rfftfreq(len(parts[0]), 1.0 / piece.counted_rate)
+            spectra.append(np.column_stack([grid, *power]))
         hz, left_over, moves = np.vstack(spectra)[np.argsort(np.concatenate([s[:, 0] for s in spectra]))].T
         at = int(np.searchsorted(np.cumsum(left_over), MOST * left_over.sum()))
         if np.sum(moves[: at + 1]) < LEAST * moves.sum():

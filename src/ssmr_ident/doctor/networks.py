@@ -75,7 +75,10 @@ def lines_left(problem: Problem, fit: Fit) -> list[float]:
     for piece, rest in zip(problem.pieces, fit.residuals, strict=True):
         own = (rest - rest.mean(axis=0)) / piece.white
         spectrum = np.abs(np.fft.rfft(own * np.hanning(len(own))[:, None], axis=0)) ** 2
-        power += np.interp(grid, np.fft.rfftfreq(len(own), 1.0 / piece.rate), spectrum.sum(axis=1))
+        own_grid = np.fft.rfftfreq(len(own), 1.0 / piece.rate)
+        low, high = piece.band or (0.0, math.inf)
+        seen = np.where((own_grid >= low) & (own_grid <= high), spectrum.sum(axis=1), 0.0)
+        power += np.interp(grid, own_grid, seen)
     least = 2 + int(2.0 * longest / min(len(p.y) for p in problem.pieces))
     peaks, _ = find_peaks(power, distance=max(least, len(grid) // 60))
     peaks = peaks[peaks >= least]

@@ -21,15 +21,13 @@ from ssmr_ident.doctor.decide import MISSING, NOTHING, UNDETERMINED, Decision
 from ssmr_ident.doctor.fitted import Search
 from ssmr_ident.doctor.further_body import mode_parameters, riders, shapes_told, with_further_bodies
 from ssmr_ident.doctor.held import held_fit
-from ssmr_ident.doctor.left import wandering
+from ssmr_ident.doctor.left import beyond, wandering
 from ssmr_ident.doctor.rules import OVER_NOISE, UNEVEN
 from ssmr_ident.doctor.table import Row
 from ssmr_ident.estimate.node import Member, effects_of
-from ssmr_ident.estimate.problem import natural_hz
 from ssmr_ident.estimate.values import Fit, Problem
 from ssmr_ident.experiments.campaign import Campaign
 from ssmr_ident.physics.effects import CATALOGUE
-from ssmr_ident.signals.metrics import LOW_PASS_HZ
 
 Array = np.ndarray
 
@@ -114,6 +112,7 @@ def answer(found: Examined) -> Diagnosis:
             *found.notes,
             *_notes(decision, chosen, heldout),
             *_colour(decision, base),
+            *_beyond(found.search.problem, base),
             *_wandering(found.search.problem, chosen),
         ),
         evidence=Evidence(overlays=drawn),
@@ -133,10 +132,10 @@ def _checked(decision: Decision, training: PredictionQuality, heldout: Predictio
 
 def predictions(problem: Problem, fit: Fit, known: ParameterSet) -> list[Prediction]:
     """Every piece beside what a fit says of it."""
-    band = band_of(known) if known.between else max(LOW_PASS_HZ, 4.0 * natural_hz(known))
     return [
-        Prediction(p.time, p.channels, p.units, p.y + p.foot, p.y + p.foot + rest, low_pass_hz=band)
+        Prediction(p.time, p.channels, p.units, p.y + p.foot, p.y + p.foot + rest, low_pass_hz=high, high_pass_hz=low)
         for p, rest in zip(problem.pieces, fit.residuals, strict=True)
+        for low, high in [band_of(known, p.band)]
     ]
 
 
@@ -264,13 +263,15 @@ def located(problem: Problem, fit: Fit) -> tuple[Located, ...]:
     """Recordings and channels by their share of the misfit, with the time and band that hold most of it."""
     places = []
     for piece, rest in zip(problem.pieces, fit.residuals, strict=True):
+        counted = piece.counted(rest - rest.mean(axis=0))
         for c, name in enumerate(piece.channels):
-            own = rest[:, c] - rest[:, c].mean()
+            own = counted[:, c]
             power = np.cumsum(own**2)
             share = float(power[-1]) / float(piece.white[c]) ** 2
-            time = np.interp([0.05, 0.95], power / max(power[-1], 1e-300), piece.time)
+            moments = np.linspace(piece.time[0], piece.time[-1], len(own))
+            time = np.interp([0.05, 0.95], power / max(power[-1], 1e-300), moments)
             spectrum = np.cumsum(np.abs(np.fft.rfft(own)) ** 2)
-            grid = np.fft.rfftfreq(len(own), 1.0 / piece.rate)
+            grid = piece.counted_from + np.fft.rfftfreq(len(own), 1.0 / piece.counted_rate)
             band = np.interp([0.1, 0.9], spectrum / max(spectrum[-1], 1e-300), grid)
             places.append((share, piece.name, name, time, band))
     total = sum(p[0] for p in places)
@@ -299,6 +300,11 @@ def _colour(decision: Decision, base: Row) -> tuple[str, ...]:
         f"what is left is {base.over:.1f} times what is white in it; it does not follow the motion, so it is taken for "
         "noise of another colour",
     )
+
+
+def _beyond(problem: Problem, base: Row) -> tuple[str, ...]:
+    far = beyond(problem, base.fit) if base.over >= OVER_NOISE and base.fit is not None else None
+    return () if far is None else (str(far),)
 
 
 def _wandering(problem: Problem, chosen: Row) -> tuple[str, ...]:

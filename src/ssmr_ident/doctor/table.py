@@ -91,8 +91,7 @@ def over_noise(problem: Problem, fit: Fit) -> float:
     """RMS of the residuals in sizes of white noise, which is what they show from sample to sample at the least."""
     total, count = 0.0, 0
     for piece, rest in zip(problem.pieces, fit.residuals, strict=True):
-        for c in range(rest.shape[1]):
-            own = rest[piece.counts[:, c], c]
-            total += float(np.sum((own - own.mean()) ** 2)) / float(piece.white[c]) ** 2
-            count += len(own)
+        own = piece.counted(rest - rest.mean(axis=0))
+        total += float(np.sum((own / piece.white) ** 2))
+        count += piece.samples()
     return math.sqrt(total / max(count, 1))

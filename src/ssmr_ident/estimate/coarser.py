@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ssmr_ident.estimate.pieces import Piece
+from ssmr_ident.estimate.pieces import Piece, blocks_of
 from ssmr_ident.estimate.values import Problem
 from ssmr_ident.signals.noise import AutoregressiveNoise
 
@@ -18,7 +18,7 @@ COARSE, STEPS = 20, 40
 def coarser(problem: Problem) -> Problem:
     """The same recordings in means of several samples each, under white noise; ``problem`` where it has few already."""
     fastest = max(problem.frequency, problem.fastest)
-    blocks = [max(1, int(p.rate / (COARSE * fastest))) for p in problem.pieces]
+    blocks = [blocks_of(p.rate, COARSE * fastest, p.band) for p in problem.pieces]
     if max(blocks) == 1:
         return problem
     pieces = tuple(_coarser(p, block, fastest) for p, block in zip(problem.pieces, blocks, strict=True))

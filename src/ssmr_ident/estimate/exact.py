@@ -25,9 +25,9 @@ LEAST_GAIN, LEAST_SHARE = 0.02, 5e-6
 
 
 def _whitened(problem: Problem, index: int, columns: Array) -> Array:
-    """(n, c, …) through each channel's whitening filter, in its standard deviation; uncounted samples are nought."""
+    """(n, c, …) to (m, c, …): what counts, through each channel's whitening filter, in its standard deviation."""
     piece = problem.pieces[index]
-    out = columns if piece.counts.all() else np.where(piece.counts[..., None], columns, 0.0)
+    out = piece.counted(columns, problem.passed_over(piece))
     filtered = [noise.filtered(out[:, c]) for c, noise in enumerate(problem.noises[index])]
     return np.stack(filtered, axis=1)
 

@@ -10,9 +10,9 @@ import numpy as np
 from scipy.signal import ss2tf
 
 from ssmr_ident.estimate.node import stepped
-from ssmr_ident.estimate.pieces import Piece
+from ssmr_ident.estimate.pieces import Piece, white_of
 from ssmr_ident.estimate.values import Fit, Problem
-from ssmr_ident.signals.noise import AutoregressiveNoise, process_noise, third_difference_std
+from ssmr_ident.signals.noise import AutoregressiveNoise, fit_noise, process_noise
 
 Array = np.ndarray
 
@@ -53,9 +53,12 @@ def own_noise(problem: Problem, fit: Fit) -> tuple[tuple[AutoregressiveNoise, ..
     for recording in recordings:
         own = [k for k, p in enumerate(problem.pieces) if p.recording == recording]
         spent = round(fit.dof / len(recordings)) + 2 * len(own)
-        counts = np.vstack([problem.pieces[k].counts for k in own])
-        rest = np.vstack([fit.residuals[k] - fit.residuals[k].mean(axis=0) for k in own])
-        columns = np.where(counts, rest, 0.0).T
+        columns = np.vstack(
+            [problem.pieces[k].counted(fit.residuals[k] - fit.residuals[k].mean(axis=0)) for k in own]
+        ).T
+        if problem.pieces[own[0]].band is not None:  # frequencies there are other ones than the rig's
+            found[recording] = tuple(fit_noise(column, LARGEST_ORDER, spent) for column in columns)
+            continue
         systems = from_force(problem.pieces[own[0]], fit)
         found[recording] = tuple(
             process_noise(column, *system, LARGEST_ORDER, spent)
@@ -86,7 +89,7 @@ def left_white(problem: Problem, fit: Fit) -> Problem:
     for piece in problem.pieces:
         least = 1e-2 * piece.white  # a log has no more digits than its converter
         left = np.vstack(together[piece.recording])
-        white = np.maximum([third_difference_std(column) for column in left.T], least)
+        white = np.maximum(white_of(left, piece.rate, piece.band), least)
         pieces.append(replace(piece, white=white))
         noises.append(tuple(AutoregressiveNoise(np.ones(1), float(w)) for w in white))
     return replace(problem, pieces=tuple(pieces), noises=tuple(noises))

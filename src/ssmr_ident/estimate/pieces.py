@@ -17,6 +17,7 @@ from ssmr_ident.estimate.foot import foot_motion
 from ssmr_ident.experiments.campaign import Measurement
 from ssmr_ident.experiments.quantities import UNITS
 from ssmr_ident.session.entry import FURTHER
+from ssmr_ident.signals.band import BESIDE, Band, inside, lines_in, quiet_std, series
 from ssmr_ident.signals.grid import band_limited, even_samples
 from ssmr_ident.signals.noise import median_std, rounding, third_difference_std
 
@@ -106,6 +107,8 @@ class Piece:
         Of a network, on which each channel is measured; empty where there is one alone.
     into : int
         Body on which the drive acts.
+    band : (float, float) or None [Hz]
+        In which alone it counts.
     """
 
     name: str
@@ -125,6 +128,30 @@ class Piece:
     foot: Array = field(default_factory=lambda: np.zeros(1))
     bodies: tuple[int, ...] = ()
     into: int = 0
+    band: Band | None = None
+
+    def counted(self, columns: Array, skipped: int = 0) -> Array:
+        """What counts of samples as long as ``y``, (n, c, …) to (m, c, …): all but single wild ones and those skipped
+        at the begin; where there is a band, as a series of what lies in it."""
+        wild = self.counts.reshape(*self.counts.shape, *[1] * (columns.ndim - 2))
+        columns = columns if self.counts.all() else np.where(wild, columns, 0.0)
+        return columns if self.band is None else series(columns, self.rate, self.band, skipped)
+
+    def samples(self, skipped: int = 0) -> int:
+        """How many numbers count, of all channels together."""
+        if self.band is None:
+            return int(self.counts[skipped:].sum())
+        return self.y.shape[1] * lines_in(len(self.y), self.rate, self.band)
+
+    @property
+    def counted_rate(self) -> float:
+        """Samples a second of what counts [Hz]."""
+        return self.rate if self.band is None else 2.0 * (min(self.band[1], 0.5 * self.rate) - self.band[0])
+
+    @property
+    def counted_from(self) -> float:
+        """Frequency [Hz] that is 0 in what counts."""
+        return 0.0 if self.band is None else self.band[0]
 
     @property
     def seen(self) -> Seen:
@@ -186,9 +213,10 @@ def pieces_of(
         moved = foot_motion(drive, drive_name, {n: order_of(n) for n in channels}, rate, recording.provenance.file)
         drive, foot = moved[:, 2], np.where(orders < 2, moved[:, orders], 0.0)
         y = y - foot
+    band = _within(measurement, rate)
     found = []
     for first, after in stretches(y, rate, frequency) if not drive_name else [(0, len(y))]:
-        part, force, block = y[first:after], drive[first:after], max(1, int(rate / (FINEST * frequency)))
+        part, force, block = y[first:after], drive[first:after], blocks_of(rate, FINEST * frequency, band)
         judged = [_single(column) for column in part.T]
         counts = ~np.column_stack([wild for wild, _ in judged])
         part = np.where(counts, part, np.column_stack([smooth for _, smooth in judged]))
@@ -196,6 +224,8 @@ def pieces_of(
         if math.isfinite(bandwidth_hz):
             slow = np.flatnonzero(orders == 2).tolist()
             part[:, slow] = before_low_pass(part[:, slow], rate, bandwidth_hz)
+        if band is not None:
+            part = inside(part, rate, band)
         averaged, kept = (_blocks(x, block) for x in (part, counts))
         every = max(1, math.ceil(STEPS * frequency * block / rate))
         if drive_name:
@@ -203,7 +233,7 @@ def pieces_of(
                 every, min(FINER, math.ceil(2.0 * math.pi * fastest_part(force, rate) * block / rate / STRAIGHT))
             )
         fine = _between(force, block, every, len(averaged)) if drive_name else np.zeros(2)
-        white = np.maximum([third_difference_std(column) for column in averaged.T], least)
+        white = np.maximum(white_of(averaged, rate / block, band), least)
         middle = even.start + (first + np.arange(len(averaged)) * block + 0.5 * (block - 1)) / rate
         found.append(
             Piece(
@@ -224,9 +254,41 @@ def pieces_of(
                 _blocks(foot[first:after], block),
                 places,
                 into,
+                band,
             )
         )
     return tuple(found)
+
+
+def _within(measurement: Measurement, rate: float) -> Band | None:
+    """A recording's band.
+
+    Raises
+    ------
+    InputError
+        One that its rate cannot hold anything of.
+    """
+    band = measurement.entry.band_hz
+    if band is not None and band[0] >= 0.5 * rate:
+        raise InputError(
+            f"{measurement.name}: band_hz",
+            f"begins at {band[0]:g} Hz, and {rate:g} samples a second hold what is below {0.5 * rate:g} Hz",
+            "Give a lower band, or take the key away",
+        )
+    return band
+
+
+def blocks_of(rate: float, wanted: float, band: Band | None) -> int:
+    """Samples that are averaged into one, for a wanted rate [Hz] at the least, and what a band needs."""
+    least = wanted if band is None else max(wanted, 2.0 * (1.0 + BESIDE) * band[1])
+    return max(1, int(rate / least))
+
+
+def white_of(samples: Array, rate: float, band: Band | None) -> Array:
+    """Standard deviation of white noise of each channel, (n, c) to (c,): by differences, or by what a band holds."""
+    if band is None:
+        return np.array([third_difference_std(column) for column in samples.T])
+    return quiet_std(samples, rate, band)
 
 
 def fastest_part(force: Array, rate: float) -> float:

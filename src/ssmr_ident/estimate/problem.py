@@ -16,6 +16,7 @@ from ssmr_ident.estimate.pieces import ORDER, Piece, channels_of, pieces_of
 from ssmr_ident.estimate.values import Problem
 from ssmr_ident.experiments.campaign import Measurement
 from ssmr_ident.physics.rig import RIG_KEYS
+from ssmr_ident.signals.band import inside
 from ssmr_ident.signals.grid import even_samples
 from ssmr_ident.signals.noise import AutoregressiveNoise
 
@@ -110,6 +111,8 @@ def seen_hz(measurement: Measurement) -> float:
     name = channels[0]
     even = even_samples(measurement.recording.time, measurement.recording[name][:, None])
     y = even.samples[:, 0] - even.samples[:, 0].mean()
+    if measurement.entry.band_hz is not None:
+        y = inside(y, even.sample_rate, measurement.entry.band_hz)
     frequency = np.fft.rfftfreq(len(y), 1.0 / even.sample_rate)
     power = np.abs(np.fft.rfft(y * np.hanning(len(y)))) ** 2
     low = 3.0 / (len(y) / even.sample_rate)

@@ -74,7 +74,7 @@ class Problem:
 
     @property
     def samples(self) -> int:
-        return sum(int(p.counts[self.passed_over(p) :].sum()) for p in self.pieces)
+        return sum(p.samples(self.passed_over(p)) for p in self.pieces)
 
 
 @dataclass(frozen=True, eq=False)

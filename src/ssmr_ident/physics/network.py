@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ssmr_ident.core.parameter import GROUND, ParameterSet
+from ssmr_ident.physics.rig import RIG_KEYS
 
 Array = np.ndarray
 
@@ -121,6 +122,8 @@ def layout_of(parameters: ParameterSet) -> Layout:
 
 
 def network_from_parameters(parameters: ParameterSet) -> Network:
-    """The network of a parameter file that has been read."""
+    """The network of a parameter file that has been read; of a rig's file that of one body."""
+    if not parameters.between:
+        return Network(ONE, np.array([float(parameters[key].value) for key in RIG_KEYS["inertia_kg_m2" in parameters]]))
     layout = layout_of(parameters)
     return Network(layout, np.array([float(parameters[key].value) for key in layout.keys]))

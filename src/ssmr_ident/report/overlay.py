@@ -7,7 +7,6 @@ from matplotlib.figure import Figure
 
 from ssmr_ident.compare.outcome import Prediction
 from ssmr_ident.report import style
-from ssmr_ident.signals.filters import low_pass
 from ssmr_ident.signals.spectra import power_density
 
 
@@ -15,7 +14,7 @@ from ssmr_ident.signals.spectra import power_density
 def overlay_figure(prediction: Prediction, title: str) -> Figure:
     """Time courses for what repeats (decays, pulls, rigs), power densities for what does not (swivels).
 
-    Courses are drawn as the metric sees them: below its low-pass, their means taken off, one scale for one unit.
+    Courses are drawn as the metric sees them: in its band, their means taken off, one scale for one unit.
 
     Parameters
     ----------
@@ -28,7 +27,7 @@ def overlay_figure(prediction: Prediction, title: str) -> Figure:
     spectra = prediction.metric == "log_psd_db"
     courses = [prediction.measured, prediction.simulated]
     if not spectra and prediction.low_pass_hz is not None:
-        courses = [low_pass(c, prediction.sample_rate, prediction.low_pass_hz) for c in courses]
+        courses = [prediction.judged(c) for c in courses]
         courses = [c - c.mean(axis=0) for c in courses]
     for index, axes in enumerate(panels):
         name, unit = prediction.names[index], prediction.units[index]

@@ -8,9 +8,12 @@ from typing import Annotated, Any
 
 from ssmr_ident.core.domain import Choice, FileName, Number, Pointer, Text, Whole, YesNo
 from ssmr_ident.core.nested_domain import Either, Keyed, Listed, Mapped, declared
+from ssmr_ident.core.place import Place, shown
 from ssmr_ident.readers.options import DECIMAL, LOAD_SCALE, ON_BAD, RATE, SAMPLE, SKIP, STAMPS
 
 BASELINES = ("rigid6", "decoupled", "sdof", "network", "drag")
+BANDED = ("sdof", "network")
+"""Baselines whose recordings may have a band."""
 EXPERIMENTS = (
     *("free_response", "swivel", "straight", "pull", "wheel_drag", "vertical_compression", "forced", "base_motion"),
 )
@@ -23,6 +26,20 @@ QUANTITIES = (
     *("force", "torque", *MOTIONS, *FURTHER, "position_reference"),
     *("base_acceleration", "base_position", "ax", "ay", "az", "wx", "wy", "wz", "time"),
 )
+
+
+@dataclass(frozen=True)
+class PassBand(Listed):
+    """Two frequencies, the lower one first."""
+
+    def check(self, place: Place, value: Any) -> tuple[Any, ...]:
+        low, high = super().check(place, value)
+        if not low < high:
+            raise place.error(f"is {shown(value)}, a band without width", "Write [lower, upper]")
+        return low, high
+
+
+BAND = PassBand(Number("Hz", least=0.0, most=1e9), 2, 2)
 
 CABLE = Keyed(
     {
@@ -131,6 +148,9 @@ class Entry(Reading):
     delay_s: Annotated[
         Mapping[str, float], Mapped(Choice(QUANTITIES), SECONDS), "quantity: by how much its channel comes late"
     ] = field(default_factory=dict)
+    band_hz: Annotated[
+        tuple[float, float] | None, BAND, "[lower, upper]: in which alone a rig or network is fitted and judged"
+    ] = None
     bodies: Mapping[str, str] = field(default_factory=dict)
     """Quantity: body of a network, as ``channels`` says."""
 

@@ -10,7 +10,7 @@ from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.nested_domain import Keyed, Listed, declared
 from ssmr_ident.core.place import Place, short
 from ssmr_ident.core.shown import Shown
-from ssmr_ident.session.entry import BASELINES, Entry, entry_of
+from ssmr_ident.session.entry import BAND, BANDED, BASELINES, Entry, entry_of
 from ssmr_ident.session.parameters_file import bundled_robots
 from ssmr_ident.session.yaml_file import expect_schema, load_with_lines
 
@@ -23,6 +23,7 @@ KEYS: dict[str, tuple[Domain, str]] = {
         Choice(BASELINES),
         "rigid6: the robot; decoupled: pure rotations; sdof: a rig; network: bodies on springs; drag: a pulled block",
     ),
+    "band_hz": (BAND, "of every recording that has none of its own"),
     "recordings": (
         Listed(Keyed(declared(Entry), ("experiment",), ("file", "files")), 1),
         "the logs, each with how it was made",
@@ -80,7 +81,12 @@ def read_session(path: str | Path) -> Session:
     expect_schema(place, content, SCHEMA)
     values = FILE.check(place, content)
     rows = values["recordings"]
-    entries = tuple(entry_of(row) for row in rows)
+    entries = tuple(entry_of({"band_hz": values.get("band_hz")} | row) for row in rows)
+    baseline = values.get("baseline", "rigid6")
+    for here, given in ((place, values), *((place.at("recordings", k), row) for k, row in enumerate(rows))):
+        if "band_hz" in given and baseline not in BANDED:
+            mend = f"Leave it out: it is for baseline {' and '.join(BANDED)}"
+            raise here.at("band_hz").error(f"is not for baseline {baseline}", mend)
     seen: set[tuple[str, int | None]] = set()
     for index, (row, entry) in enumerate(zip(rows, entries, strict=True)):
         here = place.at("recordings", index)
@@ -98,7 +104,7 @@ def read_session(path: str | Path) -> Session:
     if robot not in bundled_robots():
         robot = str(_inside(place.at("robot"), file.parent, robot))
     name = values.get("name", file.parent.name)
-    return Session(name, file.parent, robot, values.get("baseline", "rigid6"), entries)
+    return Session(name, file.parent, robot, baseline, entries)
 
 
 def _inside(place: Place, folder: Path, name: str) -> Path:

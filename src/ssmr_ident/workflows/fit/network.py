@@ -1,4 +1,4 @@
-"""A network's session (``baseline: network``): every recording at once to masses, springs and dampers."""
+"""A network's session, or a rig's that is judged in a band: every recording at once to masses, springs and dampers."""
 
 from __future__ import annotations
 
@@ -11,8 +11,12 @@ from ssmr_ident.compare.comparison import measure
 from ssmr_ident.compare.network import NO_GROUND
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import ParameterSet
+from ssmr_ident.doctor.left import beyond
 from ssmr_ident.doctor.result import conflicting, exported, predictions
+from ssmr_ident.doctor.rules import OVER_NOISE
+from ssmr_ident.doctor.table import over_noise
 from ssmr_ident.estimate.network import EXACTLY, baseline_fit, network_problem, under_own_noise
+from ssmr_ident.estimate.problem import problem_of
 from ssmr_ident.estimate.values import Fit, Problem
 from ssmr_ident.experiments.campaign import Campaign, Measurement
 from ssmr_ident.physics.network import network_from_parameters
@@ -36,9 +40,9 @@ def fit_network_session(campaign: Campaign, chosen: tuple[Measurement, ...]) -> 
     """
     known = campaign.parameters
     if known.effects:
-        mend = "Leave effects: out here; ident diagnose fits them beside the network"
-        raise InputError(f"{known.file}: effects", "are not fitted with a network", mend)
-    problem = network_problem(chosen, known)
+        mend = "Leave effects: out here; ident diagnose fits them"
+        raise InputError(f"{known.file}: effects", "are not fitted with a network, or in a band", mend)
+    problem = (network_problem if known.between else problem_of)(chosen, known)
     problem, fit = under_own_noise(problem, baseline_fit(problem))
     fitted = exported(fit, known)
     stds = np.sqrt(np.maximum(np.diag(fit.covariance), 0.0))
@@ -47,6 +51,9 @@ def fit_network_session(campaign: Campaign, chosen: tuple[Measurement, ...]) -> 
     findings = list(campaign.found)
     findings += [f"{fit.node.baseline[k].name} keeps its prior: these recordings do not tell it"
                  for k in free if k not in told]  # fmt: skip
+    far = beyond(problem, fit) if over_noise(problem, fit) >= OVER_NOISE else None
+    if far is not None:
+        findings.append(str(far))
     if not problem.layout.grounded:
         findings.append(NO_GROUND)
     if not any(p.driven and not p.based for p in problem.pieces):
@@ -95,15 +102,16 @@ def _recordings(
     results: dict[str, dict[str, Any]] = {}
     judged = predictions(problem, fit, known)
     for piece, rest, prediction in zip(problem.pieces, fit.residuals, judged, strict=True):
-        size = np.maximum((piece.y - piece.y.mean(axis=0)).std(axis=0), 1e-300)
-        share = dict(zip(piece.channels, map(float, 100.0 * rest.std(axis=0) / size), strict=True))
+        size, left = (piece.counted(x - x.mean(axis=0)).std(axis=0) for x in (piece.y, rest))
+        share = dict(zip(piece.channels, map(float, 100.0 * left / np.maximum(size, 1e-300)), strict=True))
         places = [problem.layout.bodies[k] for k in piece.seen.bodies]
         said = ", ".join(f"{v:.3g} % of {name} of {on}" for (name, v), on in zip(share.items(), places, strict=True))
         apart = measure(prediction)[0]
         span = f"{piece.time[0]:.4g} to {piece.time[-1]:.4g} s"
-        lines.setdefault(piece.name, []).append(
-            f"{span}: {apart:.3g} % apart below {prediction.low_pass_hz:.4g} Hz; unexplained at all frequencies {said}"
-        )
+        low, high = prediction.high_pass_hz, prediction.low_pass_hz
+        where = f"from {low:.4g} to {high:.4g} Hz" if low else f"below {high:.4g} Hz"
+        counted = "at all frequencies" if piece.band is None else "there"
+        lines.setdefault(piece.name, []).append(f"{span}: {apart:.3g} % apart {where}; unexplained {counted} {said}")
         own = results.setdefault(piece.name, {"nrmse_percent": apart, "unexplained_percent": {}})
         own["unexplained_percent"] |= share
     return {name: tuple(own) for name, own in lines.items()}, results

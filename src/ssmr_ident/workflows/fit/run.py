@@ -74,11 +74,12 @@ def fit_campaign(
     if parameters is not None:
         campaign = replace(campaign, parameters=parameters)
     chosen = fitted_measurements(campaign)
-    if campaign.session.baseline == "sdof":
+    banded = any(m.entry.band_hz for m in chosen)
+    if campaign.session.baseline == "sdof" and not banded:
         step("fitting the rig", 0, 1)
         fit = fit_rig_session(campaign, chosen, coulomb)
         step("fitting the rig", 1, 1)
-    elif campaign.session.baseline == NETWORK:
+    elif campaign.session.baseline == NETWORK or banded:
         step("fitting the network", 0, 1)
         fit = fit_network_session(campaign, chosen)
         step("fitting the network", 1, 1)
