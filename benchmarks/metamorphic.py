@@ -31,7 +31,7 @@ SESSIONS: dict[str, Callable[[], Told]] = {
     "rig, shaken, dry friction": lambda: shaken(friction=1.5),
     "rig, let go, dry friction": lambda: let_go(friction=0.5),
     "robot, let go in roll": rolls,
-    "robot, let go in roll, hardening": lambda: rolls("nonlinear_stiffness.k3_N_m3", 5e10),
+    "robot, let go in roll, hardening": lambda: rolls("nonlinear_stiffness.k3_N_m3", 1e10),
 }
 APART = 3.0
 """Standard deviations, of both together, that a parameter may be moved by other samples of the same experiment."""
