@@ -17,6 +17,7 @@ from ssmr_ident.experiments.campaign import Measurement
 from ssmr_ident.experiments.swivel import swivel
 from ssmr_ident.physics.motor import wheel_rates
 from ssmr_ident.physics.robot import robot_from_parameters
+from ssmr_ident.report.diagnosis_page import verdict
 from ssmr_ident.session import Entry, read_parameters
 from ssmr_ident.simulate.simulation import simulate
 
@@ -81,3 +82,4 @@ def test_tires_of_which_nothing_is_known_are_not_asked_what_shakes(tmp_path: Pat
     assert found.verdict == "undetermined"
     assert "stiffness" in found.summary
     assert "Pull the robot" in found.next_experiment
+    assert verdict(found).sentence == found.summary

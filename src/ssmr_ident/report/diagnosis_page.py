@@ -101,6 +101,8 @@ def verdict(diagnosis: Diagnosis) -> Verdict:
         sentence = "More than noise is left over, and no explanation stands clear of the others."
         if names:
             sentence = f"More than noise is left over. The likeliest explanation is {names}; it is not certain."
+        elif diagnosis.tried and all(one.id == "baseline" for one in diagnosis.tried):
+            sentence = diagnosis.summary  # nothing was tried beside it, and that says why
     facts = (_better(diagnosis), _where(diagnosis), _sure(diagnosis), _next(diagnosis))
     known = [e for e in diagnosis.effects if e.parameters or e.curve] if tone == "found" else []
     law = tuple(_law(effect, turning(diagnosis)) for effect in known)

@@ -220,7 +220,7 @@ def _summary(outcome: Outcome, decision: Decision, best: Explained | None, heldo
             f"({outcome.baseline.target.rms_db:.1f} dB away)."
         )
     if outcome.unread:
-        said = f"{outcome.turned}; {outcome.unread}" if outcome.turned else outcome.unread
+        said = f"{outcome.turned.turn}; {outcome.unread}" if outcome.turned else outcome.unread
         return f"{said[0].upper()}{said[1:]}."
     if decision.verdict != MISSING:
         return f"Something is missing that these recordings cannot tell: {decision.reason}."
@@ -268,8 +268,7 @@ def _turning_notes(outcome: Outcome) -> list[str]:
     whose = "the file's robot" if outcome.unread else "the fitted baseline"
     held = yaw_gain_of(outcome.heldout)
     seen = f", recordings kept back at {held:.2f}" if np.isfinite(held) else ""
-    said = [] if outcome.unread else [str(outcome.turned)]  # where nothing else is said it is the summary
-    return [*said, f"simulated, {whose} turns at {simulated:.2f} of the rate asked for{seen}"]
+    return [str(outcome.turned), f"simulated, {whose} turns at {simulated:.2f} of the rate asked for{seen}"]
 
 
 def yaw_gain_of(conditions: tuple[Condition, ...]) -> float:

@@ -66,19 +66,28 @@ class YawGain(Shown):
         return self.lower > self.isotropic and self.lambda_max(self.lower) <= 1.0
 
     def __str__(self) -> str:
+        return ". ".join(part for part in (self.turn, self.grip) if part)
+
+    @property
+    def turn(self) -> str:
+        """How fast it turns and how it slips, in words."""
         rates = np.degrees([abs(rate) for _, _, rate in self.each.values()])
         skid = float(np.radians(rates.max())) * self.half_base
-        text = (
+        return (
             f"the robot turns at {self.gain:.2f} (95 %: {self.lower:.2f} to {self.upper:.2f}) of the rate that its "
             f"wheels ask for (recordings: {len(self.each)}, {rates.min():.3g} to {rates.max():.3g} deg/s): wheels slip "
             f"lengthwise by {1.0 - self.gain:.2f} ({1.0 - self.upper:.2f} to {1.0 - self.lower:.2f}) and skid "
             f"sideways at up to {skid:.2g} m/s"
         )
+
+    @property
+    def grip(self) -> str:
+        """What grip that asks for, in words; empty where the interval holds no turn, or a roll without slip."""
         if self.lower <= 0.0 or self.upper >= 1.0:
-            return text
+            return ""
         held = [self.sideways(gain) for gain in (self.gain, self.upper, self.lower)]
-        text += (
-            f". Friction alike in all directions would let it turn at {self.isotropic:.2f} by the file's contact "
+        text = (
+            f"Friction alike in all directions would let it turn at {self.isotropic:.2f} by the file's contact "
             f"points: at the same slip the ground holds sideways {held[0]:.2f} ({held[1]:.2f} to {held[2]:.2f}) of "
             "what it holds lengthwise"
         )
