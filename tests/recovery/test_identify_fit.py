@@ -14,8 +14,6 @@ from ssmr_ident.cli import app
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.identify.body.builder import HEIGHT, RobotBuilder
 from ssmr_ident.identify.forces.pull_model import pull_stiffness
-from ssmr_ident.identify.rigs.frequency_domain import ForcedRecord, fit_rig
-from ssmr_ident.identify.rigs.inverse_dynamics import fit_drive
 from ssmr_ident.physics.linear import linear_robot
 from ssmr_ident.session import read_parameters, write_parameters
 from ssmr_ident.workflows.fit.run import fit_session
@@ -199,63 +197,3 @@ def test_heldout_is_never_fitted(tmp_path: Path) -> None:
     write_session(tmp_path, [row])
     with pytest.raises(InputError, match="heldout"):
         fit_session(tmp_path)
-
-
-def rig_motion(mass: float, damping: float, stiffness: float, force: np.ndarray, step: float) -> np.ndarray:
-    """Position of a rig from rest, (n,): RK4 on a grid four times finer, the force in straight lines."""
-    fine = 4
-    state, out = np.zeros(2), np.empty(len(force))
-
-    def rate(x: np.ndarray, push: float) -> np.ndarray:
-        return np.array([x[1], (push - damping * x[1] - stiffness * x[0]) / mass])
-
-    small = step / fine
-    for index in range(len(force)):
-        out[index] = state[0]
-        if index + 1 == len(force):
-            break
-        for part in range(fine):
-            left = force[index] + (force[index + 1] - force[index]) * part / fine
-            right = force[index] + (force[index + 1] - force[index]) * (part + 1) / fine
-            middle = (left + right) / 2
-            a = rate(state, left)
-            b = rate(state + small / 2 * a, middle)
-            c = rate(state + small / 2 * b, middle)
-            d = rate(state + small * c, right)
-            state = state + small / 6 * (a + 2 * b + 2 * c + d)
-    return out
-
-
-@pytest.mark.slow
-def test_rig_comes_back() -> None:
-    rng = np.random.default_rng(12)
-    records = []
-    for _ in range(3):
-        rough = rng.normal(size=3000)
-        force = 20 * np.convolve(rough, np.hanning(25) / 12, mode="same")
-        position = rig_motion(8.0, 47.0, 16000.0, force, STEP) + 3e-6 * rng.normal(size=3000) + 1e-4
-        records.append(ForcedRecord(STEP, force, {"position": position}))
-    fit = fit_rig(records, (6.0, 70.0, 20000.0))
-    for value, std, truth in zip((fit.mass, fit.damping, fit.stiffness), fit.stds, (8.0, 47.0, 16000.0), strict=True):
-        # straight lines of force against a band-limited one differ by some 0.03 % at these rates
-        assert abs(value - truth) < 3.5 * std + 5e-4 * truth
-        assert std < 0.03 * truth
-
-
-def test_drive_with_dry_friction_comes_back() -> None:
-    """Position is prescribed and the force computed from it, so the truth is exact."""
-    rng = np.random.default_rng(13)
-    times = STEP * np.arange(12000)
-    position = 0.1 * np.sin(0.9 * times) + 0.02 * np.sin(5.1 * times + 1)
-    velocity = np.gradient(position, STEP)
-    force = 95.0 * np.gradient(velocity, STEP) + 204.0 * velocity + 20.0 * np.sign(velocity) - 3.0
-    force = force + 1.0 * rng.normal(size=len(times))
-    fit = fit_drive([position + 1e-7 * rng.normal(size=len(times))], [force], STEP)
-    assert "Coulomb" in fit.method
-    found = (fit.mass, fit.damping, fit.friction, fit.offset)
-    stds = (*fit.stds[:2], fit.friction_std, fit.offset_std)
-    for value, std, truth in zip(found, stds, (95.0, 204.0, 20.0, 3.0), strict=True):
-        assert abs(value - truth) < max(3.5 * std, 0.01 * truth)
-    plain = fit_drive([position], [force], STEP, coulomb=False)
-    assert plain.friction == 0.0
-    assert plain.damping > 1.3 * 204.0  # what the friction had been hidden in

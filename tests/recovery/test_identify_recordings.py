@@ -45,16 +45,14 @@ def test_unnumbered_pull_claims_nothing(shared: Path) -> None:
 
 def test_drive_against_published_numbers(shared: Path) -> None:
     """Published by inverse dynamics on the whole record: 95.109 kg, 203.50 N s/m, 20.394 N, −3.165 N."""
-    result = fit_session(shared / "recordings" / "emps").results["all forced"]
-    for key, truth in (
-        ("mass_kg", 95.109),
-        ("damping_N_s_m", 203.5),
-        ("coulomb_friction_N", 20.394),
-        ("force_offset_N", 3.165),
-    ):
-        std_key = f"{key}_std" if key[-1] != "N" else key.replace("_N", "_std_N")
-        assert abs(result[key] - truth) < 3 * result[std_key]
-    assert result["mass_kg"] == pytest.approx(95.109, rel=0.01)
+    fit = fit_session(shared / "recordings" / "emps")
+    found = {"mass_kg": fit.parameters["mass_kg"], "damping_N_s_m": fit.parameters["damping_N_s_m"]}
+    found["F_c_N"] = fit.parameters.effects["dry_friction"]["F_c_N"]
+    for key, truth in (("mass_kg", 95.109), ("damping_N_s_m", 203.5), ("F_c_N", 20.394)):
+        assert found[key].std is not None
+        assert abs(float(found[key].value) - truth) < 2 * found[key].std
+    assert fit.parameters.number("mass_kg") == pytest.approx(95.109, rel=0.01)
+    assert fit.results["emps-fit.csv"]["drive_zero"] == pytest.approx(3.165, abs=0.2)
 
 
 @pytest.mark.parametrize("name", ["practice-07", "practice-08", "practice-12"])

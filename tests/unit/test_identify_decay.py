@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ssmr_ident.core.errors import InputError
-from ssmr_ident.identify.decays.backbone import backbone
+from ssmr_ident.identify.decays.backbone import along, backbone
 from ssmr_ident.identify.decays.classical import fft_grid, half_power, logarithmic_decrement, pencil
 from ssmr_ident.identify.decays.fit import fit_decay, fit_decays
 
@@ -123,6 +123,18 @@ def test_backbone_sees_softening_and_only_that() -> None:
     flat = backbone(times, plain, fit_decay(times, plain, start_s=0.0, modes=1))
     assert flat is not None
     assert flat.omega_trend_p > 1e-3
+
+
+def test_windows_are_long_enough_for_hardly_any_damping() -> None:
+    rng = np.random.default_rng(8)
+    times = 1e-3 * np.arange(60000)
+    turn, xi = 2.0 * np.pi * 20.0, 5e-4
+    signal = np.exp(-xi * turn * times) * np.cos(turn * times) + 0.01 * rng.normal(size=len(times))
+    trend = along(signal, 1e-3, turn, xi, 0.01)
+    assert trend is not None
+    assert np.all(trend.xi_std[trend.amplitude > 0.1] < 0.05 * xi)
+    assert f"{trend.xi[0]:.4g}" in str(trend)
+    assert np.all(np.abs(trend.xi - xi) < 4.0 * trend.xi_std)
 
 
 def test_unusable_records_say_what_to_mend() -> None:

@@ -233,7 +233,7 @@ class Diagnosis(Shown):
         lines = [f"{self.session}: {self.verdict.replace('_', ' ')}", f"  {self.summary}"]
         for effect in self.effects:
             tie = f"; fits as well: {', '.join(effect.indistinguishable_from)}" if effect.indistinguishable_from else ""
-            lines.append(f"  {effect.id}  (confidence {effect.confidence:.2f}{tie})  {effect.equation}")
+            lines.append(f"  {effect.id}  (confidence {effect.confidence:.2f}{tie})  {effect.equation}".rstrip())
             lines += [f"      {name} = {estimate}" for name, estimate in effect.parameters.items()]
         for name, worth in (("fitted", self.training), ("held out", self.heldout)):
             if math.isnan(worth.before):

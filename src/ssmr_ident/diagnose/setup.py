@@ -203,11 +203,7 @@ def unknowns_of(campaign: Campaign, parameters: ParameterSet) -> tuple[Unknown, 
         found = list(robot_unknowns(parameters))
     else:
         found = []
-        keys = (
-            RIG_KEYS["inertia_kg_m2" in parameters]
-            if baseline == "sdof"
-            else ("mass_kg", "mu_static", "mu_kinetic", "cable.stiffness_N_m")
-        )
+        keys = RIG_KEYS["inertia_kg_m2" in parameters]
     found = [u for u in found if twin(u.name, parameters) is None]
     for key in (k for k in (*keys, BANDWIDTH) if twin(k, parameters) is None):
         if key not in parameters or parameters[key].fixed or (key == BANDWIDTH and parameters[key].std is None):

@@ -9,7 +9,7 @@ import numpy as np
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.setup import Setup
-from ssmr_ident.experiments.campaign import Campaign, Measurement
+from ssmr_ident.experiments.campaign import Measurement
 from ssmr_ident.identify.body.builder import RobotBuilder
 from ssmr_ident.identify.decays.fit import fit_decay
 from ssmr_ident.identify.decays.result import Mode
@@ -18,10 +18,8 @@ from ssmr_ident.identify.fitting.curvature import Curvature
 from ssmr_ident.identify.fitting.descent import search_again
 from ssmr_ident.identify.fitting.joint import JointFit, differentiate, evaluate
 from ssmr_ident.identify.posterior.most_probable import most_probable
-from ssmr_ident.identify.rigs.frequency_domain import DERIVATIVES, ForcedRecord, fit_rig
 from ssmr_ident.identify.robot.unknowns import match_further, modal_observations, pick_mode, predicted_modes
 from ssmr_ident.identify.trials import Trial
-from ssmr_ident.physics.rig import RIG_KEYS, rig_from_parameters
 
 SEEN_BY = {"roll": "ay", "pitch": "ax", "yaw": "ay"}
 """Channels that show a motion best (5.8)."""
@@ -33,7 +31,7 @@ POOLED_STEPS = 10
 
 
 def begin(trials: Sequence[Trial], setup: Setup, parameters: ParameterSet) -> JointFit:
-    """The better of two places: what is known beforehand, and what modes or a linear fit of the recordings say."""
+    """The better of two places: what is known beforehand, and what modes of the recordings say."""
     points = [np.zeros(len(setup.model.physics))]
     guess = _guess(trials, setup, parameters)
     if guess:
@@ -74,12 +72,7 @@ def pooled(fit: JointFit) -> JointFit:
 def _guess(trials: Sequence[Trial], setup: Setup, parameters: ParameterSet) -> dict[str, float]:
     names = {trial.name for trial in trials}
     used = [m for m in setup.campaign.measurements if m.name in names]
-    baseline = setup.campaign.session.baseline
-    if baseline in ("rigid6", "decoupled"):
-        return _by_modes(setup, used, parameters)
-    if baseline == "sdof":
-        return _by_linear_fit(setup.campaign, used, parameters)
-    return {}
+    return _by_modes(setup, used, parameters) if setup.campaign.session.baseline in ("rigid6", "decoupled") else {}
 
 
 def _by_modes(setup: Setup, used: list[Measurement], parameters: ParameterSet) -> dict[str, float]:
@@ -103,22 +96,3 @@ def _by_modes(setup: Setup, used: list[Measurement], parameters: ParameterSet) -
         return {}
     posterior = most_probable(setup.model.physics, modal_observations(modes, builder, setup.decoupled))
     return {u.name: float(v) for u, v in zip(posterior.unknowns, posterior.values, strict=True)}
-
-
-def _by_linear_fit(campaign: Campaign, used: list[Measurement], parameters: ParameterSet) -> dict[str, float]:
-    rig = rig_from_parameters(parameters)
-    records = []
-    for m in used:
-        drive = next((name for name in ("force", "torque") if name in m.recording), None)
-        if drive is None:
-            continue
-        motions = {name: m.recording[name] for name in DERIVATIVES if name in m.recording}
-        records.append(ForcedRecord(1.0 / m.recording.sample_rate, m.recording[drive], motions))
-    if not records or rig.stiffness <= 0.0:
-        return {}
-    bandwidth = parameters.number("accelerometer.bandwidth_hz", np.inf)
-    rate = 1.0 / records[0].step
-    fit = fit_rig(records, (rig.mass, rig.damping, rig.stiffness), None if bandwidth >= 0.5 * rate else bandwidth)
-    found = dict(zip(RIG_KEYS[rig.rotary], (fit.mass, fit.damping, fit.stiffness), strict=True))
-    # two modes that beat can ask one mass for a negative damping: what no rig can have is no start
-    return {name: value for name, value in found.items() if value > 0.0}

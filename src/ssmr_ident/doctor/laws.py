@@ -30,6 +30,9 @@ UNLISTED = "unlisted"
 SINE = "sine"
 """Of what turns alone."""
 
+HYSTERESIS = "hysteresis"
+"""A share of the spring's own stiffness: where there is no spring there is no loop."""
+
 Shape = Mapping[str, float]
 _OnPath = tuple[float, Shape, float, float, Shape]
 
@@ -118,9 +121,9 @@ FORMS = (
     Form("dry_friction", MEMORY, "slider", _travel,
          lambda s, k, x, v, f: {"F_c_N": f, "slider": 1.0, **s}, _scaled("F_c_N", "element_stiffness_N_m"),
          {"F_c_N": False, "element_stiffness_N_m": True}),
-    Form("hysteresis", MEMORY, "Bouc-Wen, n = 2", _grid("yield_m", 0.05, 0.15, 0.35, 0.7, 1.2),
+    Form(HYSTERESIS, MEMORY, "Bouc-Wen, n = 2", _grid("yield_m", 0.05, 0.15, 0.35, 0.7, 1.2),
          lambda s, k, x, v, f: {"alpha": 0.5, **s}, _loop, {"alpha": False, "yield_m": True}),
-    Form("hysteresis", MEMORY, "Bouc-Wen, n = 1", _grid("yield_m", 0.05, 0.15, 0.35, 0.7, 1.2),
+    Form(HYSTERESIS, MEMORY, "Bouc-Wen, n = 1", _grid("yield_m", 0.05, 0.15, 0.35, 0.7, 1.2),
          lambda s, k, x, v, f: {"alpha": 0.5, "exponent": 1.0, "shape": 0.0, **s}, _loop,
          {"alpha": False, "yield_m": True, "shape": False}),
     _term("c_abs_v_N_s_m", lambda x, v, f: f / v, "v"),
@@ -146,8 +149,10 @@ class Proposal:
     promise: float
 
 
-def proposals(problem: Problem, found: Fit, paths: Sequence[Array], beside: Sequence[Member] = ()) -> list[Proposal]:
-    """Every form beside the baseline and given members, begun along the path of a fit that follows the motion.
+def proposals(
+    problem: Problem, found: Fit, paths: Sequence[Array], beside: Sequence[Member] = (), forms: Sequence[Form] = FORMS
+) -> list[Proposal]:
+    """Forms beside the baseline and given members, begun along the path of a fit that follows the motion.
 
     The force that moved the mass along the path is regressed on the rig and the form; what is left says what the form
     promises, by the logarithm of the residual's size and Schwarz's price of its parameters. The fit decides, not this.
@@ -160,6 +165,7 @@ def proposals(problem: Problem, found: Fit, paths: Sequence[Array], beside: Sequ
     paths : sequence of (n, 3) float
     beside : sequence of Member
         That the node has besides; their coordinates begin as in ``found``.
+    forms : sequence of Form
     """
     mass = float(found.node.values(found.point)[0])
     x, v = np.concatenate([p[:, 0] for p in paths]), np.concatenate([p[:, 1] for p in paths])
@@ -182,7 +188,8 @@ def proposals(problem: Problem, found: Fit, paths: Sequence[Array], beside: Sequ
     result = []
     sizes = reach, fastest, 0.3 * size
     turns = any(unit.startswith("rad") for unit in problem.pieces[0].units)
-    for form in (f for f in FORMS if _another(f, beside) and (turns or f.name != SINE)):
+    possible = [f for f in forms if (turns or f.name != SINE) and (stiff > 0.0 or f.effect != HYSTERESIS)]
+    for form in (f for f in possible if _another(f, beside)):
         along = partial(on_path, form, partial(law_along, problem, paths, first), plain, force, stiff, sizes)
         rest, shape, k, d, values = best_shape(along, form.shapes(*sizes))
         member = member_of(form, values, form.unit(shape, stiff, *sizes), reach)
@@ -240,7 +247,7 @@ def on_path(
     coefficients, _, _, _ = np.linalg.lstsq(design, force, rcond=None)
     rest = float(np.sum((force - design @ coefficients) ** 2))
     k, d, c = coefficients[0] / sizes[0], coefficients[1] / sizes[1], coefficients[-1] / norm
-    if form.effect == "hysteresis":
+    if form.effect == HYSTERESIS:
         c = c * stiffness / max(k, 1e-3 * stiffness)
     return rest, shape, k, d, form.settle(c, unit, k)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -36,6 +36,9 @@ SOURCE = "fit of the recordings"
 
 CONFLICT = 2.0
 """Prior standard deviations from which a parameter counts as pulled away from what is known of it."""
+
+EXACTLY = 1e-6
+"""Prior standard deviation of a coordinate below which it stays."""
 
 POINTS = 41
 """Of a curve."""
@@ -151,12 +154,12 @@ def exported(fit: Fit, known: ParameterSet) -> ParameterSet:
     """The parameter set that a fit stands for."""
     node, values = fit.node, fit.node.values(fit.point)
     stds = np.sqrt(np.maximum(np.diag(fit.covariance), 0.0)) * np.abs(node.slopes(fit.point))
+    of_baseline = np.sqrt(np.maximum(np.diag(baseline_covariance(fit, known)), 0.0))
     changes: dict[str, Estimate] = {}
     for k, c in enumerate(node.baseline):
-        if c.std < 1e-6:
+        if c.std < EXACTLY:
             continue
-        std = float(stds[k])
-        changes[c.name] = replace(known[c.name], value=float(values[k]), std=std, source=SOURCE)
+        changes[c.name] = replace(known[c.name], value=float(values[k]), std=float(of_baseline[k]), source=SOURCE)
     known = with_further_bodies(fit, known.updated(changes))
     place = {id(c): k for k, c in enumerate(node.coordinates)}
     blocks: dict[str, dict[str, Estimate]] = {}
@@ -165,8 +168,11 @@ def exported(fit: Fit, known: ParameterSet) -> ParameterSet:
     for effect, full in effects_of(node, fit.point).items():
         if effect in {m.id for m in bodies}:
             continue
+        fitted = {c.name for m in held if m.id == effect for c in m.coordinates}
         units = {p.name: p.unit for p in CATALOGUE[effect].parameters}
-        blocks[effect] = {n: Estimate(float(v), None, units[n], "not fitted", fixed=True) for n, v in full.items()}
+        blocks[effect] = {
+            n: Estimate(float(full[n]), None, units[n], "not fitted", fixed=True) for n in needed(effect, full, fitted)
+        }
     for member in held:
         for c in member.coordinates if member.id in blocks and not member.tables else ():
             k = place[id(c)]
@@ -177,16 +183,46 @@ def exported(fit: Fit, known: ParameterSet) -> ParameterSet:
     return replace(known, effects={at_element(i, elements.get(i, "")): block for i, block in blocks.items()})
 
 
+def needed(effect: str, values: Mapping[str, float], fitted: Collection[str]) -> list[str]:
+    """Parameters of an effect from which a file is read back as it is: the fitted ones, and those others that the
+    catalogue does not set as they are by itself."""
+    names = {name for name in values if name in fitted}
+    while True:
+        given = CATALOGUE[effect].begun({name: values[name] for name in names})
+        missing_yet = {name for name, value in values.items() if given[name] != value} - names
+        if not missing_yet:
+            return [name for name in values if name in names]
+        names |= missing_yet
+
+
+def baseline_covariance(fit: Fit, known: ParameterSet) -> Array:
+    """Covariance of the baseline's parameters in their units, (k, k) float.
+
+    Where no force was measured a rig's mass scales all and stays: what is not known of it is not known of damping and
+    stiffness either.
+    """
+    node, count = fit.node, len(fit.node.baseline)
+    slopes, values = node.slopes(fit.point)[:count], node.values(fit.point)[:count]
+    covariance = fit.covariance[:count, :count] * np.outer(slopes, slopes)
+    mass = known[node.baseline[0].name]
+    if len(node.layout.bodies) == 1 and node.baseline[0].std < EXACTLY and mass.std and not mass.fixed:
+        share = mass.std / float(mass.value)
+        covariance = covariance + share**2 * np.outer(values, values)
+    return covariance
+
+
 def named_effects(decision: Decision, chosen: Row, after: ParameterSet) -> tuple[NamedEffect, ...]:
     assert chosen.fit is not None
     found = []
     for member in chosen.fit.node.members:
         effect = member.id if decision.listed else "unlisted"
         further = member in riders(chosen.fit)
-        values = mode_parameters(chosen.fit, member) if further else {} if member.tables else _shown(member, after)
+        block = {} if member.tables else after.effects.get(at_element(member.id, member.element), {})
+        values = mode_parameters(chosen.fit, member) if further else dict(block)
         if effect == "unlisted":
             values = {name: e for name, e in values.items() if not e.fixed}
-        text = law(effect, values) if values else "F = f(s, v), drawn"
+        drawn = curve(chosen.fit, member)
+        text = law(effect, values) if values else "F = f(s, v), drawn" if drawn else ""
         kind = member.kind.replace("_", " ")
         sentence = told(effect, values) if values else f"Something of the kind {kind} acts that no listed law makes."
         if further:
@@ -195,16 +231,10 @@ def named_effects(decision: Decision, chosen: Row, after: ParameterSet) -> tuple
             NamedEffect(
                 effect, sentence, text, values | _riding_mass(values, after), min(decision.confidence, 1.0),
                 decision.ties, member.form,
-                kind=member.kind, element=element_of(member), curve=curve(chosen.fit, member),
+                kind=member.kind, element=element_of(member), curve=drawn,
             )
         )  # fmt: skip
     return tuple({e.id: e for e in reversed(found)}.values())[::-1]
-
-
-def _shown(member: Member, after: ParameterSet) -> dict[str, Estimate]:
-    """What its formula has: what was fitted, and what the formula holds."""
-    own = {c.name for c in member.coordinates} | set(member.law or {})
-    return {name: e for name, e in after.effects[at_element(member.id, member.element)].items() if name in own}
 
 
 def _riding_mass(values: Mapping[str, Estimate], after: ParameterSet) -> dict[str, Estimate]:
@@ -251,7 +281,7 @@ def conflicting(fit: Fit) -> tuple[Conflict, ...]:
     """What the baseline's fit pulls away from what is known of it."""
     found = []
     for c, at in zip(fit.node.baseline, fit.point, strict=False):
-        if c.std > 0.5 or c.std < 1e-6:
+        if c.std > 0.5 or c.std < EXACTLY:
             continue
         sigmas = (float(at) - c.mean) / c.std
         if abs(sigmas) > CONFLICT:

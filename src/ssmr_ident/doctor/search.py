@@ -18,7 +18,6 @@ from ssmr_ident.doctor.fitted import (
     again,
     carried,
     finished,
-    from_paths,
     joined,
     offered_back,
     offered_up,
@@ -29,15 +28,12 @@ from ssmr_ident.doctor.networks import members_of_network
 from ssmr_ident.doctor.rules import FORMULA, TIE
 from ssmr_ident.doctor.second import FULL_KINDS, exchanged, paired, second
 from ssmr_ident.doctor.table import Row
+from ssmr_ident.estimate.baseline import baseline_fit
 from ssmr_ident.estimate.coarser import coarser
 from ssmr_ident.estimate.exact import polish
-from ssmr_ident.estimate.latent_force import network_paths
-from ssmr_ident.estimate.network import baseline_fit, paths_of
-from ssmr_ident.estimate.node import Node
+from ssmr_ident.estimate.network import paths_of
 from ssmr_ident.estimate.noise import left_white, own_noise
-from ssmr_ident.estimate.regression import regressed
 from ssmr_ident.estimate.shooting import shot
-from ssmr_ident.estimate.smoother import smoothed
 from ssmr_ident.estimate.stretches import in_stretches, predictable, sampled
 from ssmr_ident.estimate.values import Fit, Problem, Start, Stop, with_noises
 from ssmr_ident.physics.network import ONE
@@ -66,14 +62,9 @@ def searched(problem: Problem, budget: float = math.inf, progress: Progress | No
     problem, begins = sampled(coarser(whole))
     search = Search(problem, time.monotonic() + budget)
     say("fitting the baseline", 0, 1)
+    base = search.add(baseline_fit(problem))
+    paths = paths_of(problem, base.node, base.point)
     alone = problem.layout == ONE
-    if alone:
-        paths = [smoothed(p, problem.frequency, problem.size) for p in problem.pieces]
-        baseline = Node(problem.baseline)
-        base = search.add(from_paths(problem, baseline, regressed(problem, paths, baseline), paths))
-    else:
-        base = search.add(baseline_fit(problem))
-        paths = network_paths(problem, base.node, base.point)
     say("fitting the baseline", 1, 1)
     members = kinds(problem, paths) if alone else members_of_network(problem, base, paths)
     short = []

@@ -1,4 +1,4 @@
-"""A network's recordings as one inverse problem, and its linear model fitted to them."""
+"""A network's recordings as one inverse problem."""
 
 from __future__ import annotations
 
@@ -12,12 +12,11 @@ from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.estimate.exact import polish
 from ssmr_ident.estimate.latent_force import network_paths
 from ssmr_ident.estimate.node import Coordinate, Node
-from ssmr_ident.estimate.noise import left_white, own_noise
 from ssmr_ident.estimate.problem import VAGUE, known_bandwidth, made, seen_hz
 from ssmr_ident.estimate.shooting import shot
 from ssmr_ident.estimate.simulated import Compiled, simulate
 from ssmr_ident.estimate.smoother import smoothed
-from ssmr_ident.estimate.values import Fit, Problem, Start, with_noises
+from ssmr_ident.estimate.values import Fit, Problem, Start
 from ssmr_ident.experiments.campaign import Measurement
 from ssmr_ident.physics.network import ONE, Layout, Network, layout_of, network_from_parameters
 
@@ -82,21 +81,6 @@ def bare(network: Network) -> Node:
     return Node(fixed, layout=network.layout)
 
 
-def baseline_fit(problem: Problem, point: Array | None = None) -> Fit:
-    """The linear network on its recordings: multiple shooting from a path with a latent force, then the exact motion.
-
-    Parameters
-    ----------
-    problem : Problem
-    point : (k,) float, optional
-        Where it begins; by default at what is known.
-    """
-    node = Node(problem.baseline, layout=problem.layout)
-    point = np.array([c.mean for c in problem.baseline]) if point is None else point
-    begun = shot(problem, node, Start(point, paths=tuple(network_paths(problem, node, point))))
-    return polish(problem, node, begun, STEPS)
-
-
 def paths_of(problem: Problem, node: Node, point: Array) -> list[Array]:
     """Paths from which multiple shooting begins: of one mass without any model of it, of a network by what is known."""
     if problem.layout == ONE:
@@ -118,14 +102,6 @@ def motion_of(problem: Problem, found: Fit) -> list[Array]:
         zero = float(nuisance[n]) if piece.driven else 0.0
         paths.append(simulate(model, index, nuisance[None, :n].copy(), np.array([0, len(piece.y)]), zero).y)
     return paths
-
-
-def under_own_noise(problem: Problem, fit: Fit) -> tuple[Problem, Fit]:
-    """The problem under the noise that a fit leaves, and the fit again."""
-    white = left_white(problem, fit)
-    fit = polish(white, fit.node, Start(fit.point, fit.nuisances), STEPS)
-    own = with_noises(white, own_noise(white, fit))
-    return own, polish(own, fit.node, Start(fit.point, fit.nuisances), STEPS)
 
 
 def followed(problem: Problem, node: Node, point: Array) -> Fit:

@@ -12,7 +12,7 @@ from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.estimate.node import Coordinate
 from ssmr_ident.estimate.noise import first_white
-from ssmr_ident.estimate.pieces import ORDER, Piece, channels_of, pieces_of
+from ssmr_ident.estimate.pieces import ORDER, Piece, channels_of, fastest_part, pieces_of
 from ssmr_ident.estimate.values import Problem
 from ssmr_ident.experiments.campaign import Measurement
 from ssmr_ident.physics.rig import RIG_KEYS
@@ -27,11 +27,14 @@ BANDWIDTH = "accelerometer.bandwidth_hz"
 VAGUE = 1.0
 """Standard deviation of the logarithm of a mass or stiffness of which the file says no uncertainty."""
 
+VAGUE_DAMPING = 3.0
+"""The same of a damping, in critical ones over two."""
+
 FAR = 3.0
 """Factor between the file's natural frequency and the motion's from which the motion is believed."""
 
 
-def problem_of(measurements: Sequence[Measurement], parameters: ParameterSet) -> Problem:
+def problem_of(measurements: Sequence[Measurement], parameters: ParameterSet, sharpest: float = 1.0) -> Problem:
     """Prepare recordings of a rig.
 
     Parameters
@@ -39,6 +42,8 @@ def problem_of(measurements: Sequence[Measurement], parameters: ParameterSet) ->
     measurements : sequence of Measurement
     parameters : ParameterSet
         Mass, damping, stiffness, as known.
+    sharpest : float
+        Times the frequency of the motion up to which the force is followed on a mass that no spring holds.
     """
     frequency = natural_hz(parameters)
     seen = [seen_hz(m) for m in measurements]
@@ -46,7 +51,10 @@ def problem_of(measurements: Sequence[Measurement], parameters: ParameterSet) ->
     if not 1.0 / FAR < frequency / moving < FAR:
         frequency = moving
     bandwidth = known_bandwidth(measurements, parameters)
-    problem = made(measurements, (), (), frequency, max(frequency, moving), bandwidth)
+    fastest = max(frequency, moving)
+    if not natural_hz(parameters):
+        fastest = max(fastest, *(min(drive_hz(m), sharpest * moving) for m in measurements))
+    problem = made(measurements, (), (), frequency, fastest, bandwidth)
     driven = any(p.driven and not p.based for p in problem.pieces)
     return replace(problem, baseline=baseline_of(parameters, driven, problem.size, frequency))
 
@@ -92,7 +100,7 @@ def baseline_of(parameters: ParameterSet, driven: bool, size: float, frequency: 
     spread = (mass.std / m if mass.std else VAGUE) if driven and not mass.fixed else 0.0
     found = [Coordinate(keys[0], m, True, 0.05 * m, 20.0 * m, 0.0, spread or 1e-9, mass.unit)]
     unit, value = m * omega, float(damping.value)
-    known = damping.std / unit if damping.std else 3.0
+    known = damping.std / unit if damping.std else VAGUE_DAMPING
     known = 1e-9 if damping.fixed else known
     found.append(Coordinate(keys[1], unit, False, 0.0, 50.0 * unit, value / unit, known, damping.unit))
     k = float(stiffness.value)
@@ -123,6 +131,15 @@ def seen_hz(measurement: Measurement) -> float:
     if weight.sum() <= 0.0:
         return float(frequency[int(np.argmax(power[1:])) + 1])
     return float(np.interp(0.5, np.cumsum(weight) / weight.sum(), frequency))
+
+
+def drive_hz(measurement: Measurement) -> float:
+    """Fastest part of the force on a mass that no spring holds, which has no frequency of its own; 0 without a force.
+
+    A jump of friction lasts as long as the force takes to turn the motion.
+    """
+    _, drive = channels_of(measurement.recording)
+    return fastest_part(measurement.recording[drive], measurement.recording.sample_rate) if drive else 0.0
 
 
 def _size(piece: Piece, frequency: float) -> float:

@@ -14,7 +14,7 @@ from ssmr_ident.core.recording import Recording
 from ssmr_ident.core.shown import Shown
 from ssmr_ident.experiments import BASE_MOTION, EXPERIMENTS
 from ssmr_ident.experiments.experiment import BASES, RIGS, Experiment
-from ssmr_ident.experiments.quantities import UNITS, to_quantities
+from ssmr_ident.experiments.quantities import UNITS, restricted, to_quantities
 from ssmr_ident.experiments.releases import parts_of, release_sentence
 from ssmr_ident.experiments.together import Log, merged, one_of_each, undelayed
 from ssmr_ident.physics.network import NETWORK, bodies_of
@@ -144,6 +144,8 @@ def _measure(session: Session, entry: Entry, accelerometer: Accelerometer) -> Me
     else:
         options = read_options(entry, entry.channels)
         recording = to_quantities(read_one(session.folder / entry.file, options), entry, accelerometer)
+        if session.baseline in RIGS:
+            recording = restricted(recording, entry)
         recording = on_its_clock(recording, EXPERIMENTS[entry.experiment]).on_even_grid()
     if any(entry.delay_s.values()):
         recording = undelayed(recording, entry.delay_s)

@@ -11,7 +11,7 @@ from ssmr_ident.core.recording import Channel, Note, Recording
 from ssmr_ident.physics.sensor import Accelerometer
 from ssmr_ident.readers.health import ends_of_supply
 from ssmr_ident.session import Entry
-from ssmr_ident.session.entry import FURTHER
+from ssmr_ident.session.entry import FURTHER, MOTIONS
 
 UNITS = {
     **{"force": "N", "torque": "N m", "position": "m", "position_reference": "m", "velocity": "m/s"},
@@ -50,6 +50,13 @@ def to_quantities(recording: Recording, entry: Entry, accelerometer: Acceleromet
             )
         channels.append(channel)
     return recording.with_channels(channels, *notes)
+
+
+def restricted(recording: Recording, entry: Entry) -> Recording:
+    """Of a rig's log only the motions that its entry names, where it names any; all where it names none."""
+    named = {*entry.channels} & {*MOTIONS, *FURTHER}
+    kept = [c for c in recording.channels if c.name in named or c.name not in (*MOTIONS, *FURTHER)]
+    return recording.with_channels(kept) if named else recording
 
 
 def _renamed(recording: Recording, entry: Entry) -> list[Channel]:

@@ -19,6 +19,10 @@ from ssmr_ident.signals.noise import nuisance_columns
 
 Array = np.ndarray
 
+PERIODS, FALL = 2.5, 0.2
+"""That a window lasts at least, a third of a short record but one period; and by which share a motion falls in it, for
+a window in which it does not fall tells no damping."""
+
 
 @dataclass(frozen=True)
 class Backbone(Shown):
@@ -55,12 +59,12 @@ class Backbone(Shown):
     def __str__(self) -> str:
         lines = ["  amplitude   omega_n rad/s          xi"]
         for row in zip(self.amplitude, self.omega_n, self.omega_n_std, self.xi, self.xi_std, strict=True):
-            lines.append("  {:9.4g}   {:8.4f} ± {:<8.2g}  {:8.4f} ± {:.2g}".format(*row))
+            lines.append("  {:9.4g}   {:8.4f} ± {:<8.2g}  {:<9.4g} ± {:.2g}".format(*row))
         lines.append(f"  small amplitudes: {self.small_omega_n:.4f} ± {self.small_omega_n_std:.2g} rad/s")
         return "\n".join(lines)
 
 
-def backbone(time: Array, samples: Array, fit: DecayFit, periods: float = 2.5, channel: int = 0) -> Backbone | None:
+def backbone(time: Array, samples: Array, fit: DecayFit, channel: int = 0) -> Backbone | None:
     """Local frequency and damping of the dominant mode.
 
     Parameters
@@ -70,8 +74,6 @@ def backbone(time: Array, samples: Array, fit: DecayFit, periods: float = 2.5, c
         The record that was fitted.
     fit : DecayFit
         Of this record alone.
-    periods : float
-        Length of a window; a third of a short record, but one period at least.
     channel : int
 
     Returns
@@ -83,12 +85,9 @@ def backbone(time: Array, samples: Array, fit: DecayFit, periods: float = 2.5, c
     step = float(time[-1] - time[0]) / (len(time) - 1)
     begin = int(np.searchsorted(time, fit.starts_s[0] - step / 2))
     mode = fit.dominant
-    frequency = mode.omega_n * np.sqrt(max(1 - mode.xi**2, 1e-6))
-    period = 2 * np.pi / frequency / step
-    width = max(24, round(min(periods * period, max(period, (len(series) - begin) / 3))))
     lines = () if fit.mains_hz[0] is None else (fit.mains_hz[0],)
     # Other modes and offset come from the whole record, so that short windows need not find them.
-    columns = nuisance_columns(time - time[begin], lines)
+    columns = nuisance_columns(time - time[begin], lines)[:, 1:]
     others = np.zeros(len(series))
     for other in fit.modes:
         if other is not mode:
@@ -100,13 +99,42 @@ def backbone(time: Array, samples: Array, fit: DecayFit, periods: float = 2.5, c
                 * np.sin(turn * since + other.phases[0, channel])
             )
     cleaned = series - others - fit.offsets[0, channel]
-    noise = fit.noise_stds[0, channel]
+    return along(
+        cleaned[begin:], step, mode.omega_n, mode.xi, fit.noise_stds[0, channel], columns[begin:] if lines else None
+    )
+
+
+def along(
+    samples: Array, step: float, natural: float, ratio: float, noise: float, lines: Array | None = None
+) -> Backbone | None:
+    """Local frequency and damping of a single mode.
+
+    Parameters
+    ----------
+    samples : (n,) float
+        From its release on, about zero.
+    step : float [s]
+    natural : float [rad/s]
+    ratio : float
+        Frequency and damping ratio of the whole record.
+    noise : float
+        Standard deviation of white noise.
+    lines : (n, k) float, optional
+        What every window has besides: mains lines.
+
+    Returns
+    -------
+    Backbone, or None where fewer than four windows stand above the noise.
+    """
+    frequency, rate = natural * np.sqrt(max(1 - ratio**2, 1e-6)), ratio * natural
+    period = 2 * np.pi / frequency / step
+    wanted = max(PERIODS * period, FALL / max(rate * step, 1e-300))
+    width = max(24, round(min(wanted, max(period, len(samples) / 3))))
     found = []
-    rate = mode.decay_rate
-    for first in range(begin, len(series) - width, max(1, width // 2)):
+    for first in range(0, len(samples) - width, max(1, width // 2)):
         part = slice(first, first + width)
-        nuisances = columns[part, 1:] if lines else np.zeros((width, 0))
-        block = Block(0.0, step, cleaned[part, None], nuisances)
+        nuisances = np.zeros((width, 0)) if lines is None else lines[part]
+        block = Block(0.0, step, samples[part, None], nuisances)
         local = fit_poles([block], np.array([rate]), np.array([frequency]))
         size = float(np.hypot(*local.coefficients[0][:2, 0]))
         turn, fall = float(local.frequencies[0]), float(local.rates[0])
@@ -115,10 +143,10 @@ def backbone(time: Array, samples: Array, fit: DecayFit, periods: float = 2.5, c
         residual = block.samples - modelled(block, local, 0)
         variance = max(float(np.sum(residual**2)) / (width - 4), noise**2)
         spread = np.linalg.inv(local.information) * variance
-        natural = float(np.hypot(turn, fall))
-        jacobian = np.array([[fall / natural, turn / natural], [turn**2 / natural**3, -fall * turn / natural**3]])
+        own = float(np.hypot(turn, fall))
+        jacobian = np.array([[fall / own, turn / own], [turn**2 / own**3, -fall * turn / own**3]])
         stds = np.sqrt(np.diag(jacobian @ spread @ jacobian.T))
-        found.append((size * np.exp(-fall * width * step / 2), natural, stds[0], fall / natural, stds[1]))
+        found.append((size * np.exp(-fall * width * step / 2), own, stds[0], fall / own, stds[1]))
     if len(found) < 4:
         return None
     amplitude, omega, omega_std, xi, xi_std = np.array(found).T

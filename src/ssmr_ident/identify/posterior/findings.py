@@ -62,13 +62,24 @@ def posterior_findings(
 
 
 def _trade_offs(posterior: Posterior, hidden: Collection[str]) -> list[str]:
-    """Sentences on the two strongest correlations, and how many more there are."""
     names = [unknown.name for unknown in posterior.unknowns]
+    told = [k for k, name in enumerate(names) if name not in hidden]
+    return trade_offs([names[k] for k in told], posterior.correlations[np.ix_(told, told)])
+
+
+def trade_offs(names: Sequence[str], correlations: np.ndarray) -> list[str]:
+    """Sentences on the two strongest correlations, and how many more there are.
+
+    Parameters
+    ----------
+    names : sequence of str
+    correlations : (n, n) float
+    """
     pairs = [
-        (float(posterior.correlations[i, j]), names[j], names[i])
+        (float(correlations[i, j]), names[j], names[i])
         for i in range(len(names))
         for j in range(i)
-        if abs(posterior.correlations[i, j]) > TRADE_OFF and not {names[i], names[j]} & set(hidden)
+        if abs(correlations[i, j]) > TRADE_OFF
     ]
     pairs.sort(key=lambda pair: -abs(pair[0]))
     found = []

@@ -1,4 +1,4 @@
-"""A network's session, or a rig's that is judged in a band: every recording at once to masses, springs and dampers."""
+"""A network's session (``baseline: network``): every recording at once to masses, springs and dampers."""
 
 from __future__ import annotations
 
@@ -15,8 +15,9 @@ from ssmr_ident.doctor.left import beyond
 from ssmr_ident.doctor.result import conflicting, exported, predictions
 from ssmr_ident.doctor.rules import OVER_NOISE
 from ssmr_ident.doctor.table import over_noise
-from ssmr_ident.estimate.network import EXACTLY, baseline_fit, network_problem, under_own_noise
-from ssmr_ident.estimate.problem import problem_of
+from ssmr_ident.estimate.baseline import fitted_baseline
+from ssmr_ident.estimate.clipped import within_range
+from ssmr_ident.estimate.network import EXACTLY, network_problem
 from ssmr_ident.estimate.values import Fit, Problem
 from ssmr_ident.experiments.campaign import Campaign, Measurement
 from ssmr_ident.physics.network import network_from_parameters
@@ -40,15 +41,15 @@ def fit_network_session(campaign: Campaign, chosen: tuple[Measurement, ...]) -> 
     """
     known = campaign.parameters
     if known.effects:
-        mend = "Leave effects: out here; ident diagnose fits them"
-        raise InputError(f"{known.file}: effects", "are not fitted with a network, or in a band", mend)
-    problem = (network_problem if known.between else problem_of)(chosen, known)
-    problem, fit = under_own_noise(problem, baseline_fit(problem))
+        mend = "Leave effects: out here; ident diagnose fits them beside the network"
+        raise InputError(f"{known.file}: effects", "are not fitted with a network", mend)
+    problem, clipped = within_range(network_problem(chosen, known), chosen)
+    problem, fit = fitted_baseline(problem)
     fitted = exported(fit, known)
     stds = np.sqrt(np.maximum(np.diag(fit.covariance), 0.0))
     free = [k for k, c in enumerate(fit.node.baseline) if c.std > EXACTLY]
     told = [k for k in free if stds[k] < LEARNT * fit.node.baseline[k].std]
-    findings = list(campaign.found)
+    findings = [*campaign.found, *clipped]
     findings += [f"{fit.node.baseline[k].name} keeps its prior: these recordings do not tell it"
                  for k in free if k not in told]  # fmt: skip
     far = beyond(problem, fit) if over_noise(problem, fit) >= OVER_NOISE else None

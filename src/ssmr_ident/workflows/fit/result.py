@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ssmr_ident.core.atomic import write_text
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.core.shown import Shown
 from ssmr_ident.identify.lmfit_report import Variable, variables_frame
@@ -93,12 +94,16 @@ class SessionFit(Shown):
     def write_figures(self, folder: Path) -> tuple[Path, ...]:
         """Draw decays under their envelopes, frequency and damping over amplitude, each pull taken apart.
 
+        Frequency and damping over amplitude are also a table, ``over_amplitude.csv``.
+
         Parameters
         ----------
         folder : Path
             Made where it is missing.
         """
         drawn = [save(backbone_figure(self.backbones), folder / "backbone")] if self.backbones else []
+        if self.backbones:
+            write_text(folder / "over_amplitude.csv", over_amplitude(self.backbones))
         return (
             *drawn,
             *(
@@ -130,6 +135,18 @@ class SessionFit(Shown):
             "parameters_in_conflict": [dict(conflict) for conflict in self.conflicts],
             "findings": list(self.findings),
         }
+
+
+def over_amplitude(backbones: Sequence[NamedBackbone]) -> str:
+    """Frequency and damping of every window of every decay, comma-separated."""
+    lines = ["recording,motion,amplitude,unit,omega_n_rad_s,omega_n_std_rad_s,xi,xi_std"]
+    for own in backbones:
+        trend = own.backbone
+        columns = (trend.amplitude, trend.omega_n, trend.omega_n_std, trend.xi, trend.xi_std)
+        for amplitude, *rest in zip(*columns, strict=True):
+            numbers = ",".join(f"{value:.8g}" for value in rest)
+            lines.append(f'"{own.name}",{own.group},{amplitude:.8g},{own.unit},{numbers}')
+    return "\n".join(lines) + "\n"
 
 
 def _plain(value: Any) -> Any:

@@ -74,12 +74,11 @@ def fit_campaign(
     if parameters is not None:
         campaign = replace(campaign, parameters=parameters)
     chosen = fitted_measurements(campaign)
-    banded = any(m.entry.band_hz for m in chosen)
-    if campaign.session.baseline == "sdof" and not banded:
+    if campaign.session.baseline == "sdof":
         step("fitting the rig", 0, 1)
         fit = fit_rig_session(campaign, chosen, coulomb)
         step("fitting the rig", 1, 1)
-    elif campaign.session.baseline == NETWORK or banded:
+    elif campaign.session.baseline == NETWORK:
         step("fitting the network", 0, 1)
         fit = fit_network_session(campaign, chosen)
         step("fitting the network", 1, 1)

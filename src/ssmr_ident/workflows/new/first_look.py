@@ -10,10 +10,10 @@ import numpy as np
 from scipy.signal import csd
 
 from ssmr_ident.core.errors import InputError
+from ssmr_ident.estimate.pieces import order_of
 from ssmr_ident.experiments.releases import cut, parts_of
 from ssmr_ident.identify.decays.backbone import backbone
 from ssmr_ident.identify.decays.fit import fit_decay
-from ssmr_ident.identify.rigs.frequency_domain import DERIVATIVES
 from ssmr_ident.signals.grid import even_samples
 from ssmr_ident.workflows.new.log import ALL_MOTIONS, LogGuess
 
@@ -69,7 +69,7 @@ def _driven(guesses: Sequence[LogGuess]) -> FirstLook | None:
         )
         motion = _motion(guess)
         if force and motion:
-            parts.append(_response(recording.time, recording[force], recording[motion], DERIVATIVES[motion]))
+            parts.append(_response(recording.time, recording[force], recording[motion], order_of(motion)))
     found = _fitted([part for part in parts if part is not None])
     if found is None:
         return None
@@ -126,7 +126,7 @@ def _decay(time: np.ndarray, samples: np.ndarray) -> tuple[float, float] | None:
 
 
 def _motion(guess: LogGuess) -> str:
-    return next((name for name in ALL_MOTIONS if name in guess.recording and name in DERIVATIVES), "")
+    return next((name for name in ALL_MOTIONS if name in guess.recording and name != "position_reference"), "")
 
 
 def _response(

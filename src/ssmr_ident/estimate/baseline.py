@@ -1,0 +1,52 @@
+"""The linear rig or network on its recordings: what ``ident fit`` says, and what a diagnosis begins with."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ssmr_ident.estimate.coarser import coarser
+from ssmr_ident.estimate.exact import polish
+from ssmr_ident.estimate.network import paths_of
+from ssmr_ident.estimate.node import Node
+from ssmr_ident.estimate.noise import left_white, own_noise
+from ssmr_ident.estimate.regression import regressed
+from ssmr_ident.estimate.shooting import shot
+from ssmr_ident.estimate.stretches import sampled
+from ssmr_ident.estimate.values import Fit, Problem, Start, with_noises
+from ssmr_ident.physics.network import ONE
+
+STEPS = 25
+"""Gauss-Newton steps."""
+
+
+def baseline_fit(problem: Problem) -> Fit:
+    """Multiple shooting from paths, then the exact motion.
+
+    A rig begins at a regression of the force along its path, whatever the file says, and a network at what is known.
+    """
+    node = Node(problem.baseline, layout=problem.layout)
+    known = np.array([c.mean for c in problem.baseline])
+    paths = paths_of(problem, node, known)
+    begin = regressed(problem, paths, node) if problem.layout == ONE else known
+    return polish(problem, node, shot(problem, node, Start(begin, paths=tuple(paths))), STEPS)
+
+
+def fitted_baseline(problem: Problem) -> tuple[Problem, Fit]:
+    """The baseline on every sample under the noise that it leaves, and the problem with that noise.
+
+    It begins, as a search does, with means of several samples and with stretches of long recordings.
+    """
+    few, begins = sampled(coarser(problem))
+    return under_own_noise(problem, on_every_sample(problem, baseline_fit(few), begins))
+
+
+def on_every_sample(problem: Problem, fit: Fit, begins: tuple[int, ...]) -> Fit:
+    """A fit of fewer samples to its end on all; ``begins`` are the numbers of each recording's first stretch."""
+    return polish(problem, fit.node, Start(fit.point, tuple(fit.nuisances[k] for k in begins)), STEPS)
+
+
+def under_own_noise(problem: Problem, fit: Fit) -> tuple[Problem, Fit]:
+    """The problem under the noise that a fit leaves, and the fit again."""
+    white = left_white(problem, fit)
+    own = with_noises(white, own_noise(white, fit))
+    return own, polish(own, fit.node, Start(fit.point, fit.nuisances), STEPS)

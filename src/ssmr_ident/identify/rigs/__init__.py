@@ -1,1 +1,0 @@
-"""A rig's mass, spring and damper from measured force and motion."""
