@@ -12,7 +12,7 @@ from ssmr_ident.core.recording import Channel, Provenance, Recording
 from ssmr_ident.diagnose.setup import unknowns_of
 from ssmr_ident.doctor.decays.linear import fit_linear, system
 from ssmr_ident.doctor.decays.recordings import Decay, decay_of, segmented, thinned
-from ssmr_ident.doctor.decays.run import WEIGHED, alone, diagnose, diagnose_linear
+from ssmr_ident.doctor.decays.run import WEIGHED, alone, diagnose, diagnose_certain
 from ssmr_ident.doctor.table import Row
 from ssmr_ident.experiments import Scenario
 from ssmr_ident.experiments.campaign import Campaign, Measurement
@@ -165,7 +165,7 @@ def test_a_linear_effect_answers_alone() -> None:
 @pytest.mark.slow
 def test_a_displaced_centre_of_mass_is_named_with_what_to_weigh() -> None:
     offset = {"offset_x_m": 0.02, "offset_y_m": -0.015}
-    found = diagnose_linear(released({"com_offset": offset}, trials=2), KNOWN)
+    found = diagnose_certain(released({"com_offset": offset}, trials=2), KNOWN)
     assert found is not None
     (effect,) = found.effects
     assert effect.id == "com_offset"
@@ -178,13 +178,16 @@ def test_a_displaced_centre_of_mass_is_named_with_what_to_weigh() -> None:
 def test_relaxing_tires_are_simulated_from_what_closed_form_has_found() -> None:
     """The simulator's branches hold a share of the release, closed form's anything."""
     branch = {"K_m_N_m": 2e3, "tau_s": 0.03}
-    found = diagnose_linear(released({"viscoelastic_relaxation": branch}, trials=2), KNOWN)
+    found = diagnose_certain(released({"viscoelastic_relaxation": branch}, trials=2), KNOWN)
     assert found is not None
     assert [effect.id for effect in found.effects] == ["viscoelastic_relaxation"]
     assert found.heldout.after < 1.3 * found.heldout.noise_floor
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("effects", [{}, {"nonlinear_stiffness": {"k3_N_m3": 1.5e9}}], ids=["nothing", "hardening"])
-def test_what_no_linear_effect_explains_is_left_to_the_search_over_laws(effects) -> None:
-    assert diagnose_linear(released(effects, trials=2), KNOWN) is None
+def test_hardening_is_named_by_itself_and_nothing_is_left_to_the_search_over_all() -> None:
+    found = diagnose_certain(released({"nonlinear_stiffness": {"k3_N_m3": 1.5e9}}, trials=2), KNOWN)
+    assert found is not None
+    assert [effect.id for effect in found.effects] == ["nonlinear_stiffness"]
+    assert found.heldout.after < 1.3 * found.heldout.noise_floor
+    assert diagnose_certain(released({}, trials=2), KNOWN) is None

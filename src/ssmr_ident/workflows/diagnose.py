@@ -89,12 +89,12 @@ def _diagnosed(
         from ssmr_ident.diagnose.turning import diagnose_turning
 
         return diagnose_turning(campaign, known, seed, progress)
-    from ssmr_ident.doctor.decays.run import diagnose_linear, of_free_responses
+    from ssmr_ident.doctor.decays.run import diagnose_certain, of_free_responses
 
     if of_free_responses(campaign):
-        linear = diagnose_linear(campaign, known, seed, progress)
-        if linear is not None:
-            return linear
+        found = diagnose_certain(campaign, known, seed, progress)
+        if found is not None:
+            return found
     from ssmr_ident.diagnose.arranged import arranged
     from ssmr_ident.diagnose.assemble import assembled
     from ssmr_ident.diagnose.engine import examine

@@ -84,6 +84,11 @@ class Search:
         return min(self.all, key=lambda f: f.cost)
 
     @property
+    def has_laws(self) -> bool:
+        """Whether laws were fitted as well."""
+        return any(not m.linear for found in self.found for m in found.members)
+
+    @property
     def samples(self) -> int:
         return sum(d.trial.size for d in self.decays)
 

@@ -23,11 +23,16 @@ STRETCH_S, FIRST_S, STRETCHES_S = 0.35, 0.7, 1.4
 """Length of the stretches that laws are fitted to, and of the first part that they are cut from: at their first steps,
 and later."""
 
-BEGUN, LED, LAST = 2, 4, 3
-"""Steps of every start, of what goes on, and on whole recordings."""
+BEGUN, LED, FURTHER, LAST = 2, 2, 4, 3
+"""Steps of every start, of what goes on (by what is louder than noise, and by all), of what is begun
+near an optimum, and on whole recordings."""
 
 STATES_FIRST = 8
 """Steps of the states at the release alone, where closed form and simulator have other ones."""
+
+TRUSTED = 0.1
+"""Share of what the model without a law leaves, in squares, that counts as noise after the law's first steps,
+where all of that does. In sizes of noise alone a robot leaves what is known of it before a law has taken its part."""
 
 FAR = 3.0
 """Standard deviations of what is known that a baseline may have moved before laws are begun from what is known."""
@@ -46,14 +51,15 @@ def stretches_of(decays: Sequence[Decay], seconds: float) -> list[Decay]:
     return [s for d in loudest(decays) for s in segmented(d, STRETCH_S, seconds)]
 
 
-def begun_at(begins: Sequence[Decay], first: Found, way: Member) -> JointFit | None:
-    """A law at the begin of recordings, from where the baseline is, or where that has moved far from what is known."""
+def begun_at(begins: Sequence[Decay], first: Found, way: Member, left: float) -> JointFit | None:
+    """A law at the begin of recordings, from where the baseline is, or where that has moved far from what is known;
+    ``left`` is the mean square that this leaves, in that of white noise."""
     own = first.model.as_known(first.point) if left_known(first) else first.point
     states = linear_states(begins, first.model, own)
     if states is None:
         return None
     fit = evaluate([s.trial for s in begins], way.model, np.concatenate([own, way.own]), states)
-    fit = descend(fit, BEGUN, plain=True) if np.isfinite(fit.rss) else fit
+    fit = descend(fit, BEGUN, plain=True, temper=max(left, 1.0)) if np.isfinite(fit.rss) else fit
     return fit if np.isfinite(fit.rss) else None
 
 
@@ -62,11 +68,17 @@ def left_known(fit: Found | JointFit) -> bool:
     return bool(np.abs(fit.point[: len(fit.model.physics)]).max() > FAR)
 
 
-def led_on(stretches: Sequence[Decay], fit: JointFit) -> JointFit:
-    """A law on more stretches."""
+def led_on(stretches: Sequence[Decay], fit: JointFit, left: float) -> JointFit:
+    """A law on more stretches, by what is louder than a share of what is ``left`` without it."""
     states = linear_states(stretches, fit.model, fit.point) or [np.zeros(len(STATES)) for _ in stretches]
     begun = evaluate([s.trial for s in stretches], fit.model, fit.point, states)
-    return descend(descend(begun, 1, shared=False, plain=True), LED, plain=True)
+    led = descend(begun, 1, shared=False, plain=True)
+    return descend(led, LED, plain=True, temper=max(TRUSTED * left, 1.0))
+
+
+def joined_up(fit: JointFit) -> JointFit:
+    """A law that was led on by what is louder than noise, by all of it."""
+    return descend(fit, LED, plain=True)
 
 
 def linear_states(decays: Sequence[Decay], model: Model, point: Array) -> list[Array] | None:

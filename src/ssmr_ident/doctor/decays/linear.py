@@ -141,6 +141,8 @@ def system(decays: Sequence[Decay], model: Model, point: Array, temper: float = 
         white = decay.whitened(columns[grid][: len(decay.times)]) / math.sqrt(temper)
         target = decay.trial.white_target / math.sqrt(temper)
         part = _of_decay(decay, white, target, modes, moved, sensed[sampling], scales)
+        if part is None:
+            return None
         x, rest, projected, slope = part
         chi2 += float(rest @ rest)
         cost += float(rest @ rest) + float(x @ x)
@@ -152,14 +154,18 @@ def system(decays: Sequence[Decay], model: Model, point: Array, temper: float = 
 
 def _of_decay(
     decay: Decay, white: Array, target: Array, modes: Modes, moved: Slopes, sensed: Sensed, scales: Array
-) -> tuple[Array, Array, Array, Array]:
-    """Scaled states at the release, residuals, and slopes with the states' share taken out and in."""
+) -> tuple[Array, Array, Array, Array] | None:
+    """Scaled states at the release, residuals, and slopes with the states' share taken out and in; None where no state
+    can be told, for modes fall together or grow beyond all numbers."""
     axes, k = list(decay.axes), len(modes.kept)
     read = modes.read[axes]
     amplitude = (read[:, modes.keep] * sensed.gain * modes.weight)[:, :, None] * (modes.into * scales)[modes.keep]
     columns = np.concatenate([amplitude.real, -amplitude.imag], axis=1)
     design = (white[:, :, : 2 * k] @ columns).reshape(-1, columns.shape[2])
-    factor = np.linalg.inv(np.linalg.cholesky(design.T @ design + np.eye(design.shape[1])))
+    try:
+        factor = np.linalg.inv(np.linalg.cholesky(design.T @ design + np.eye(design.shape[1])))
+    except np.linalg.LinAlgError:  # not positive definite, or not finite
+        return None
     x = factor.T @ (factor @ (design.T @ target))
     rest = target - design @ x
     own = modes.into @ (scales * x)

@@ -22,15 +22,23 @@ from ssmr_ident.doctor.decays.found import Found, Search
 from ssmr_ident.doctor.decays.linear import fit_linear
 from ssmr_ident.doctor.decays.members import EXTRA, GEOMETRY, KINDS, MEMORY, SENSOR, STATIC
 from ssmr_ident.doctor.decays.recordings import Decay, decay_of
-from ssmr_ident.doctor.decays.search import FORMULA_OVER, MATTERS, NEAR, promised_beside, searched, searched_linear
+from ssmr_ident.doctor.decays.search import (
+    FORMULA_OVER,
+    MATTERS,
+    NEAR,
+    SECOND_OVER,
+    promised_beside,
+    searched,
+    searched_in_turn,
+)
 from ssmr_ident.doctor.decide import MISSING, Decision, certain, decide
-from ssmr_ident.doctor.rules import CERTAIN, SECOND
+from ssmr_ident.doctor.rules import CERTAIN, HALVED, SECOND
 from ssmr_ident.doctor.table import Row
 from ssmr_ident.experiments.campaign import Campaign
 from ssmr_ident.identify.body.builder import RobotBuilder
 from ssmr_ident.identify.fitting.descent import descend
 from ssmr_ident.identify.fitting.joint import differentiate, evaluate
-from ssmr_ident.physics.extended import LINEAR, OFFSET
+from ssmr_ident.physics.extended import BRANCH, LINEAR, OFFSET
 from ssmr_ident.physics.slots import effect_values
 
 Progress = Callable[[str, int, int], None]
@@ -87,39 +95,57 @@ def diagnose(
         return _answer(setup, search, rows, decide([row for row, _ in rows]), known, seed)
 
 
-def diagnose_linear(
+def diagnose_certain(
     campaign: Campaign, known: ParameterSet, seed: int = 0, progress: Progress | None = None
 ) -> Diagnosis | None:
-    """The diagnosis of free responses where an effect that is linear explains them and nothing beside it promises more.
+    """The diagnosis of free responses where an effect, or two, explains them and nothing beside it promises more.
 
     Returns
     -------
     Diagnosis or None
-        None where nothing is missing, or something that is not linear may be; where the file has such effects already,
-        or some recordings only calibrate the others.
+        None where nothing is missing, or what is leaves more than noise; where the file has effects already that are
+        not linear, or some recordings only calibrate the others.
     """
     calibrated = any(m.entry.role == "calibration" for m in campaign.measurements)
     if calibrated or not set(effect_values(known)) <= set(LINEAR):
         return None
     setup, decays = _prepared(campaign, known)
-    search = searched_linear(decays, setup.model, progress)
-    if search is None:
-        return None
+    for search in searched_in_turn(decays, setup.model, progress):
+        found = _certain(setup, search, known, seed)
+        if found is not None:
+            return found
+    return None
+
+
+def _certain(setup: Setup, search: Search, known: ParameterSet, seed: int) -> Diagnosis | None:
+    """The answer that a search has so far; None where it may be another one."""
     rows = table(search)
     decision = decide([row for row, _ in rows])
     if decision.verdict != MISSING or not decision.listed or decision.chosen is None:
         return None
     chosen = next(found for row, found in rows if row is decision.chosen)
-    if not all(m.linear for m in chosen.members) or _imitates(search, chosen):
+    linear = all(m.linear for m in chosen.members)
+    if search.over(chosen) > (NEAR if linear else SECOND_OVER) or _imitates(search, chosen):
         return None
     if not alone(decision.chosen, [row for row, _ in rows]):
         return None
-    if promised_beside(search, chosen) > 2.0 * SECOND:
+    if _more_is_promised(search, chosen):
         return None
     found = _answer(setup, search, rows, decision, known, seed)
     most = GROWS if set(decision.chosen.kinds) == {GEOMETRY} else MATTERS
-    falls = all(q.after < most * q.before for q in (found.training, found.heldout))
-    return found if falls else None
+    qualities = (found.training, found.heldout)
+    falls = all(q.after < most * q.before for q in qualities)
+    follows = linear or all(q.after < SECOND_OVER * q.noise_floor for q in qualities)
+    return found if falls and follows else None
+
+
+def _more_is_promised(search: Search, chosen: Found) -> bool:
+    """Whether something beside a model is as good as certain and takes half of what that leaves beyond noise: what
+    takes less is its formula, which need not be the world's."""
+    assert chosen.fit is not None
+    promised = promised_beside(search, chosen)
+    share = 1.0 - math.exp(-promised / chosen.fit.independent)
+    return promised > 2.0 * SECOND and share > HALVED * (1.0 - search.over(chosen) ** -2)
 
 
 def alone(chosen: Row, rows: Sequence[Row]) -> bool:
@@ -134,10 +160,10 @@ def alone(chosen: Row, rows: Sequence[Row]) -> bool:
 
 def _imitates(search: Search, chosen: Found) -> bool:
     """Whether relaxation may stand for a friction or a loop that was not fitted in its place: beside another effect, or
-    where the baseline is far and more than noise is left."""
-    remembers = any(m.kind == MEMORY for m in chosen.members)
-    compared = search.over(search.baseline) < NEAR or search.over(chosen) < FORMULA_OVER
-    return remembers and (len(chosen.members) > 1 or not compared)
+    where no law was fitted and more than noise is left."""
+    relaxes = any(m.id == BRANCH for m in chosen.members)
+    compared = search.over(search.baseline) < NEAR or search.has_laws
+    return relaxes and (len(chosen.members) > 1 or not (compared or search.over(chosen) < FORMULA_OVER))
 
 
 def of_free_responses(campaign: Campaign) -> bool:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -15,17 +15,19 @@ from ssmr_ident.doctor.decays.found import Found, Search, cost_of
 from ssmr_ident.doctor.decays.laws import (
     BEGUN,
     FIRST_S,
+    FURTHER,
     LAST,
-    LED,
     STRETCHES_S,
+    TRUSTED,
     begun_at,
     exact,
+    joined_up,
     led_on,
     left_known,
     on_whole,
     stretches_of,
 )
-from ssmr_ident.doctor.decays.linear import fit_linear
+from ssmr_ident.doctor.decays.linear import LinearFit, fit_linear
 from ssmr_ident.doctor.decays.members import GEOMETRY, KINDS, Member, any_static, members
 from ssmr_ident.doctor.decays.recordings import Decay, thinned
 from ssmr_ident.doctor.rules import STATED
@@ -107,31 +109,42 @@ def searched(decays: Sequence[Decay], model: Model, progress: Progress | None = 
     return search
 
 
-def searched_linear(decays: Sequence[Decay], model: Model, progress: Progress | None = None) -> Search | None:
-    """Fit the baseline and what is linear beside it, and laws where the baseline follows the recordings.
-
-    Returns
-    -------
-    Search or None
-        None where nothing gains on the baseline, or what does leaves more than noise, or the robot falls over.
-    """
+def searched_in_turn(decays: Sequence[Decay], model: Model, progress: Progress | None = None) -> Iterator[Search]:
+    """The same, cheapest first: one linear effect, one law, two linear effects. After each of these that may be the
+    answer, what has been fitted; nothing where nothing gains on the baseline, or the robot falls over."""
     say = progress or (lambda stage, done, total: None)
     search = _begun(decays, model, say)
     if search is None:
-        return None
+        return
     _linear_beside(search, search.baseline, say)
     _offered_back(search)
-    if search.over(search.best) > SECOND_OVER:
-        for first in _firsts(search):
-            _linear_beside(search, first, say)
-        _offered_down(search)
+    if search.over(search.best) <= NEAR and _compared(search, say):
+        yield search
+    if search.over(search.best) <= SECOND_OVER:
+        return
+    if search.over(search.baseline) > NEAR:
+        _laws_beside(search, search.baseline, say)
+        _settled(search, say)
+        _other_formulas(search, say)
+        _settled(search, say)
+        _finished(search, say)
+        yield search
+    for first in _firsts(search, linear=True):
+        _linear_beside(search, first, say)
+    _offered_down(search)
+    if _compared(search, say):
+        yield search
+
+
+def _compared(search: Search, say: Progress) -> bool:
+    """Whether the best may be the answer; laws are then fitted too, where the baseline follows the recordings."""
     _finished(search, say)
     if search.over(search.best) > NEAR or not (_matters(search) or _displaced(search)):
-        return None
-    if search.over(search.baseline) < NEAR:
+        return False
+    if search.over(search.baseline) < NEAR and not search.has_laws:
         _laws_beside(search, search.baseline, say)
         _finished(search, say)
-    return search
+    return True
 
 
 def _matters(search: Search) -> bool:
@@ -160,7 +173,7 @@ def _begun(decays: Sequence[Decay], model: Model, say: Progress) -> Search | Non
     """The baseline; None where the robot as the file has it falls over."""
     decays = [d.coarse() for d in decays]
     say("fitting the baseline", 0, 1)
-    begun = fit_linear(decays, model, np.zeros(len(model.unknowns)))
+    begun = _annealed(decays, model)
     if begun is None:
         return None
     search = Search(tuple(decays), Found((), begun, exact(decays, begun, 1)))
@@ -168,8 +181,21 @@ def _begun(decays: Sequence[Decay], model: Model, say: Progress) -> Search | Non
     return search
 
 
-def _firsts(search: Search) -> list[Found]:
+def _annealed(decays: Sequence[Decay], model: Model) -> LinearFit | None:
+    """The baseline from what is known: all that this leaves of the recordings counts as noise at first, then ever less,
+    or the robot would leave what is known to follow what no robot does."""
+    fit = fit_linear(decays, model, np.zeros(len(model.unknowns)), 0)
+    temper = 0.0 if fit is None else fit.chi2 / sum(d.trial.size for d in decays)
+    while fit is not None and temper > 1.0:
+        fit = fit_linear(decays, model, fit.point, temper=temper)
+        temper *= TRUSTED
+    return None if fit is None else fit_linear(decays, model, fit.point)
+
+
+def _firsts(search: Search, linear: bool = False) -> list[Found]:
+    """The best single effect, a linear one where that is asked."""
     named = [f for f in search.found if len(f.members) == 1 and not f.members[0].generic]
+    named = [f for f in named if f.members[0].linear or not linear]
     return sorted(named, key=lambda f: f.cost)[:1]
 
 
@@ -188,8 +214,7 @@ def _members_beside(search: Search, first: Found) -> list[Member]:
 
 def _linear_beside(search: Search, first: Found, say: Progress) -> Found:
     """Linear members beside a fit, which is simulated for it."""
-    if first.fit is None:
-        first = _simulated(search, first)
+    first = _simulated(search, first)
     linear = [m for m in _members_beside(search, first) if m.linear]
     for index, name in enumerate(names := list(dict.fromkeys(m.id for m in linear))):
         say("linear members", index, len(names))
@@ -207,16 +232,19 @@ def _laws_beside(search: Search, first: Found, say: Progress) -> None:
     laws = _promising(search, first, [m for m in _members_beside(search, first) if not m.linear])
     laws += [any_static(first.fit)] if laws and not first.members else []
     begins, stretches = (stretches_of(search.decays, seconds) for seconds in (FIRST_S, STRETCHES_S))
+    left = search.over(first) ** 2
     tried: list[tuple[Member, JointFit]] = []
     for index, way in enumerate(laws):
         say("laws at the begin", index, len(laws))
-        fit = begun_at(begins, first, way)
+        fit = begun_at(begins, first, way, left)
         tried += [(way, fit)] if fit is not None else []
     least = min([_cost_on(begins, search.best), *(cost_of(f) for _, f in tried)])
     ahead = []
     for index, (member, fit) in enumerate(field := _field(tried, FIELD, HOPELESS * least)):
         say("laws on stretches", index, len(field))
-        ahead += [(member, led_on(stretches, fit))]
+        ahead += [(member, led_on(stretches, fit, left))]
+    least = min(cost_of(f) for _, f in ahead) if ahead else math.inf
+    ahead = [(member, joined_up(fit)) for member, fit in _field(ahead, LAWS, FAR_OFF * least)]
     ahead += [pair for member, fit in ahead if member.generic for pair in _parts(member, fit, laws)]
     least = min([_cost_on(stretches, search.best), *(cost_of(f) for _, f in ahead)])
     for index, (member, fit) in enumerate(going := _field(ahead, LAWS, FAR_OFF * least)):
@@ -284,6 +312,8 @@ def _cost_on(stretches: Sequence[Decay], found: Found) -> float:
 
 
 def _simulated(search: Search, found: Found) -> Found:
+    if found.fit is not None:
+        return found
     assert found.linear is not None
     simulated = replace(found, fit=exact(search.decays, found.linear, LAST))
     search.found = [simulated if f is found else f for f in search.found]
@@ -299,8 +329,9 @@ def _settled(search: Search, say: Progress) -> None:
     fit = descend(best.fit, TO_THE_END, plain=True)
     if left_known(fit):
         home = replace(fit, point=fit.model.as_known(fit.point))
-        other = on_whole(search.decays, led_on(stretches_of(search.decays, STRETCHES_S), home))
-        fit = min((fit, descend(other, LED, plain=True)), key=cost_of)
+        led = led_on(stretches_of(search.decays, STRETCHES_S), home, search.over(search.baseline) ** 2)
+        other = on_whole(search.decays, joined_up(led))
+        fit = min((fit, descend(other, FURTHER, plain=True)), key=cost_of)
     search.add(replace(best, fit=fit))
 
 
@@ -318,7 +349,7 @@ def _other_formulas(search: Search, say: Progress) -> None:
         form = ", ".join([*free, *(f"{n} = {v:g}" for n, v in held.items() if n not in free)])
         if np.isfinite(fit.rss):
             new = replace(member, form=form, model=model)
-            search.add(Found((*best.members[:-1], new), None, descend(fit, LED, plain=True)))
+            search.add(Found((*best.members[:-1], new), None, descend(fit, FURTHER, plain=True)))
 
 
 def _offered_back(search: Search) -> None:
@@ -362,7 +393,7 @@ def _parts(generic: Member, fit: JointFit, laws: Sequence[Member]) -> list[tuple
               for c, (e, n) in own.items()]  # fmt: skip
         begun = evaluate(fit.trials, law.model, np.concatenate([fit.point[:count], at]), fit.nuisances)
         if np.isfinite(begun.rss):
-            found[law.form] = (law, descend(begun, LED, plain=True))
+            found[law.form] = (law, descend(begun, FURTHER, plain=True))
     return list(found.values())
 
 

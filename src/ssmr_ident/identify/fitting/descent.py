@@ -83,6 +83,7 @@ def descend(
     settled: float = SETTLED,
     shared: bool = True,
     plain: bool = False,
+    temper: float = 1.0,
 ) -> JointFit:
     """Damped Gauss-Newton.
 
@@ -98,6 +99,9 @@ def descend(
     plain : bool
         Squares in units of the noise, in place of n ln(RSS): what a recording leaves then draws the fit all the more,
         where it would count for little. For a model that can explain all recordings and is still far from them.
+    temper : float
+        Variance of what counts as noise in plain squares, in that of the recordings' white noise: what is known of the
+        parameters then holds until a model begins to follow what moves.
     """
     rung = 0
     for _ in range(iterations):
@@ -106,8 +110,8 @@ def descend(
         enough = max(settled, SLOW * float(counted.sum()))
         first = True
         for _ in range(1 + SECANTS):
-            after, rung = best_step(fit, counted, rung, shared, plain)
-            gain = _cost(fit, counted, plain) - _cost(after, counted, plain)
+            after, rung = best_step(fit, counted, rung, shared, plain, temper)
+            gain = _cost(fit, counted, plain, temper) - _cost(after, counted, plain, temper)
             if gain < enough:
                 break
             fit, first = corrected(fit, after), False
@@ -129,19 +133,22 @@ def chatters(fit: JointFit) -> bool:
     return any(t.searched and size > LOUD for t, size in zip(fit.trials, left, strict=True))
 
 
-def _cost(fit: JointFit, counted: Array, plain: bool) -> float:
-    return fit.rss + fit.penalty if plain and np.isfinite(fit.rss) else fit.cost(counted)
+def _cost(fit: JointFit, counted: Array, plain: bool, temper: float) -> float:
+    return fit.rss / temper + fit.penalty if plain and np.isfinite(fit.rss) else fit.cost(counted)
 
 
-def best_step(fit: JointFit, counted: Array, rung: int, shared: bool, plain: bool) -> tuple[JointFit, int]:
+def best_step(
+    fit: JointFit, counted: Array, rung: int, shared: bool, plain: bool, temper: float = 1.0
+) -> tuple[JointFit, int]:
     """The lowest cost over dampings about the last one; a simulation costs a thirtieth of the slopes.
 
     Dampings are tried from a rung below the last one up until the cost rises again after it has fallen below where it
     was; where the lowest of them is the best, smaller ones too.
     """
-    best, lowest = fit, _cost(fit, counted, plain)
+    best, lowest = fit, _cost(fit, counted, plain, temper)
     first = chosen = max(rung - 1, 0)
-    curvature = Curvature.of(fit, np.ones(len(counted)) if plain else counted / fit.parts, shared)
+    weights = np.full(len(counted), 1.0 / temper) if plain else counted / fit.parts
+    curvature = Curvature.of(fit, weights, shared)
     ahead = AHEAD if all(trial.abreast for trial in fit.trials) else 1
 
     def tried(candidates: Sequence[int]) -> Iterator[tuple[int, JointFit]]:
@@ -155,7 +162,7 @@ def best_step(fit: JointFit, counted: Array, rung: int, shared: bool, plain: boo
 
     def improves(candidate: int, trial: JointFit) -> bool:
         nonlocal best, chosen, lowest
-        cost = _cost(trial, counted, plain)
+        cost = _cost(trial, counted, plain, temper)
         if not cost < lowest:
             return False
         best, chosen, lowest = trial, candidate, cost
