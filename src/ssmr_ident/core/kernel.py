@@ -27,7 +27,16 @@ class _Cache(FunctionCache):
 
 def kernel(function: Callable[..., Any]) -> Any:
     """Compile a function when it is first called, and keep what was compiled where that can be written."""
-    compiled: Any = njit(error_model="numpy", nogil=True, fastmath=False)(function)
+    return _kept(function, forceinline=False)
+
+
+def inlined(function: Callable[..., Any]) -> Any:
+    """A kernel that is written out where it is called: to hand over a tuple of arrays costs half a microsecond."""
+    return _kept(function, forceinline=True)
+
+
+def _kept(function: Callable[..., Any], forceinline: bool) -> Any:
+    compiled: Any = njit(error_model="numpy", nogil=True, fastmath=False, forceinline=forceinline)(function)
     with suppress(RuntimeError):  # numba's word for no folder that may be written to: compiled anew in every run
         compiled._cache = _Cache(function)  # type: ignore[no-untyped-call]
     return compiled

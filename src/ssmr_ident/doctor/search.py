@@ -140,7 +140,7 @@ def _in_full(search: Search, whole: Problem, begins: Sequence[int], say: Progres
         assert row.fit is not None
         start = Start(row.fit.point, carried(row.fit.node, found)) if chaotic else _at_begins(row.fit, begins)
         start = Start(found.point, found.nuisances) if row.fit is best else start
-        new.add(polish(problem, row.fit.node, start, SHORT if row in near or not row.ids else BEGUN))
+        new.add(polish(problem, row.fit.node, start, BEGUN))
     _ended(new)
     offered_back(new, 1)
     offered_up(new)

@@ -130,20 +130,35 @@ def _step(parts, point, nuisances, mean, precision, scales, damping, held):
     right = -precision * (point - mean)
     eliminated, promised = [], 0.0
     for (h, g, k), nuisance, scale in zip(parts, nuisances, scales, strict=True):
-        own = h[:k, :k] + np.diag(1.0 / scale**2)
-        own = own + damping * np.diag(np.diag(own))
         cross, line = h[:k, k:], g[:k] + nuisance / scale**2
-        solved = solved_positive(own, np.column_stack([cross, line]))
+        solved = solved_positive(_own(h, k, scale, damping), np.column_stack([cross, line]))
         left = left + h[k:, k:] - cross.T @ solved[:, :-1]
         right = right - g[k:] + cross.T @ solved[:, -1]
         eliminated.append(solved)
         promised += float(line @ solved[:, -1])
-    left = left + damping * np.diag(np.maximum(np.diag(left), 1e-12))
-    free = ~held
+    _on_diagonal(left)[:] += damping * np.maximum(_on_diagonal(left), 1e-12)
     step = np.zeros(p)
-    step[free] = solved_evenly(left[np.ix_(free, free)], right[free])
-    promised += float(right[free] @ step[free])
+    if held.any():
+        free = ~held
+        step[free] = solved_evenly(left[np.ix_(free, free)], right[free])
+    else:
+        step = solved_evenly(left, right)
+    promised += float(right @ step)
     return step, [-(solved[:, :-1] @ step) - solved[:, -1] for solved in eliminated], promised
+
+
+def _on_diagonal(square: Array) -> Array:
+    """Its diagonal, to be written to."""
+    return np.einsum("ii->i", square)
+
+
+def _own(h: Array, k: int, scale: Array, damping: float) -> Array:
+    """Curvature of a piece's nuisances with their priors."""
+    own = h[:k, :k].copy()
+    diagonal = _on_diagonal(own)
+    diagonal += 1.0 / scale**2
+    diagonal *= 1.0 + damping
+    return own
 
 
 def solved_evenly(left: Array, right: Array) -> Array:
@@ -154,16 +169,16 @@ def solved_evenly(left: Array, right: Array) -> Array:
 
 def solved_positive(left: Array, columns: Array) -> Array:
     """Positive definite equations, rows and columns first brought to one size; what round-off alone decides stays."""
-    size = np.sqrt(np.diag(left))
-    even = left / np.outer(size, size) + LEAST_CURVATURE * np.eye(len(left))
-    return np.linalg.solve(even, columns / size[:, None]) / size[:, None]
+    size = np.sqrt(_on_diagonal(left))[:, None]
+    even = left / (size * size.T)
+    _on_diagonal(even)[:] += LEAST_CURVATURE
+    return np.linalg.solve(even, columns / size) / size
 
 
 def _finished(node, point, nuisances, mean, precision, scales, chi2, residuals, parts, stop, held) -> Fit:
     information = np.zeros((len(point), len(point)))
     for (h, _, k), scale in zip(parts, scales, strict=True):
-        own = h[:k, :k] + np.diag(1.0 / scale**2)
-        information += h[k:, k:] - h[:k, k:].T @ solved_positive(own, h[:k, k:])
+        information += h[k:, k:] - h[:k, k:].T @ solved_positive(_own(h, k, scale, 0.0), h[:k, k:])
     free = ~held
     covariance = np.zeros_like(information)
     whole = (information + np.diag(precision + LEAST_CURVATURE))[np.ix_(free, free)]

@@ -12,7 +12,7 @@ import math
 
 import numpy as np
 
-from ssmr_ident.core.kernel import kernel
+from ssmr_ident.core.kernel import inlined, kernel
 from ssmr_ident.physics.effects import unlisted
 from ssmr_ident.physics.element import STATES, element_force, element_next, free_slots, inner_slots
 
@@ -52,7 +52,7 @@ def law_force(x, v, z, time, stiffness, e, terms):
     return f + _unlisted(x, v, time, 1.0, free_slots(e)) if terms else f
 
 
-@kernel
+@inlined
 def _force(x, v, z, time, row, drive, g, slopes, with_slopes):
     """Force beside the linear rig [N], its slopes over x and v; those over hidden states and parameters into
     ``slopes``, (hidden + parameters,)."""
@@ -342,6 +342,10 @@ def run(
     was, beyond = np.zeros(columns), np.zeros(columns)
     slopes_now, more_slopes = np.zeros(hidden + columns), np.zeros(hidden + columns)
     mean_slopes = np.zeros(hidden + columns)
+    moved_by = np.zeros(n_lin)  # what one newton beside, as a kick before a step, has taken away at its end
+    for k in range(n_lin):
+        for i in range(n_lin):
+            moved_by[k] += transition[k, i] * kick[i]
     last = len(drive) - 1
     jumps = g[16][0] or g[3].shape[1] > 0 or g[4].shape[2] > 0  # what does not look at speed does not jump with it
     for stretch in range(starts.shape[0]):
@@ -398,32 +402,45 @@ def run(
                         slopes[:] = slopes_now
                         for j in range(columns):
                             beyond[j] = more_was * was[j]
-                            if j >= states:
-                                beyond[j] += more_slopes[hidden + j - states]
+                        for p in range(columns - states):
+                            beyond[states + p] += more_slopes[hidden + p]
                 v_was, f_was, fx_was, fv_was = v, f, fx, fv
-                denominator = 1.0 + half * kick[1] * (fv + more_v)
+                taken = half * kick[1]
+                share = 1.0 / (1.0 + taken * (fv + more_v))
                 for j in range(columns):
-                    own = fx * ds[0, j]
-                    if j >= states:
-                        own += slopes[hidden + j - states]
-                    for k in range(hidden):
-                        own += slopes[k] * dz[k, j]
-                    change[j] = own
-                for j in range(columns):
-                    dv = ds[1, j] - half * kick[1] * (change[j] + beyond[j])
-                    if states <= j < states + n_par:
-                        dv -= half * d_kick[j - states, 1] * (f + more)
-                    df[j] = change[j] + fv * dv / denominator
-                    beyond[j] += more_v * dv / denominator
+                    df[j] = fx * ds[0, j]
+                for p in range(columns - states):
+                    df[states + p] += slopes[hidden + p]
+                for k in range(hidden):
+                    for j in range(columns):
+                        df[j] += slopes[k] * dz[k, j]
+                if more != 0.0:
+                    for j in range(columns):
+                        dv = ds[1, j] - taken * (df[j] + beyond[j])
+                        if states <= j < states + n_par:
+                            dv -= half * d_kick[j - states, 1] * (f + more)
+                        df[j] += fv * dv * share
+                        beyond[j] += more_v * dv * share
+                        for k in range(n_lin):
+                            ds[k, j] -= kick[k] * beyond[j]
+                    for k in range(n_lin):
+                        s[k] -= kick[k] * more
+                        for p in range(n_par):
+                            ds[k, states + p] -= d_kick[p, k] * more
+                elif fv != 0.0:
+                    own, other = 1.0 - fv * share * taken, fv * share
+                    for j in range(columns):
+                        df[j] = own * df[j] + other * ds[1, j]
+                    for p in range(n_par):
+                        df[states + p] -= other * half * d_kick[p, 1] * f
                 if n:
                     for k in range(n_lin):
-                        s[k] -= kick[k] * (f + more)
-                        for j in range(columns):
-                            ds[k, j] -= kick[k] * (df[j] + beyond[j])
+                        s[k] -= kick[k] * f
+                        if kick[k] != 0.0:
+                            for j in range(columns):
+                                ds[k, j] -= kick[k] * df[j]
                         for p in range(n_par):
-                            ds[k, states + p] -= d_kick[p, k] * (f + more)
-                if more != 0.0:
-                    beyond[:] = 0.0
+                            ds[k, states + p] -= d_kick[p, k] * f
             if n % every == 0 and n < total:
                 row = at // every
                 for k in range(channels):
@@ -432,9 +449,14 @@ def run(
                         value += c[k, i] * s[i]
                     y[row, k] = value
                     out = dy[row, k]
-                    for j in range(columns):
-                        out[j] = from_force[k] * df[j]
-                    for i in range(n_lin):
+                    by_0, by_1, by_f = c[k, 0], c[k, 1], from_force[k]
+                    if beside and by_f != 0.0:
+                        for j in range(columns):
+                            out[j] = by_0 * ds[0, j] + by_1 * ds[1, j] + by_f * df[j]
+                    else:
+                        for j in range(columns):
+                            out[j] = by_0 * ds[0, j] + by_1 * ds[1, j]
+                    for i in range(2, n_lin):
                         weight = c[k, i]
                         if weight != 0.0:
                             for j in range(columns):
@@ -448,27 +470,32 @@ def run(
                         out[zero + q] += from_drive[k] * drives[q, min(at, last)]
             if n == total:
                 break
-            if beside:
+            if jumps:
                 for j in range(columns):
                     was[j] = ds[1, j]
+            x_was = s[0]
+            if hidden:
+                for j in range(columns):
+                    change[j] = ds[0, j]
+            there = drive[min(at + 1, last)]
+            if beside:
                 for k in range(n_lin):
                     s[k] -= kick[k] * f
-                    for j in range(columns):
-                        ds[k, j] -= kick[k] * df[j]
                     for p in range(n_par):
                         ds[k, states + p] -= d_kick[p, k] * f
-            x_was = s[0]
-            for j in range(columns):
-                change[j] = ds[0, j]
-            there = drive[min(at + 1, last)]
             for k in range(n_lin):
                 value = now[k] * here + later[k] * there
                 for i in range(n_lin):
                     value += transition[k, i] * s[i]
                 new[k] = value
-                for j in range(columns):
-                    dnew[k, j] = 0.0
-                for i in range(n_lin):
+                by_0, by_1, by_f = transition[k, 0], transition[k, 1], moved_by[k]
+                if beside:
+                    for j in range(columns):
+                        dnew[k, j] = by_0 * ds[0, j] + by_1 * ds[1, j] - by_f * df[j]
+                else:
+                    for j in range(columns):
+                        dnew[k, j] = by_0 * ds[0, j] + by_1 * ds[1, j]
+                for i in range(2, n_lin):
                     weight = transition[k, i]
                     for j in range(columns):
                         dnew[k, j] += weight * ds[i, j]
@@ -479,10 +506,9 @@ def run(
                     dnew[k, states + p] += own
                 for q in range(extra):
                     dnew[k, zero + q] += now[k] * drives[q, min(at, last)] + later[k] * drives[q, min(at + 1, last)]
+            ds, dnew = dnew, ds
             for k in range(n_lin):
                 s[k] = new[k]
-                for j in range(columns):
-                    ds[k, j] = dnew[k, j]
             if hidden:
                 for j in range(columns):
                     change[j] = ds[0, j] - change[j]

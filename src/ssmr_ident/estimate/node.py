@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -18,10 +18,13 @@ from ssmr_ident.physics.slots import SLOTS, effect_vector
 Array = np.ndarray
 
 LAG, BRANCH, RIDER = "lag", "branch", "rider"
+"""Linear members: a slow sensor, a Maxwell branch, a part of the mass on a spring of its own."""
 
 MEMORY = "memory"
 """The kind of what has states of its own that no log shows."""
-"""Linear members: a slow sensor, a Maxwell branch, a part of the mass on a spring of its own."""
+
+ROOT = 1e-7
+"""Relative step of the differences of small matrices, which are exact to 1e-15."""
 
 
 @dataclass(frozen=True)
@@ -344,36 +347,35 @@ def matrices(node: Node, values: Array, seen: Seen) -> tuple[Array, ...]:
 
 def stepped(node: Node, values: Array, seen: Seen, step: float) -> tuple[tuple[Array, ...], ...]:
     """Exact step under a drive in a straight line, and the channels: ((T, now, later, half a kick), rows)."""
-    a, drive, kick, *rows = matrices(node, values, seen)
-    n = len(a)
-    block = np.zeros((n + 2, n + 2))
-    block[:n, :n] = a * step
-    block[:n, n] = drive * step
-    block[n, n + 1] = 1.0
-    e = expm(block)
-    later = e[:n, n + 1]
-    return (e[:n, :n].copy(), e[:n, n] - later, later.copy(), 0.5 * step * kick), tuple(rows)
+    return _stepped(node, [values], seen, step)[0]
+
+
+def _stepped(node: Node, points: Sequence[Array], seen: Seen, step: float) -> list[tuple[tuple[Array, ...], ...]]:
+    """``stepped`` at several values, whose exponentials are taken together."""
+    found = [matrices(node, values, seen) for values in points]
+    n = len(found[0][0])
+    blocks = np.zeros((len(points), n + 2, n + 2))
+    blocks[:, n, n + 1] = 1.0
+    for block, (a, drive, *_) in zip(blocks, found, strict=True):
+        block[:n, :n], block[:n, n] = a * step, drive * step
+    steps: list[tuple[tuple[Array, ...], ...]] = []
+    for e, (_, _, kick, *rows) in zip(expm(blocks), found, strict=True):
+        later = e[:n, n + 1].copy()
+        steps.append(((e[:n, :n].copy(), e[:n, n] - later, later, 0.5 * step * kick), tuple(rows)))
+    return steps
 
 
 def stepped_with_slopes(node: Node, values: Array, slopes: Array, seen: Seen, step: float):
-    """``stepped`` and its derivatives over the linear coordinates by central differences of the small matrices."""
-    lin, rows = stepped(node, values, seen, step)
-    d_lin, d_rows = [], []
-    for k in range(len(values)):
-        change = 1e-5 * max(abs(values[k]), 1e-3 * abs(slopes[k]))
-        both = []
-        for sign in (1.0, -1.0):
-            moved = values.copy()
-            moved[k] += sign * change
-            both.append(stepped(node, moved, seen, step))
-        scale = slopes[k] / (2.0 * change)
-        d_lin.append([(p - m) * scale for p, m in zip(both[0][0], both[1][0], strict=True)])
-        d_rows.append([(p - m) * scale for p, m in zip(both[0][1], both[1][1], strict=True)])
+    """``stepped`` and its derivatives over the linear coordinates by differences of the small matrices."""
+    changes = ROOT * np.maximum(np.abs(values), 1e-3 * np.abs(slopes))
+    points = [values, *(values + row for row in np.diag(changes))]
+    (lin, rows), *moved = _stepped(node, points, seen, step)
+    scales = slopes / changes
     return (
         lin,
-        tuple(np.array([d[i] for d in d_lin]) for i in range(4)),
+        tuple(np.array([(m[0][i] - lin[i]) * f for m, f in zip(moved, scales, strict=True)]) for i in range(4)),
         rows,
-        tuple(np.array([d[i] for d in d_rows]) for i in range(3)),
+        tuple(np.array([(m[1][i] - rows[i]) * f for m, f in zip(moved, scales, strict=True)]) for i in range(3)),
     )
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -52,7 +53,7 @@ class Compiled:
     problem: Problem
     steps: dict[tuple, tuple] = field(default_factory=dict)
 
-    @property
+    @cached_property
     def uses(self) -> Array:
         """(7,) bool: what the laws look at (speed, deflection, stiffness, three hidden states), and whether any has
         terms that no list holds."""
@@ -63,7 +64,7 @@ class Compiled:
         remembers = [any(m.id == name and m.kind == MEMORY for m in laws) for name in REMEMBER]
         return np.concatenate([sees.any(axis=0), remembers, [any(m.id == "unlisted" for m in laws)]])
 
-    @property
+    @cached_property
     def turned(self) -> tuple[Array, Array, Array] | None:
         """Linear states with the stretch of the spring at which forces act, and its rate, at the front, (n, n) float;
         back again; and the order of coordinates with its damping and stiffness behind the first one.
@@ -182,6 +183,9 @@ def _arranged(model: Compiled, index: int, s: Simulated, states: int, n_lin: int
     first = states + n_lin
 
     def order(d: Array) -> Array:
+        if d.shape[-1] == states + count + 1 and delay is None:  # nothing is done afterwards
+            d[..., first : first + rest] *= model.slopes[n_lin : n_lin + rest]
+            return d
         out = np.zeros((*d.shape[:-1], states + count + 1))
         out[..., : first + rest] = d[..., : first + rest]
         out[..., first : first + rest] *= model.slopes[n_lin : n_lin + rest]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -36,7 +37,7 @@ class Layout:
     ends: tuple[tuple[int, int], ...]
     rotary: bool = False
 
-    @property
+    @cached_property
     def stretch(self) -> Array:
         """(springs, bodies) float: how far each spring is stretched by the bodies' coordinates."""
         rows = np.zeros((len(self.springs), len(self.bodies)))
@@ -46,6 +47,7 @@ class Layout:
                     row[end] += sign
             if second < 0:  # away from the ground counts, whichever end it is
                 row *= -1.0
+        rows.flags.writeable = False
         return rows
 
     @property
