@@ -9,6 +9,7 @@ import numpy as np
 from scipy.signal import lfilter
 from scipy.stats import spearmanr
 
+from ssmr_ident.core.shown import Shown
 from ssmr_ident.estimate.node import matrices
 from ssmr_ident.estimate.noise import LARGEST_ORDER
 from ssmr_ident.estimate.pieces import Piece
@@ -92,7 +93,7 @@ NARROW = 0.1
 
 
 @dataclass(frozen=True)
-class Beyond:
+class Beyond(Shown):
     """Modes beyond a model's own that rule what it leaves: about where they lie, its highest one, and a band without
     them [Hz]."""
 
