@@ -23,7 +23,7 @@ LAG, BRANCH, RIDER = "lag", "branch", "rider"
 MEMORY = "memory"
 """The kind of what has states of its own that no log shows."""
 
-ROOT = 1e-7
+APART = 1e-5
 """Relative step of the differences of small matrices, which are exact to 1e-15."""
 
 
@@ -366,16 +366,17 @@ def _stepped(node: Node, points: Sequence[Array], seen: Seen, step: float) -> li
 
 
 def stepped_with_slopes(node: Node, values: Array, slopes: Array, seen: Seen, step: float):
-    """``stepped`` and its derivatives over the linear coordinates by differences of the small matrices."""
-    changes = ROOT * np.maximum(np.abs(values), 1e-3 * np.abs(slopes))
-    points = [values, *(values + row for row in np.diag(changes))]
-    (lin, rows), *moved = _stepped(node, points, seen, step)
-    scales = slopes / changes
+    """``stepped`` and its derivatives over the linear coordinates by central differences of the small matrices."""
+    changes = APART * np.maximum(np.abs(values), 1e-3 * np.abs(slopes))
+    aside = np.diag(changes)
+    (lin, rows), *moved = _stepped(node, [values, *(values + aside), *(values - aside)], seen, step)
+    scales = slopes / (2.0 * changes)
+    pairs = list(zip(moved[: len(values)], moved[len(values) :], scales, strict=True))
     return (
         lin,
-        tuple(np.array([(m[0][i] - lin[i]) * f for m, f in zip(moved, scales, strict=True)]) for i in range(4)),
+        tuple(np.array([(up[0][i] - down[0][i]) * f for up, down, f in pairs]) for i in range(4)),
         rows,
-        tuple(np.array([(m[1][i] - rows[i]) * f for m, f in zip(moved, scales, strict=True)]) for i in range(3)),
+        tuple(np.array([(up[1][i] - down[1][i]) * f for up, down, f in pairs]) for i in range(3)),
     )
 
 

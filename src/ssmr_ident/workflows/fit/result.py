@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from ssmr_ident.core.atomic import write_text
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.core.shown import Shown
+from ssmr_ident.doctor.result import SOURCE
 from ssmr_ident.identify.lmfit_report import Variable, variables_frame
 from ssmr_ident.report.figures_fit import (
     NamedBackbone,
@@ -128,7 +129,7 @@ class SessionFit(Shown):
                 for path in self.changed
             },
             "variables": [
-                {"name": v.name, "value": v.value, "std": v.std, "unit": v.unit, "source": v.source}
+                {"name": v.name, "value": v.value, "std": v.std, "unit": v.unit, "source": _told_by(v.source)}
                 for v in self.variables
             ],
             "recordings": [{"file": file, **numbers} for file, numbers in self.results.items()],
@@ -147,6 +148,11 @@ def over_amplitude(backbones: Sequence[NamedBackbone]) -> str:
             numbers = ",".join(f"{value:.8g}" for value in rest)
             lines.append(f'"{own.name}",{own.group},{amplitude:.8g},{own.unit},{numbers}')
     return "\n".join(lines) + "\n"
+
+
+def _told_by(source: str) -> str:
+    """Whether recordings or a prior tell a value, in the two words of the answer."""
+    return "data" if source in ("data", SOURCE) else "prior"
 
 
 def _plain(value: Any) -> Any:
