@@ -18,6 +18,10 @@ from ssmr_ident.physics.network import ONE
 STEPS = 25
 """Gauss-Newton steps."""
 
+IN_TURN = 2
+"""Times that noise and fit follow from each other (iterated generalised least squares): what a fit under white noise
+leaves is not yet the noise of the fit under its own."""
+
 
 def baseline_fit(problem: Problem) -> Fit:
     """Multiple shooting from paths, then the exact motion.
@@ -46,7 +50,10 @@ def on_every_sample(problem: Problem, fit: Fit, begins: tuple[int, ...]) -> Fit:
 
 
 def under_own_noise(problem: Problem, fit: Fit) -> tuple[Problem, Fit]:
-    """The problem under the noise that a fit leaves, and the fit again."""
-    white = left_white(problem, fit)
-    own = with_noises(white, own_noise(white, fit))
-    return own, polish(own, fit.node, Start(fit.point, fit.nuisances), STEPS)
+    """The problem under the noise that its fit leaves, and that fit."""
+    own = problem
+    for _ in range(IN_TURN):
+        white = left_white(problem, fit)
+        own = with_noises(white, own_noise(white, fit))
+        fit = polish(own, fit.node, Start(fit.point, fit.nuisances), STEPS)
+    return own, fit
