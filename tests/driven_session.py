@@ -14,14 +14,14 @@ recordings:
     experiment: forced
     channels: {force: F, acceleration: a}
 """
-RIG = """\
+PLAIN = """\
 schema: ssmr-ident/parameters/1
 name: r
 mass_kg: {value: 8.0, std: 0.1, unit: kg}
 stiffness_N_m: {value: 20000, std: 2000, unit: N/m}
 damping_N_s_m: {value: 50, unit: N s/m}
-effects: {nonlinear_stiffness: {k3_N_m3: {value: 6.0e+8, unit: N/m^3}}}
 """
+RIG = PLAIN + "effects: {nonlinear_stiffness: {k3_N_m3: {value: 6.0e+8, unit: N/m^3}}}\n"
 LOG = "time [s],F [N],a [m/s^2]\n" + "".join(f"{i / 1000},{(i % 7) - 3.0},{(i % 5) - 2.0}\n" for i in range(300))
 
 

@@ -9,19 +9,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 import yaml
+from driven_session import PLAIN
 from typed_command import typed
 
 pytestmark = pytest.mark.slow
 
 NAME = "</script><img src=x onerror=alert(1)>\"'&\u202egpj " + "y" * 4000
 LOG = "<img src=x onerror=alert(2)>\"'\u202egpj.csv"
-RIG = """\
-schema: ssmr-ident/parameters/1
-name: r
-mass_kg: {value: 8.0, std: 0.1, unit: kg}
-stiffness_N_m: {value: 20000, std: 2000, unit: N/m}
-damping_N_s_m: {value: 50, unit: N s/m}
-"""
 
 
 @pytest.fixture
@@ -32,7 +26,7 @@ def folder(tmp_path: Path) -> Path:
     force = 10 * np.sin(60 * time**2)
     rows = np.column_stack([time, force, np.gradient(force, 0.01)])
     np.savetxt(session / LOG, rows, "%.6g", ",", header="time [s],F [N],a [m/s^2]", comments="")
-    (session / "rig.yaml").write_text(RIG, encoding="utf-8")
+    (session / "rig.yaml").write_text(PLAIN, encoding="utf-8")
     entry = {"file": LOG, "experiment": "forced", "channels": {"force": "F", "acceleration": "a"}}
     content = {
         "schema": "ssmr-ident/session/1", "name": NAME, "robot": "rig.yaml", "baseline": "sdof", "recordings": [entry],

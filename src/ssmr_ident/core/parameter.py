@@ -17,6 +17,9 @@ if TYPE_CHECKING:
 
 Value = float | np.ndarray
 
+FITTED = "fit of the recordings"
+"""Source of what recordings tell."""
+
 GROUND = "ground"
 """What a spring of a network may join a body to: it does not move."""
 

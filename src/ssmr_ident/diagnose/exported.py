@@ -6,15 +6,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from ssmr_ident.core.parameter import Estimate, ParameterSet
+from ssmr_ident.core.parameter import FITTED, Estimate, ParameterSet
 from ssmr_ident.diagnose.setup import twin
 from ssmr_ident.identify.body.builder import HEIGHT, SENSOR, SHIFTS
 from ssmr_ident.identify.fitting.descent import chatters
 from ssmr_ident.identify.fitting.joint import JointFit
 from ssmr_ident.identify.fitting.roughness import scatter_of
 from ssmr_ident.physics.effects import CATALOGUE
-
-SOURCE = "fit of the recordings"
 
 UNINFORMED = 0.9
 """Posterior over prior standard deviation from which the recordings told nothing of a parameter."""
@@ -55,14 +53,14 @@ def exported(fit: JointFit, before: ParameterSet) -> ParameterSet:
                 unknown.prior, unknown.prior_std, unknown.unit, "its sensitivity"
             )
             kept = None if unknown.prior_std is None and not told else std
-            changes[unknown.name] = replace(old, value=value, std=kept, source=SOURCE if told else _prior(old))
+            changes[unknown.name] = replace(old, value=value, std=kept, source=FITTED if told else _prior(old))
     for path in before:
         other = twin(path, before)
         if other in changes and path not in changes:
             changes[path] = replace(changes[other], unit=before[path].unit)
     for path, array in (("contact_points_m", contacts), ("accelerometer.position_m", place)):
         if path in widest and array is not None:
-            source = SOURCE if any(told for _, told in widest[path]) else _prior(before[path])
+            source = FITTED if any(told for _, told in widest[path]) else _prior(before[path])
             changes[path] = replace(before[path], value=array, std=max(s for s, _ in widest[path]), source=source)
     return replace(before.updated(changes), effects=_effects(fit, effects, stds))
 
@@ -81,7 +79,7 @@ def _effects(fit: JointFit, effects: dict[str, dict[str, float]], stds: np.ndarr
         std = unknown.std(float(fit.point[count + index]), float(stds[count + index]))
         spread = max(std, _place(fit, name), _between(fit, coordinate.effect, name, value))
         bound = value in (coordinate.parameter.lower, coordinate.parameter.upper)
-        found[coordinate.effect][name] = Estimate(value, spread, unknown.unit, SOURCE, at_bound=bound)
+        found[coordinate.effect][name] = Estimate(value, spread, unknown.unit, FITTED, at_bound=bound)
     return found
 
 

@@ -9,14 +9,13 @@ from functools import partial
 
 import numpy as np
 
-from ssmr_ident.core.parameter import Estimate, ParameterSet
+from ssmr_ident.core.parameter import FITTED, Estimate, ParameterSet
 from ssmr_ident.estimate.node import RIDER, Member
 from ssmr_ident.estimate.values import Fit
 from ssmr_ident.physics.network import BODY_KEY, SPRING_KEYS, network_from_parameters
 
 Array = np.ndarray
 
-SOURCE = "fit of the recordings"
 
 STEP = 1e-4
 """Of differences, in coordinates of the fit."""
@@ -36,10 +35,10 @@ def with_further_bodies(fit: Fit, known: ParameterSet) -> ParameterSet:
         unit = known[host].unit
         units = [known[f"springs.{fit.node.layout.springs[0]}.{key}"].unit for key in SPRING_KEYS[rotary]]
         new = {
-            host: replace(known[host], value=left[0], std=left[1], source=SOURCE),
-            f"bodies.{body}.{BODY_KEY[rotary]}": Estimate(*mass, unit, SOURCE),
-            f"springs.{body}.{SPRING_KEYS[rotary][1]}": Estimate(*stiffness, units[1], SOURCE),
-            f"springs.{body}.{SPRING_KEYS[rotary][0]}": Estimate(*damping, units[0], SOURCE),
+            host: replace(known[host], value=left[0], std=left[1], source=FITTED),
+            f"bodies.{body}.{BODY_KEY[rotary]}": Estimate(*mass, unit, FITTED),
+            f"springs.{body}.{SPRING_KEYS[rotary][1]}": Estimate(*stiffness, units[1], FITTED),
+            f"springs.{body}.{SPRING_KEYS[rotary][0]}": Estimate(*damping, units[0], FITTED),
         }
         known = known.updated(new, between={**known.between, body: (member.element, body)})
     return known
@@ -52,9 +51,9 @@ def mode_parameters(fit: Fit, member: Member) -> dict[str, Estimate]:
     mass, *_ = _with_std(fit, partial(_numbers, host=host))
     hz, ratio = _with_std(fit, lambda v: (v["rider_Hz"], v["rider_ratio"]))
     return {
-        "mass_kg": Estimate(*mass, unit, SOURCE),
-        "f_mast_Hz": Estimate(*hz, "Hz", SOURCE),
-        "damping_ratio": Estimate(*ratio, "1", SOURCE),
+        "mass_kg": Estimate(*mass, unit, FITTED),
+        "f_mast_Hz": Estimate(*hz, "Hz", FITTED),
+        "damping_ratio": Estimate(*ratio, "1", FITTED),
     }
 
 

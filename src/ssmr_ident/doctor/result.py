@@ -12,7 +12,7 @@ import numpy as np
 from ssmr_ident.compare.comparison import measure
 from ssmr_ident.compare.network import band_of
 from ssmr_ident.compare.prediction import Prediction
-from ssmr_ident.core.parameter import Estimate, ParameterSet, at_element
+from ssmr_ident.core.parameter import FITTED, Estimate, ParameterSet, at_element
 from ssmr_ident.diagnose.diagnosis import Conflict, Diagnosis, KindShare, Located, NamedEffect, PredictionQuality, Tried
 from ssmr_ident.diagnose.evidence import Evidence
 from ssmr_ident.diagnose.words import law, missing, nothing, told, undetermined
@@ -32,7 +32,6 @@ from ssmr_ident.physics.effects import CATALOGUE
 Array = np.ndarray
 
 METRIC = "nrmse_percent"
-SOURCE = "fit of the recordings"
 
 CONFLICT = 2.0
 """Prior standard deviations from which a parameter counts as pulled away from what is known of it."""
@@ -159,7 +158,7 @@ def exported(fit: Fit, known: ParameterSet) -> ParameterSet:
     for k, c in enumerate(node.baseline):
         if c.std < EXACTLY:
             continue
-        changes[c.name] = replace(known[c.name], value=float(values[k]), std=float(of_baseline[k]), source=SOURCE)
+        changes[c.name] = replace(known[c.name], value=float(values[k]), std=float(of_baseline[k]), source=FITTED)
     known = with_further_bodies(fit, known.updated(changes))
     place = {id(c): k for k, c in enumerate(node.coordinates)}
     blocks: dict[str, dict[str, Estimate]] = {}
@@ -177,7 +176,7 @@ def exported(fit: Fit, known: ParameterSet) -> ParameterSet:
         for c in member.coordinates if member.id in blocks and not member.tables else ():
             k = place[id(c)]
             blocks[member.id][c.name] = Estimate(
-                float(values[k]), float(stds[k]), c.unit, SOURCE, at_bound=values[k] in (c.lower, c.upper)
+                float(values[k]), float(stds[k]), c.unit, FITTED, at_bound=values[k] in (c.lower, c.upper)
             )
     elements = {m.id: m.element for m in held if m.element}
     return replace(known, effects={at_element(i, elements.get(i, "")): block for i, block in blocks.items()})

@@ -5,11 +5,10 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from ssmr_ident.core.parameter import Estimate, ParameterSet
+from ssmr_ident.core.parameter import FITTED, Estimate, ParameterSet
 from ssmr_ident.identify.blocks.fit import Fitted
 from ssmr_ident.identify.blocks.model import DAMPING, DRIFT, KINETIC, STATIC, STIFFNESS
 
-SOURCE = "fit of the recordings"
 KEYS = {KINETIC: "1", STATIC: "1", STIFFNESS: "N/m", DAMPING: "N s/m"}
 """Units."""
 
@@ -26,28 +25,28 @@ def exported(found: Fitted, known: ParameterSet) -> ParameterSet:
         if key not in values or (key in known and known[key].fixed) or (key == STIFFNESS and rigid):
             continue
         before = known.get(key, Estimate(0.0, None, unit))
-        changes[key] = replace(before, value=values[key], std=stds[key], unit=unit, source=SOURCE)
+        changes[key] = replace(before, value=values[key], std=stds[key], unit=unit, source=FITTED)
     effects: dict[str, dict[str, Estimate]] = {}
     if found.blocks.shape.stretches and rigid:
-        effects["cable_compliance"] = {"K_cable_N_m": Estimate(values[STIFFNESS], stds[STIFFNESS], "N/m", SOURCE)}
+        effects["cable_compliance"] = {"K_cable_N_m": Estimate(values[STIFFNESS], stds[STIFFNESS], "N/m", FITTED)}
     if found.blocks.shape.softer:
         own = float(known[STIFFNESS].value)
         series = 1.0 / max(1.0 / values[STIFFNESS] - 1.0 / own, 1e-300)
         spread = stds[STIFFNESS] * (series / values[STIFFNESS]) ** 2
-        effects["cable_compliance"] = {"K_cable_N_m": Estimate(series, spread, "N/m", SOURCE)}
+        effects["cable_compliance"] = {"K_cable_N_m": Estimate(series, spread, "N/m", FITTED)}
         changes.pop(STIFFNESS, None)
     one = float(known[STATIC].value) == float(known[KINETIC].value) if STATIC in known and KINETIC in known else True
     if found.blocks.shape.falls and one:
         share = values[KINETIC] / values[STATIC]
         spread = share * math.hypot(stds[KINETIC] / values[KINETIC], stds[STATIC] / values[STATIC])
         effects["stribeck"] = {
-            "kinetic_share": Estimate(share, spread, "1", SOURCE),
+            "kinetic_share": Estimate(share, spread, "1", FITTED),
             "stribeck_velocity_m_s": Estimate(AT_ONCE, None, "m/s", "at once", fixed=True),
             "exponent": Estimate(2.0, None, "1", "not fitted", fixed=True),
         }
     if found.blocks.shape.drifts:
         effects["load_cell_drift"] = {
-            "zero_drift_N_s": Estimate(values[DRIFT], stds[DRIFT], "N/s", SOURCE),
+            "zero_drift_N_s": Estimate(values[DRIFT], stds[DRIFT], "N/s", FITTED),
             "gain_drift_1_s": Estimate(0.0, None, "1/s", "not fitted", fixed=True),
         }
     return replace(known.updated(changes), effects=effects)

@@ -8,9 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ssmr_ident.core.atomic import write_text
-from ssmr_ident.core.parameter import ParameterSet
+from ssmr_ident.core.parameter import FITTED, ParameterSet
 from ssmr_ident.core.shown import Shown
-from ssmr_ident.doctor.result import SOURCE
 from ssmr_ident.identify.lmfit_report import Variable, variables_frame
 from ssmr_ident.report.figures_fit import (
     NamedBackbone,
@@ -152,7 +151,7 @@ def over_amplitude(backbones: Sequence[NamedBackbone]) -> str:
 
 def _told_by(source: str) -> str:
     """Whether recordings or a prior tell a value, in the two words of the answer."""
-    return "data" if source in ("data", SOURCE) else "prior"
+    return "data" if source.startswith(("data", FITTED)) else "prior"
 
 
 def _plain(value: Any) -> Any:

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ssmr_ident.core.parameter import Estimate, ParameterSet
+from ssmr_ident.core.parameter import FITTED, Estimate, ParameterSet
 from ssmr_ident.identify.body.builder import HEIGHT, SENSOR, SHIFTS, RobotBuilder
 from ssmr_ident.identify.body.tire_parameters import MOTIONS, damping_as_printed, solve_damping
 from ssmr_ident.identify.decays.result import Mode
@@ -55,7 +55,7 @@ def updated(parameters: ParameterSet, posterior: Posterior) -> ParameterSet:
             continue
         before = parameters[unknown.name]
         share = posterior.information_share[index]
-        source = "fit of the recordings" if share > UNINFORMED else _prior_source(before)
+        source = FITTED if share > UNINFORMED else _prior_source(before)
         if share < 1e-6:
             # no recording depends on it: the file's own digits stay
             changes[unknown.name] = replace(before, source=source)
@@ -74,7 +74,7 @@ def updated(parameters: ParameterSet, posterior: Posterior) -> ParameterSet:
 
 def _array(before: Estimate, posterior: Posterior, indices: list[int]) -> Estimate:
     shares = posterior.information_share[indices]
-    source = "fit of the recordings" if shares.max() > UNINFORMED else _prior_source(before)
+    source = FITTED if shares.max() > UNINFORMED else _prior_source(before)
     if shares.max() < 1e-6:
         return replace(before, source=source)
     array = np.asarray(before.value, float).copy()

@@ -8,13 +8,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from ssmr_ident.core.parameter import Estimate, ParameterSet
+from ssmr_ident.core.parameter import FITTED, Estimate, ParameterSet
 from ssmr_ident.physics.rig import RIG_KEYS
 from ssmr_ident.workflows.fit.rig_recordings import Seen
 
 Array = np.ndarray
 
-SOURCE = "small motion of the recordings"
+SOURCE = f"{FITTED}: their small motion"
 
 
 def at_small_motion(found: ParameterSet, seen: Sequence[Seen]) -> dict[str, Estimate]:
