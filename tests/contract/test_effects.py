@@ -18,13 +18,11 @@ from ssmr_ident.physics.own_effect import FREE_SITES
 from ssmr_ident.physics.robot import Robot
 from ssmr_ident.workflows.effects import promises
 
-NOT_MODELLED = ("load_dependent_friction",)
-"""Of the specification: friction that grows with the torque of a gear, which needs the drive's torque at the joint."""
 IDS = (
     "translation_coupling", "nonlinear_stiffness", "dry_friction", "hysteresis", "quadratic_damping",
     "viscoelastic_relaxation", "flexible_mast", "free_play", "com_offset", "wheel_lift", "motor_belt",
-    "cable_compliance", "stribeck", "load_sensitive_friction", "slip_coupling", "rolling_resistance",
-    "ground_roughness", "ground_joints", "wheel_eccentricity", "coriolis", "sensor_saturation",
+    "cable_compliance", "stribeck", "load_sensitive_friction", "load_dependent_friction", "slip_coupling",
+    "rolling_resistance", "ground_roughness", "ground_joints", "wheel_eccentricity", "coriolis", "sensor_saturation",
     "sensor_bandwidth", "sensor_delay", "sensor_misalignment", "load_cell_drift", "unlisted",
 )  # fmt: skip
 NO_SLOT = {
@@ -54,7 +52,7 @@ def test_the_catalogue_holds_the_fixed_ids_and_no_other() -> None:
 
 def test_the_fixed_ids_are_those_of_the_specification(shared: Path) -> None:
     table = (shared / "spec" / "effects.md").read_text(encoding="utf-8")
-    assert sorted(re.findall(r"^\| `(\w+)` \|", table, re.MULTILINE)) == sorted((*IDS, *NOT_MODELLED))
+    assert sorted(re.findall(r"^\| `(\w+)` \|", table, re.MULTILINE)) == sorted(IDS)
 
 
 @EACH
@@ -82,7 +80,7 @@ def test_slots_and_their_indices_agree() -> None:
     assert vector[slots.BELT_STIFFNESS] == 1234.0
     assert vector[slots.GAP] == 0.003
     assert vector[slots.RIM_MASS] == CATALOGUE["motor_belt"].values()["rim_mass_kg"]
-    assert slots.UNLISTED == slots.RIM_MASS + 1 == len(slots.SLOTS) - len(unlisted.EFFECT.parameters)
+    assert slots.UNLISTED == slots.LOAD_ROUNDING + 1 == len(slots.SLOTS) - len(unlisted.EFFECT.parameters)
     assert slots.SLOTS.index("wheel_eccentricity.eccentricity_m") == slots.ECCENTRICITY == len(inner_slots(vector)) - 1
 
 

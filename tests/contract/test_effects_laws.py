@@ -332,6 +332,25 @@ def test_a_held_maxwell_branch_relaxes_exponentially(robot: Robot) -> None:
     assert force[held] == pytest.approx(expected, rel=1e-4)
 
 
+@law("load_dependent_friction")
+@pytest.mark.parametrize("up", [1.0, -1.0])
+def test_gears_ask_for_more_than_a_weight_to_lift_it_and_for_less_to_let_it_down(up: float) -> None:
+    """tau (1 - c) = (1 + c) W on the way up, the other way round on the way down: weight and drive both load them."""
+    weight, share, speed = 0.3, 0.2, up * 0.5
+    balance = weight * ((1.0 + share) / (1.0 - share)) ** up
+    soft = 1e-9  # N/m: pulled out so far that it is a weight
+    values = {"F_c_N": 0.0, "c": share, "rounding_m_s": 1e-3}
+    reached = [
+        simulate_rig(
+            Rig(0.01, 0.0, soft), np.full(60, more * balance), 200.0, weight / soft, speed, 8,
+            effects={"load_dependent_friction": values},
+        )[-1, 1]
+        for more in (0.98, 1.0, 1.02)
+    ]  # fmt: skip
+    assert reached[0] < speed < reached[2]
+    assert reached[1] == pytest.approx(speed, rel=1e-6)
+
+
 @law("hysteresis")
 def test_a_bouc_wen_loop_saturates_and_its_area_does_not_depend_on_speed() -> None:
     """F = aKs + (1-a)K y tanh(s/y) on first loading; a cycle of ±S costs 4(1-a)K (S y - (3/4 + ln2/2) y²)."""

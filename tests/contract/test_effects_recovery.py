@@ -62,6 +62,7 @@ def _spinning(robot: Robot) -> Scenario:
 CASES = {
     "nonlinear_stiffness": Case(decay_of_a_tire, ACCELERATION_NOISE, ("k3_N_m3",), {}),
     "dry_friction": Case(decay_of_a_tire, ACCELERATION_NOISE, ("F_c_N",), {}),
+    "load_dependent_friction": Case(decay_of_a_tire, ACCELERATION_NOISE, ("F_c_N", "c"), {}),
     "hysteresis": Case(decay_of_a_tire, ACCELERATION_NOISE, ("alpha",), {"alpha": 0.7}),
     "quadratic_damping": Case(decay_of_a_tire, ACCELERATION_NOISE, ("d2_N_s2_m2",), {}),
     "viscoelastic_relaxation": Case(decay_of_a_tire, ACCELERATION_NOISE, ("K_m_N_m",), {}),

@@ -12,9 +12,10 @@ from scipy.signal import butter, freqs
 from scipy.special import ellipj
 
 from ssmr_ident.estimate.coarser import coarser
+from ssmr_ident.estimate.coordinate import Coordinate
 from ssmr_ident.estimate.exact import polish
 from ssmr_ident.estimate.generic import static
-from ssmr_ident.estimate.node import Coordinate, Member, Node
+from ssmr_ident.estimate.node import Member, Node
 from ssmr_ident.estimate.pieces import Piece, before_low_pass, fastest_part, stretches
 from ssmr_ident.estimate.regression import regressed
 from ssmr_ident.estimate.shoot_kernel import eliminate

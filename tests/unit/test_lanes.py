@@ -31,7 +31,7 @@ FORMS = {
     "quadratic_damping": ({"d2_N_s2_m2": 50.0},),
     "sensor_misalignment": ({"angle_x_rad": 0.1},),
 }
-ALL = [(name, values) for name in CATALOGUE for values in FORMS.get(name, ({},))]
+ALL = [(name, values) for name in CATALOGUE if CATALOGUE[name].robot for values in FORMS.get(name, ({},))]
 
 
 # not kept on disk beside this file, where nobody would throw it away after lanes have changed

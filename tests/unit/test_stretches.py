@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from ssmr_ident.estimate.coordinate import Coordinate
 from ssmr_ident.estimate.exact import polish
 from ssmr_ident.estimate.generic import delay
-from ssmr_ident.estimate.node import Coordinate, Member, Node
+from ssmr_ident.estimate.node import Member, Node
 from ssmr_ident.estimate.pieces import Piece
 from ssmr_ident.estimate.regression import regressed
 from ssmr_ident.estimate.shooting import shot

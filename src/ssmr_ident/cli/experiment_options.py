@@ -44,6 +44,13 @@ Cable = Annotated[str, typer.Option(help="Pull: steel or rope.")]
 WheelRateRadS = Annotated[float, typer.Option(help="Pull: spinning wheels, the robot held in place.")]
 YawRateDegS = Annotated[float, typer.Option(help="Swivel: wanted yaw rate.")]
 SpeedMS = Annotated[float, typer.Option(help="Straight: wanted speed.")]
+KpVRad = Annotated[
+    float,
+    typer.Option(
+        "--kp-V-rad", help="Rig with a drive: gain of a controller; the log has its goal, position_reference."
+    ),
+]
+LimitV = Annotated[float, typer.Option("--limit-V", help="The most that this controller gives, either way.")]
 Contact = Annotated[
     str | None,
     typer.Option(

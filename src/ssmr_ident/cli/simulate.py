@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import Annotated
 
@@ -24,6 +25,7 @@ EXAMPLES = (
     "ident simulate p3at-extended -e pull --angle-deg 45 --cable rope -o pull-2.txt",
     "ident simulate p3at-extended -e free_response --effect dry_friction:F_c_N=2 -o roll-1.csv",
     "ident simulate rig.yaml -e forced --force shaker.csv -o answer.csv",
+    "ident simulate servo.yaml -e forced --force goal.csv --kp-V-rad 4 --limit-V 7.4 -o answer.csv",
     "ident simulate rig.yaml -e free_response --amplitude-mm 2 --duration-s 10 -o decay.csv",
     "ident simulate network.yaml -e forced --force hammer.csv --at tip -o answer.csv",
     "ident simulate block.yaml -e pull --speed-mm-s 2 --duration-s 20 -o pull.csv",
@@ -55,13 +57,15 @@ def command(
     free_normal: Annotated[bool, typer.Option(help="Wheel drag: the wheel can move off the surface.")] = True,
     yaw_rate_deg_s: asked.YawRateDegS = 45.0,
     speed_m_s: asked.SpeedMS = 0.3,
-    force: Annotated[str, typer.Option(help="Forced rig: a log with columns time and force, or torque.")] = "",
+    force: Annotated[str, typer.Option(help="Forced rig: a log with time and force, torque, voltage or goal.")] = "",
     base: Annotated[
         str, typer.Option(help="Base motion: a log with columns time and base_acceleration, or base_position.")
     ] = "",
     baseline: Annotated[
         str, typer.Option(help="rigid6, decoupled, sdof, network or drag; left out, what the file's keys describe.")
     ] = "",
+    kp_v_rad: asked.KpVRad = 0.0,
+    limit_v: asked.LimitV = math.inf,
     contact: asked.Contact = None,
     effect: asked.EffectIds = None,
     effects: EffectFiles = None,
@@ -85,7 +89,7 @@ def command(
         direction=direction, angle_deg=angle_deg,
         speed_mm_s=speed_mm_s, height_m=height_m, wheels_gripping=wheels_of(wheels_gripping), cable=cable,
         wheel_rate_rad_s=wheel_rate_rad_s, free_normal=free_normal, yaw_rate_deg_s=yaw_rate_deg_s,
-        speed_m_s=speed_m_s,
+        speed_m_s=speed_m_s, kp_V_rad=kp_v_rad, limit_V=limit_v,
     )  # fmt: skip
     request = Request(
         experiment_of(experiment), conditions, force=force, base=base, baseline=baseline, duration_s=duration_s,

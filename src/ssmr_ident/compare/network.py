@@ -1,4 +1,5 @@
-"""A network's recording beside its simulation: starts, zeros and gains refitted, physics not."""
+"""A recording of a network, or of a rig that a motor drives, beside its simulation: starts, zeros and gains refitted,
+physics not."""
 
 from __future__ import annotations
 
@@ -10,7 +11,7 @@ from ssmr_ident.core.parameter import ParameterSet, effect_and_element
 from ssmr_ident.estimate.generic import MEMORY, STATIC
 from ssmr_ident.estimate.network import followed, network_problem
 from ssmr_ident.estimate.node import Member, Node
-from ssmr_ident.estimate.problem import natural_hz
+from ssmr_ident.estimate.problem import natural_hz, problem_of
 from ssmr_ident.experiments.campaign import Measurement
 from ssmr_ident.physics.effect import Site
 from ssmr_ident.physics.effects import CATALOGUE
@@ -33,7 +34,7 @@ def band_of(parameters: ParameterSet, given: Band | None = None) -> Band:
 
 
 def laws_of(parameters: ParameterSet) -> tuple[Member, ...]:
-    """The effects of a network's file as members that nothing fits.
+    """The effects of the file of a network, or of a rig with a drive, as members that nothing fits.
 
     Raises
     ------
@@ -44,7 +45,10 @@ def laws_of(parameters: ParameterSet) -> tuple[Member, ...]:
     found = []
     for key, values in effect_values(parameters).items():
         effect, element = effect_and_element(key)
-        if not element or not CATALOGUE[effect].rig or Site.ELEMENT not in CATALOGUE[effect].acts:
+        acts = CATALOGUE[effect].acts if CATALOGUE[effect].rig and not values.get("rider_share") else {}
+        if not parameters.between and not {Site.ELEMENT, Site.DRIVE} & set(acts):
+            raise InputError(f"{where}.{effect}", "is nothing of a drive's spring or gears", "Leave it out")
+        if parameters.between and (not element or Site.ELEMENT not in acts):
             springs = ", ".join(parameters.between)
             raise InputError(f"{where}.{effect}", "acts at no spring of a network", f"element: one of {springs}")
         kind = MEMORY if Site.STATE in CATALOGUE[effect].acts else STATIC
@@ -56,8 +60,8 @@ def laws_of(parameters: ParameterSet) -> tuple[Member, ...]:
 
 
 def predict(parameters: ParameterSet, measurement: Measurement) -> Prediction:
-    """Simulate one recording of a network."""
-    problem = network_problem([measurement], parameters)
+    """Simulate one recording."""
+    problem = (network_problem if parameters.between else problem_of)([measurement], parameters)
     node = Node(problem.baseline, laws_of(parameters), problem.layout)
     fit = followed(problem, node, np.array([c.mean for c in problem.baseline]))
     rest = np.vstack(fit.residuals)

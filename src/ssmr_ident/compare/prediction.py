@@ -15,6 +15,7 @@ from ssmr_ident.identify.fitting.coordinates import Model
 from ssmr_ident.identify.trials import trial_of
 from ssmr_ident.physics.network import NETWORK
 from ssmr_ident.physics.slots import effect_values
+from ssmr_ident.physics.voltage_drive import drive_from_parameters
 from ssmr_ident.session.entry import BANDED
 
 __all__ = ["Prediction", "predict"]
@@ -43,7 +44,7 @@ def predict(campaign: Campaign, measurement: Measurement, parameters: ParameterS
         return turning.predict(parameters, measurement)
     if baseline == "drag" and block.FOLDED.issuperset(parameters.effects):
         return block.predict(parameters, measurement)
-    if baseline == NETWORK:
+    if baseline == NETWORK or drive_from_parameters(parameters) is not None:
         return network.predict(parameters, measurement)
     trial = trial_of(baseline, measurement, parameters)
     model = Model((), (), effect_values(parameters))

@@ -121,6 +121,9 @@ QUANTITY_OF_UNIT = {
 }  # fmt: skip
 
 
+OF_A_GOAL = ("m", "rad")
+"""Units that a position_reference may have: that of the motion that follows it."""
+
 LONGEST = 28  # characters; no unit is longer, and nothing longer is looked at
 
 _SIGNS = str.maketrans({"µ": "u", "μ": "u", "·": "*", "⋅": "*", "×": "*", "−": "-", "–": "-", "⁻": "-", "¹": "1",

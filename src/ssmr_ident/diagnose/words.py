@@ -23,6 +23,7 @@ LAWS = {
     "cable_compliance": "1/K_total = 1/K_steel + 1/K_cable",
     "stribeck": "mu(u) = mu_s (r + (1 - r) exp(-(u/v_s)^exponent)), r = kinetic_share",
     "load_sensitive_friction": "mu(N) = mu (N/N_0)^(-exponent)",
+    "load_dependent_friction": "F = (F_c + c |tau_drive - tau_load|) tanh(v/v_r)",
     "slip_coupling": "mu -> mu min(|slip|/(lambda_max |r omega|), 1)",
     "rolling_resistance": "F_x = -c_rr N sign(v_x)",
     "sensor_saturation": "y = max(-range, min(range, a))",

@@ -25,7 +25,7 @@ def kinds(problem: Problem, paths: Sequence[Array]) -> list[Member]:
     found += [other] if other else []
     found += [rider(problem, ratio * f) for ratio in (0.6, 1.5)]
     piece = problem.pieces[0]
-    if any(p.driven for p in problem.pieces):
+    if any(p.driven and p.motor is None for p in problem.pieces):
         found.append(delay(piece.step * piece.every, problem.begin))
     if 2 in piece.orders:
         most = min(0.5 * problem.bandwidth_hz, 0.4 * piece.rate)

@@ -10,8 +10,12 @@ from functools import partial
 import numpy as np
 
 from ssmr_ident.estimate.along_kernel import force_along
+from ssmr_ident.estimate.coordinate import Coordinate
 from ssmr_ident.estimate.generic import MEMORY, STATIC
-from ssmr_ident.estimate.node import Coordinate, Member, Node
+from ssmr_ident.estimate.motor import drive_of
+from ssmr_ident.estimate.node import Member, Node
+from ssmr_ident.estimate.regression import driving
+from ssmr_ident.estimate.simulated import GEARS
 from ssmr_ident.estimate.values import Fit, Problem, Start
 from ssmr_ident.physics.effects import CATALOGUE
 from ssmr_ident.physics.effects.unlisted import TERMS
@@ -115,6 +119,9 @@ FORMS = (
     Form("dry_friction", STATIC, "tanh", _grid("rounding_m_s", 0.01, 0.03, 0.1, 0.3),
          lambda s, k, x, v, f: {"F_c_N": f, **s}, _scaled("F_c_N"), {"F_c_N": False, "rounding_m_s": True},
          "v"),
+    Form(GEARS, STATIC, "tanh", _grid("rounding_m_s", 0.003, 0.01, 0.03, 0.1),
+         lambda s, k, x, v, f: {"F_c_N": 0.1 * f, "c": 0.3, **s}, _scaled("F_c_N", "c"),
+         {"F_c_N": False, "c": False, "rounding_m_s": True}),
     Form("dry_friction", MEMORY, "Dahl", _travel,
          lambda s, k, x, v, f: {"F_c_N": f, "slider": 0.0, **s}, _scaled("F_c_N", "element_stiffness_N_m"),
          {"F_c_N": False, "element_stiffness_N_m": True}),
@@ -167,30 +174,33 @@ def proposals(
         That the node has besides; their coordinates begin as in ``found``.
     forms : sequence of Form
     """
-    mass = float(found.node.values(found.point)[0])
+    of_rig = found.node.values(found.point)[: len(found.node.baseline)]
+    mass, stiff, motor = float(of_rig[0]), float(of_rig[2]), drive_of(of_rig)
+    moving = mass + motor.inertia if motor is not None else mass
     x, v = np.concatenate([p[:, 0] for p in paths]), np.concatenate([p[:, 1] for p in paths])
     reach, fastest = float(np.abs(x).max()), float(np.abs(v).max())
-    target, first = [], [0]
+    target, first, drives = [], [0], []
     for piece, path, nuisance in zip(problem.pieces, paths, found.nuisances, strict=True):
-        drive = np.zeros(len(path))
-        if piece.driven and not piece.based:
-            drive = piece.drive[:: piece.every][: len(path)] + nuisance[found.node.states]
-        target.append(drive - mass * path[:, 2])
+        pushed = piece.driven and not piece.based
+        zero = float(nuisance[found.node.states]) if pushed else 0.0
+        drives.append(driving(piece, path, motor, zero) if pushed else np.zeros(len(path)))
+        target.append(drives[-1] - moving * path[:, 2])
         first.append(first[-1] + len(path))
     force = np.concatenate(target)
     size = float(np.sqrt(np.mean(force**2)))
     plain = np.column_stack([x / reach, v / fastest, np.ones(len(x))])
-    stiff = float(found.node.values(found.point)[2])
     for law in (m for m in beside if m.law is not None):
         own = CATALOGUE[law.id].begun({**(law.law or {}), **found.node.of(law, found.point)})
-        column = law_along(problem, paths, first, law.id, own, stiff)
+        column = law_along(problem, paths, first, drives, law.id, own, stiff)
         plain = np.column_stack([plain, column / max(float(np.sqrt(np.mean(column**2))), 1e-300)])
     result = []
     sizes = reach, fastest, 0.3 * size
     turns = any(unit.startswith("rad") for unit in problem.pieces[0].units)
+    geared = turns and any(p.driven and not p.based for p in problem.pieces)
     possible = [f for f in forms if (turns or f.name != SINE) and (stiff > 0.0 or f.effect != HYSTERESIS)]
+    possible = [f for f in possible if geared or f.effect != GEARS]
     for form in (f for f in possible if _another(f, beside)):
-        along = partial(on_path, form, partial(law_along, problem, paths, first), plain, force, stiff, sizes)
+        along = partial(on_path, form, partial(law_along, problem, paths, first, drives), plain, force, stiff, sizes)
         rest, shape, k, d, values = best_shape(along, form.shapes(*sizes))
         member = member_of(form, values, form.unit(shape, stiff, *sizes), reach)
         node = Node(found.node.baseline, (*beside, member))
@@ -274,16 +284,20 @@ def _begun(node: Node, found: Fit, given: Sequence[float], member: Member, value
     old = {id(c): float(p) for c, p in zip(found.node.coordinates, found.point, strict=True)}
     own = {id(c): c.at(values[c.name]) for c in member.coordinates}
     point = np.array([own.get(id(c), old.get(id(c), c.mean)) for c in node.coordinates])
-    point[:3] = [c.at(v) for c, v in zip(node.baseline, given, strict=True)]
+    point[:3] = [c.at(v) for c, v in zip(node.baseline[:3], given, strict=True)]
     return point
 
 
 def law_along(
-    problem: Problem, paths: Sequence[Array], first: Sequence[int], effect: str, values: Shape, stiffness: float
-) -> Array:
-    """A law's force along the paths, (n,) float [N]."""
+    problem: Problem, paths: Sequence[Array], first: Sequence[int], drives: Sequence[Array], effect: str,
+    values: Shape, stiffness: float,
+) -> Array:  # fmt: skip
+    """A law's force along the paths, (n,) float [N]; ``drives`` : what drives along each, none where no gears carry
+    it."""
     e = effect_vector({effect: values})
     out = np.empty(first[-1])
-    for piece, path, at in zip(problem.pieces, paths, first[:-1], strict=True):
-        force_along(path, piece.step * piece.every, stiffness, e, effect == UNLISTED, out[at : at + len(path)])
+    for k, (piece, path, at) in enumerate(zip(problem.pieces, paths, first[:-1], strict=True)):
+        drive = drives[k] if drives else np.zeros(len(path))
+        asked = effect == UNLISTED, effect == GEARS
+        force_along(path, drive, piece.step * piece.every, stiffness, e, *asked, out[at : at + len(path)])
     return out

@@ -10,12 +10,13 @@ from functools import partial
 import numpy as np
 from scipy.signal import find_peaks
 
-from ssmr_ident.doctor.laws import FORMS, SINE, Form, Proposal, best_shape, law_along, member_of, on_path
+from ssmr_ident.doctor.laws import FORMS, GEARS, SINE, Form, Proposal, best_shape, law_along, member_of, on_path
 from ssmr_ident.doctor.rules import TIE
 from ssmr_ident.doctor.table import Row
+from ssmr_ident.estimate.coordinate import Coordinate
 from ssmr_ident.estimate.generic import branch, changing, delay, memory, rider, static
 from ssmr_ident.estimate.network import motion_of
-from ssmr_ident.estimate.node import Coordinate, Member
+from ssmr_ident.estimate.node import Member
 from ssmr_ident.estimate.values import Fit, Problem, Start
 
 Array = np.ndarray
@@ -122,8 +123,10 @@ def _along_one(problem: Problem, fit: Fit, spring: str) -> list[Proposal]:
     reach, fastest, size = float(np.abs(x).max()), float(np.abs(v).max()), float(np.sqrt(np.mean(force**2)))
     plain = np.column_stack([x / reach, v / fastest, np.ones(len(x))])
     sizes, result = (reach, fastest, 0.3 * size), []
-    for form in (f for f in FORMS if layout.rotary or f.name != SINE):
-        along = partial(on_path, form, partial(law_along, problem, paths, first), plain, force, own_stiffness, sizes)
+    for form in (f for f in FORMS if (layout.rotary or f.name != SINE) and f.effect != GEARS):
+        along = partial(
+            on_path, form, partial(law_along, problem, paths, first, ()), plain, force, own_stiffness, sizes
+        )
         rest, shape, k, d, law = best_shape(along, form.shapes(*sizes))
         member = replace(member_of(form, law, form.unit(shape, own_stiffness, *sizes), reach), element=spring)
         result.append(_begun(fit, member, form, law, {2 * index: max(d, 0.0), 2 * index + 1: k}, rest, len(force)))

@@ -18,7 +18,8 @@ COARSE, STEPS = 20, 40
 def coarser(problem: Problem) -> Problem:
     """The same recordings in means of several samples each, under white noise; ``problem`` where it has few already."""
     fastest = max(problem.frequency, problem.fastest)
-    blocks = [blocks_of(p.rate, COARSE * fastest, p.band) for p in problem.pieces]
+    # a motor is switched and limited from one sample to the next
+    blocks = [1 if p.motor else blocks_of(p.rate, COARSE * fastest, p.band) for p in problem.pieces]
     if max(blocks) == 1:
         return problem
     pieces = tuple(_coarser(p, block, fastest) for p, block in zip(problem.pieces, blocks, strict=True))

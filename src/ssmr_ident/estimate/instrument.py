@@ -6,7 +6,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ssmr_ident.estimate.node import Coordinate, Member
+from ssmr_ident.estimate.coordinate import Coordinate
+from ssmr_ident.estimate.node import Member
 from ssmr_ident.estimate.pieces import Piece
 from ssmr_ident.estimate.values import Problem
 from ssmr_ident.physics.effect import Effect, Site, Sized

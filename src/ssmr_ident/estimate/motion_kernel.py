@@ -13,10 +13,12 @@ import math
 import numpy as np
 
 from ssmr_ident.core.kernel import inlined, kernel
-from ssmr_ident.physics.effects import unlisted
-from ssmr_ident.physics.element import STATES, element_force, element_next, free_slots, inner_slots
+from ssmr_ident.physics.effects import load_dependent_friction, unlisted
+from ssmr_ident.physics.element import STATES, element_force, element_next, free_slots, inner_slots, spring_force
+from ssmr_ident.physics.slots import LOAD_FRICTION, LOAD_ROUNDING, LOAD_SHARE
+from ssmr_ident.physics.voltage_drive import torque, voltage
 
-_unlisted = unlisted.force
+_unlisted, _gears = unlisted.force, load_dependent_friction.force
 
 TINY = 1e-6
 """Relative step of the differences that give a law's slopes; laws are scalar functions, run in double precision."""
@@ -47,23 +49,54 @@ def _cell(table, place):
 
 
 @kernel
-def law_force(x, v, z, time, stiffness, e, terms):
+def law_force(x, v, z, time, stiffness, drive, e, terms, gears):
+    """Force of the laws [N]; ``drive`` : what drives [N], where ``gears`` carry it."""
     f = element_force(x, v, z, stiffness, 1.0, 1.0, True, inner_slots(e))
+    if gears:
+        carried = drive + spring_force(x, stiffness, e)
+        f += _gears(v, carried, e[LOAD_FRICTION], e[LOAD_SHARE], e[LOAD_ROUNDING])
     return f + _unlisted(x, v, time, 1.0, free_slots(e)) if terms else f
 
 
 @inlined
-def _force(x, v, z, time, row, drive, g, slopes, with_slopes):
+def _of_motor(x, v, given, motor, linear, slopes, first):
+    """Torque of a motor [N m], its slopes over angle, rate and what it is given; those over its constant and resistance
+    are taken off those of the force beside."""
+    signal, on = given[1], given[2]
+    _, gain, limit, ratio, _ = motor
+    constant, resistance = linear[0, 3], linear[0, 4]
+    volts = voltage(signal, x, gain, limit)
+    by_volts, braking = ratio * constant / resistance, (ratio * constant) ** 2 / resistance
+    own = torque(volts, v, on, by_volts, braking)
+    slopes[first + 3] -= on * (by_volts * volts - 2.0 * braking * v) / constant * linear[1, 3]
+    slopes[first + 4] += own / resistance * linear[1, 4]
+    within = gain * abs(signal - x) < limit
+    return (
+        own,
+        -on * by_volts * gain if within else 0.0,
+        -on * braking,
+        on * by_volts * (gain if within else 0.0) + (on * by_volts if gain == 0.0 else 0.0),
+    )
+
+
+@inlined
+def _force(x, v, z, time, row, given, g, slopes, with_slopes):
     """Force beside the linear rig [N], its slopes over x and v; those over hidden states and parameters into
-    ``slopes``, (hidden + parameters,)."""
+    ``slopes``, (hidden + parameters,). ``given`` : what drives [N], what a motor is given, whether it is connected."""
     (reach, steep, tab_x, tab_v, tab_xv, courses, course_kind, c, linear, yields, has_law, e, law_index, law_scale,
-     size_x, size_v, uses) = g  # fmt: skip
+     size_x, size_v, uses, motor) = g  # fmt: skip
     jenkins = len(yields)
     remembers = uses[3] or uses[4] or uses[5]
     hidden = jenkins + (STATES if remembers else 0)
     f, fx, fv = 0.0, 0.0, 0.0
     at = 0
     first = hidden + linear.shape[1]
+    drive, drive_x, drive_v, drive_zero = steep[2] * given[0], 0.0, 0.0, steep[2]
+    if motor[0]:
+        own, drive_x, drive_v, drive_zero = _of_motor(x, v, given, motor, linear, slopes, hidden)
+        drive += own
+        f, fx, fv = -own, -drive_x, -drive_v
+    pulls, pulls_x = f, fx
     n = tab_x.shape[1]
     if n:
         i, share, per = _cell(tab_x, x / reach)
@@ -75,6 +108,7 @@ def _force(x, v, z, time, row, drive, g, slopes, with_slopes):
             if with_slopes:
                 slopes[first + at] = value
             at += 1
+    pulls, pulls_x = f - pulls, fx - pulls_x  # what a spring of any shape pulls
     n, products = tab_v.shape[1], tab_xv.shape[2]
     if n or products:
         low, top, _ = steep
@@ -114,9 +148,9 @@ def _force(x, v, z, time, row, drive, g, slopes, with_slopes):
         elif kind == CONSTANT:
             value = psi
         else:  # the mass is another: what acts on it moves it by another share
-            value = psi * (linear[0, 2] * x + linear[0, 1] * v - steep[2] * drive)
-            fx += c[at] * psi * linear[0, 2]
-            fv += c[at] * psi * linear[0, 1]
+            value = psi * (linear[0, 2] * x + linear[0, 1] * v - drive)
+            fx += c[at] * psi * (linear[0, 2] - drive_x)
+            fv += c[at] * psi * (linear[0, 1] - drive_v)
             if with_slopes:
                 slopes[hidden + 2] += c[at] * psi * x * linear[1, 2]
                 slopes[hidden + 1] += c[at] * psi * v * linear[1, 1]
@@ -130,24 +164,29 @@ def _force(x, v, z, time, row, drive, g, slopes, with_slopes):
             slopes[k] = c[at]
             slopes[first + at] = z[k]
         at += 1
+    if motor[0] and with_slopes:
+        slopes[first + at + len(law_index)] -= drive_zero
     if has_law:
         h = (z[jenkins], z[jenkins + 1], z[jenkins + 2]) if remembers else (0.0, 0.0, 0.0)
         stiffness = linear[0, 2]
         dx, dv = TINY * size_x, TINY * size_v
         dk = TINY * stiffness if stiffness > 0.0 else TINY
-        centre = 0.0
+        gears = uses[7]
+        d_drive = TINY * motor[4]
+        centre, by_drive = 0.0, 0.0
         # one place from which the law is called, or the compiler writes it out a dozen times
-        for q in range(7 + len(law_index) if with_slopes else 2):
-            if 1 <= q < 7 and not uses[q - 1]:
+        for q in range(8 + len(law_index) if with_slopes else 2):
+            if (1 <= q < 7 and not uses[q - 1]) or (q == 7 and not gears):
                 continue
-            was = e[law_index[q - 7]] if q >= 7 else 0.0
-            if q >= 7:
-                e[law_index[q - 7]] = was + TINY * law_scale[q - 7]
+            was = e[law_index[q - 8]] if q >= 8 else 0.0
+            if q >= 8:
+                e[law_index[q - 8]] = was + TINY * law_scale[q - 8]
             at_v = v + dv if q == 1 else v
             at_x = x + dx if q == 2 else x
             at_k = stiffness + dk if q == 3 else stiffness
             at_h = (h[0] + dx if q == 4 else h[0], h[1] + dx if q == 5 else h[1], h[2] + dx if q == 6 else h[2])
-            value = law_force(at_x, at_v, at_h, time, at_k, e, uses[6])
+            carried = drive + pulls + (d_drive if q == 7 else 0.0)
+            value = law_force(at_x, at_v, at_h, time, at_k, carried, e, uses[6], gears)
             if q == 0:
                 centre = value
                 f += value
@@ -159,14 +198,25 @@ def _force(x, v, z, time, row, drive, g, slopes, with_slopes):
                 slopes[hidden + 2] += (value - centre) / dk * linear[1, 2]
             elif q < 7:
                 slopes[jenkins + q - 4] = (value - centre) / dx
+            elif q == 7:
+                by_drive = (value - centre) / d_drive
             else:
-                slopes[first + at + q - 7] = (value - centre) / (TINY * law_scale[q - 7])
-                e[law_index[q - 7]] = was
+                slopes[first + at + q - 8] = (value - centre) / (TINY * law_scale[q - 8])
+                e[law_index[q - 8]] = was
+        if with_slopes and gears:  # what drives is carried by the gears, too
+            fx += by_drive * (drive_x + pulls_x)
+            fv += by_drive * drive_v
+            for k in range(tab_x.shape[1]):
+                slopes[first + k] *= 1.0 + by_drive
+            if motor[0]:
+                slopes[hidden + 3] *= 1.0 - by_drive
+                slopes[hidden + 4] *= 1.0 - by_drive
+            slopes[first + at + len(law_index)] += by_drive * drive_zero
     return f, fx, fv
 
 
 @kernel
-def _toward_rest(x, v, z, time, row, drive, g, slopes, mean_slopes, with_slopes):
+def _toward_rest(x, v, z, time, row, given, g, slopes, mean_slopes, with_slopes):
     """The force's mean over the velocities from 0 to ``v``, and what ``_force`` says at ``v``; ``mean_slopes`` : those
     of the mean, ``slopes`` those at ``v``."""
     mean, f, fx, fv = 0.0, 0.0, 0.0, 0.0
@@ -175,7 +225,7 @@ def _toward_rest(x, v, z, time, row, drive, g, slopes, mean_slopes, with_slopes)
         above, below = 2.0 ** (1 - q) if q else 1.0, 0.5 * at if q < GRADES - 1 else 0.0
         weight = 0.5 * (above - below) if q < GRADES else 2.0**-GRADES
         slopes[:] = 0.0
-        f, fx, fv = _force(x, v * at, z, time, row, drive, g, slopes, with_slopes)
+        f, fx, fv = _force(x, v * at, z, time, row, given, g, slopes, with_slopes)
         mean += weight * f
         if with_slopes:
             for k in range(len(slopes)):
@@ -190,7 +240,7 @@ def _sharp(change, by_slopes):
 
 
 @kernel
-def _turned(v, v_was, moved, kick, x, z, time, row, drive, g, slopes, more_slopes, mean_slopes):
+def _turned(v, v_was, moved, kick, x, z, time, row, given, g, slopes, more_slopes, mean_slopes):
     """What a force that jumps where the motion turns does over a step beyond its mean of begin and end.
 
     Velocity goes along a straight line from ``v_was`` to what is returned, so that the jump lies within the step where
@@ -211,7 +261,7 @@ def _turned(v, v_was, moved, kick, x, z, time, row, drive, g, slopes, more_slope
     while True:  # the begin of the step, its end until that has settled, and both with slopes
         begin = turn == 0 or turn == NEWTON + 2
         mean_slopes[:] = 0.0
-        mean, f, fx, fv = _toward_rest(x, v_was if begin else v, z, time, row, drive, g, slopes, mean_slopes, last)
+        mean, f, fx, fv = _toward_rest(x, v_was if begin else v, z, time, row, given, g, slopes, mean_slopes, last)
         change = v - v_was
         share = -v_was / change
         if begin:
@@ -246,7 +296,7 @@ def _turned(v, v_was, moved, kick, x, z, time, row, drive, g, slopes, more_slope
 def _advance(z, tangents, change, change_slopes, step, first, by_v, g):
     """Hidden states one step later, with their slopes; ``change`` : deflection over the step,
     ``first`` : column of the first parameter of a law; ``by_v`` : (3,) float to work in."""
-    (_, _, _, _, _, _, _, _c, _linear, yields, has_law, e, law_index, law_scale, size_x, size_v, uses) = g
+    (_, _, _, _, _, _, _, _c, _linear, yields, has_law, e, law_index, law_scale, size_x, size_v, uses, _motor) = g
     jenkins = len(yields)
     columns = tangents.shape[1]
     for k in range(jenkins):
@@ -290,7 +340,7 @@ def _advance(z, tangents, change, change_slopes, step, first, by_v, g):
 
 @kernel
 def run(
-    lin, slopes_lin, rows, slopes_rows, g, beside, starts, borders, drive, drives, every, step, begin,
+    lin, slopes_lin, rows, slopes_rows, g, beside, starts, borders, drive, drives, motor, every, step, begin,
     y, dy, ends, dends,
 ):  # fmt: skip
     """Simulate stretches of a recording.
@@ -303,7 +353,8 @@ def run(
     rows, slopes_rows : tuples of float
         (C, from_drive, from_force): channels over states, drive and force beside.
     g : tuple
-        The forces beside, as ``_force`` unpacks them.
+        The forces beside, as ``_force`` unpacks them: its last is (whether there is a motor, gain and limit of its
+        controller, its gear ratio, size of what drives).
     beside : bool
         Whether there are any.
     starts : (s, states) float
@@ -311,7 +362,10 @@ def run(
     borders : (s + 1,) int
         Samples at which stretches begin; the last is the number of samples.
     drive, drives : (m,), (e, m) float
-        On the fine grid; the last value goes on. ``drives`` are its slopes over what may change in it: 1 for its zero.
+        On the fine grid; the last value goes on. ``drives`` are its slopes over what may change in it: 1 for its zero,
+        which with a motor is that of what the motor is given.
+    motor : pair of (m,) float
+        What a motor is given, and whether it is connected, on the fine grid; a single number each where there is none.
     every : int
         Steps a sample.
     step, begin : float [s]
@@ -346,7 +400,7 @@ def run(
     for k in range(n_lin):
         for i in range(n_lin):
             moved_by[k] += transition[k, i] * kick[i]
-    last = len(drive) - 1
+    last, last_given = len(drive) - 1, len(motor[0]) - 1
     jumps = g[16][0] or g[3].shape[1] > 0 or g[4].shape[2] > 0  # what does not look at speed does not jump with it
     for stretch in range(starts.shape[0]):
         ds[:], dz[:], df[:] = 0.0, 0.0, 0.0
@@ -363,6 +417,7 @@ def run(
         for n in range(total + 1):
             at = first * every + n
             here = drive[min(at, last)]
+            given = here, motor[0][min(at, last_given)], motor[1][min(at, last_given)]
             if beside:
                 moved = s[1]
                 row = min(at // every, y.shape[0] - 1)
@@ -375,7 +430,7 @@ def run(
                 turn = 0
                 while True:
                     slopes[:] = 0.0
-                    f, fx, fv = _force(s[0], v, z, time, row, here, g, slopes, turn == 0 or turn == NEWTON)
+                    f, fx, fv = _force(s[0], v, z, time, row, given, g, slopes, turn == 0 or turn == NEWTON)
                     away = half * (v - moved + kick[1] * f) / max(1.0 + kick[1] * fv, 0.1)
                     if turn == NEWTON:
                         break
@@ -395,7 +450,7 @@ def run(
                     and _sharp(f - f_was, 0.5 * ((fv + fv_was) * (v - v_was) + (fx + fx_was) * (s[0] - x_was)))
                 ):
                     at_v, at_f, at_fx, at_fv, more, more_v, more_was = _turned(
-                        v, v_was, moved, kick[1], s[0], z, time, row, here, g, slopes_now, more_slopes, mean_slopes
+                        v, v_was, moved, kick[1], s[0], z, time, row, given, g, slopes_now, more_slopes, mean_slopes
                     )
                     if more != 0.0:
                         v, f, fx, fv = at_v, at_f, at_fx, at_fv

@@ -9,9 +9,10 @@ from dataclasses import replace
 import numpy as np
 
 from ssmr_ident.core.parameter import ParameterSet
+from ssmr_ident.estimate.coordinate import Coordinate
 from ssmr_ident.estimate.exact import polish
 from ssmr_ident.estimate.latent_force import network_paths
-from ssmr_ident.estimate.node import Coordinate, Node
+from ssmr_ident.estimate.node import Node
 from ssmr_ident.estimate.problem import VAGUE, known_bandwidth, made, seen_hz
 from ssmr_ident.estimate.shooting import shot
 from ssmr_ident.estimate.simulated import Compiled, simulate
@@ -106,9 +107,9 @@ def motion_of(problem: Problem, found: Fit) -> list[Array]:
 
 def followed(problem: Problem, node: Node, point: Array) -> Fit:
     """A model held where it is, with starts and zeros of each recording at their best."""
-    start = Start(point, paths=tuple(network_paths(problem, node, point)))
+    start = Start(point, paths=tuple(paths_of(problem, node, point)))
     frozen = range(len(point))
-    if node.beside:
+    if node.beside or any(piece.motor for piece in problem.pieces):
         return polish(problem, node, shot(problem, node, start, held=True), STEPS, freeze=frozen)
     k = node.motion_states
     nuisances = []

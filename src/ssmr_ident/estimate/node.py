@@ -9,6 +9,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from scipy.linalg import expm
 
+from ssmr_ident.estimate.coordinate import Coordinate
+from ssmr_ident.estimate.motor import drive_of
 from ssmr_ident.estimate.pieces import Piece, Seen
 from ssmr_ident.physics.effects import CATALOGUE
 from ssmr_ident.physics.element import STATES
@@ -25,45 +27,6 @@ MEMORY = "memory"
 
 APART = 1e-5
 """Relative step of the differences of small matrices, which are exact to 1e-15."""
-
-
-@dataclass(frozen=True)
-class Coordinate:
-    """A parameter as the fit moves it.
-
-    Parameters
-    ----------
-    name : str
-    scale : float
-        What one unit of the coordinate is; of a logarithm, the value at 0.
-    log : bool
-    lower, upper : float
-        Of the value.
-    mean, std : float
-        Prior in coordinates.
-    unit : str
-    """
-
-    name: str
-    scale: float
-    log: bool = False
-    lower: float = -math.inf
-    upper: float = math.inf
-    mean: float = 0.0
-    std: float = math.inf
-    unit: str = ""
-
-    def value(self, at: float) -> float:
-        value = self.scale * (math.exp(min(at, 200.0)) if self.log else at)
-        return min(max(value, self.lower), self.upper)
-
-    def at(self, value: float) -> float:
-        value = min(max(value, self.lower), self.upper)
-        return math.log(value / self.scale) if self.log else value / self.scale
-
-    def slope(self, at: float) -> float:
-        """d value / d coordinate."""
-        return self.scale * (math.exp(min(at, 200.0)) if self.log else 1.0)
 
 
 def _no_courses(piece: Piece) -> Array:
@@ -285,7 +248,10 @@ def matrices(node: Node, values: Array, seen: Seen) -> tuple[Array, ...]:
     """
     layout, count, n = node.layout, len(node.layout.bodies), node.linear_states
     rates = slice(count, 2 * count)
-    mass, damping, stiffness = layout.matrices(values[: len(node.baseline)])
+    mass, damping, stiffness = layout.matrices(values[: len(layout.keys)])
+    drive_at = drive_of(values[: len(node.baseline)]) if layout == ONE else None
+    if drive_at is not None:
+        mass = mass + drive_at.inertia
     stretch = layout.stretch
     a = np.zeros((n, n))
     at, place = len(node.baseline), 2 * count

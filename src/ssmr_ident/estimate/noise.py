@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.signal import ss2tf
 
+from ssmr_ident.estimate.motor import drive_of
 from ssmr_ident.estimate.node import stepped
 from ssmr_ident.estimate.pieces import Piece, white_of
 from ssmr_ident.estimate.values import Fit, Problem
@@ -72,6 +73,10 @@ def from_force(piece: Piece, fit: Fit) -> list[tuple[Array, Array]]:
     powers of z, by a fit's masses, dampings and stiffnesses alone."""
     bare = replace(fit.node, members=())
     values = fit.node.values(fit.point)[: len(bare.baseline)]
+    motor = drive_of(values) if piece.motor is not None else None
+    if motor is not None and piece.motor is not None:  # it brakes, and its controller holds
+        values[1] += motor.braking
+        values[2] += motor.gain * piece.motor.gain
     (transition, now, later, _), (rows, by_drive, _) = stepped(bare, values, piece.seen, 1.0 / piece.rate)
     # a drive in straight lines enters with its next value: that part belongs to the output
     entering = (now + transition @ later)[:, None]

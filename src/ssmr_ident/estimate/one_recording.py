@@ -53,10 +53,10 @@ def alone(problem: Problem, fit: Fit, recording: int) -> Oscillation:
     """
     own = [k for k, piece in enumerate(problem.pieces) if piece.recording == recording]
     part = replace(problem, pieces=tuple(problem.pieces[k] for k in own), noises=tuple(problem.noises[k] for k in own))
-    mass, damping, stiffness = fit.node.baseline
-    node = Node((mass, replace(damping, std=VAGUE_DAMPING), replace(stiffness, std=VAGUE)))
+    mass, damping, stiffness, *motor = fit.node.baseline
+    node = Node((mass, replace(damping, std=VAGUE_DAMPING), replace(stiffness, std=VAGUE), *motor))
     start = Start(fit.point, tuple(fit.nuisances[k] for k in own))
-    return oscillation(polish(part, node, start, STEPS, freeze=[0]))
+    return oscillation(polish(part, node, start, STEPS, freeze=[0, *range(3, 3 + len(motor))]))
 
 
 def oscillation(fit: Fit) -> Oscillation:

@@ -14,6 +14,7 @@ import numpy as np
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.recording import Recording
 from ssmr_ident.estimate.foot import foot_motion
+from ssmr_ident.estimate.motor import Given, course_of, given_of
 from ssmr_ident.experiments.campaign import Measurement
 from ssmr_ident.experiments.quantities import UNITS
 from ssmr_ident.session.entry import FURTHER
@@ -38,6 +39,9 @@ STEPS = 60
 STRAIGHT, FINER = 0.25, 4
 """Radians of a drive's fastest part in a step: straight lines between err by their square over 12, half a per cent of
 that part; and at most so many steps a sample, for a blow goes up to half the rate."""
+
+GEARED = 150
+"""Least integration steps a period under a motor, whose gears stick and let go."""
 
 FASTEST = 1e-3
 """Share of a drive's variance that may lie above its fastest part."""
@@ -109,6 +113,8 @@ class Piece:
         Body on which the drive acts.
     band : (float, float) or None [Hz]
         In which alone it counts.
+    motor : Given or None
+        What a motor is given, whose torque acts beside the drive.
     """
 
     name: str
@@ -129,6 +135,7 @@ class Piece:
     bodies: tuple[int, ...] = ()
     into: int = 0
     band: Band | None = None
+    motor: Given | None = None
 
     def counted(self, columns: Array, skipped: int = 0) -> Array:
         """What counts of samples as long as ``y``, (n, c, …) to (m, c, …): all but single wild ones and those skipped
@@ -169,15 +176,22 @@ class Piece:
 
 def cut(piece: Piece, first: int, after: int) -> Piece:
     """Samples ``first`` to before ``after`` of a piece, with a start of their own."""
-    drive = piece.drive[first * piece.every : after * piece.every + 1] if piece.driven else piece.drive
+    steps = first * piece.every, after * piece.every + 1
+    drive = piece.drive[slice(*steps)] if piece.driven else piece.drive
     return replace(
         piece, time=piece.time[first:after], y=piece.y[first:after], counts=piece.counts[first:after], drive=drive,
+        motor=piece.motor.part(*steps) if piece.motor else None,
         foot=piece.foot[first:after] if len(piece.foot) > 1 else piece.foot,
     )  # fmt: skip
 
 
 def pieces_of(
-    measurement: Measurement, index: int, frequency: float, bandwidth_hz: float, bodies: Sequence[str] = ()
+    measurement: Measurement,
+    index: int,
+    frequency: float,
+    bandwidth_hz: float,
+    bodies: Sequence[str] = (),
+    motor: bool = False,
 ) -> tuple[Piece, ...]:
     """Prepare a recording.
 
@@ -192,6 +206,8 @@ def pieces_of(
         Of the accelerometer, as known; ``inf`` where nothing has to be undone.
     bodies : sequence of str
         Of a network; none of a rig, which moves as one, and of whose sensors those of a second place are left out.
+    motor : bool
+        Whether a motor may drive the rig.
 
     Raises
     ------
@@ -203,6 +219,7 @@ def pieces_of(
         channels, drive_name, places, into = placed_channels(measurement, bodies)
     else:
         (channels, drive_name), places, into = channels_of(recording), (), 0
+    course = course_of(measurement) if motor else None
     wanted = [*channels, *([drive_name] if drive_name else [])]
     even = even_samples(recording.time, np.column_stack([recording[name] for name in wanted]))
     y, rate = even.samples[:, : len(channels)], even.sample_rate
@@ -215,7 +232,8 @@ def pieces_of(
         y = y - foot
     band = _within(measurement, rate)
     found = []
-    for first, after in stretches(y, rate, frequency) if not drive_name else [(0, len(y))]:
+    driven = bool(drive_name) or course is not None
+    for first, after in stretches(y, rate, frequency) if not driven else [(0, len(y))]:
         part, force, block = y[first:after], drive[first:after], blocks_of(rate, FINEST * frequency, band)
         judged = [_single(column) for column in part.T]
         counts = ~np.column_stack([wild for wild, _ in judged])
@@ -232,7 +250,12 @@ def pieces_of(
             every = max(
                 every, min(FINER, math.ceil(2.0 * math.pi * fastest_part(force, rate) * block / rate / STRAIGHT))
             )
-        fine = _between(force, block, every, len(averaged)) if drive_name else np.zeros(2)
+        given = None
+        if course is not None:
+            every = max(every, math.ceil(GEARED * frequency * block / rate))
+            at = 0.5 * (block - 1) + np.arange(len(averaged) * every + 1) * (block / every)
+            given = given_of(course, at)
+        fine = _between(force, block, every, len(averaged)) if driven else np.zeros(2)
         white = np.maximum(white_of(averaged, rate / block, band), least)
         middle = even.start + (first + np.arange(len(averaged)) * block + 0.5 * (block - 1)) / rate
         found.append(
@@ -246,7 +269,7 @@ def pieces_of(
                 kept > 0.5,
                 fine,
                 drive_name in FEET,
-                bool(drive_name),
+                driven,
                 block / (rate * every),
                 every,
                 white,
@@ -255,6 +278,7 @@ def pieces_of(
                 places,
                 into,
                 band,
+                given,
             )
         )
     return tuple(found)

@@ -10,12 +10,14 @@ import numpy as np
 
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import ParameterSet
-from ssmr_ident.estimate.node import Coordinate
+from ssmr_ident.estimate.coordinate import Coordinate
+from ssmr_ident.estimate.motor import course_of, drive_coordinates
 from ssmr_ident.estimate.noise import first_white
 from ssmr_ident.estimate.pieces import ORDER, Piece, channels_of, fastest_part, pieces_of
 from ssmr_ident.estimate.values import Problem
 from ssmr_ident.experiments.campaign import Measurement
 from ssmr_ident.physics.rig import RIG_KEYS
+from ssmr_ident.physics.voltage_drive import VoltageDrive, drive_from_parameters
 from ssmr_ident.signals.band import inside
 from ssmr_ident.signals.grid import even_samples
 from ssmr_ident.signals.noise import AutoregressiveNoise
@@ -54,9 +56,22 @@ def problem_of(measurements: Sequence[Measurement], parameters: ParameterSet, sh
     fastest = max(frequency, moving)
     if not natural_hz(parameters):
         fastest = max(fastest, *(min(drive_hz(m), sharpest * moving) for m in measurements))
-    problem = made(measurements, (), (), frequency, fastest, bandwidth)
+    motor = drive_from_parameters(parameters)
+    if motor is not None:
+        fastest = max(fastest, *(in_the_loop_hz(m, parameters, motor) for m in measurements))
+    problem = made(measurements, (), (), frequency, fastest, bandwidth, motor is not None)
     driven = any(p.driven and not p.based for p in problem.pieces)
-    return replace(problem, baseline=baseline_of(parameters, driven, problem.size, frequency))
+    baseline = (*baseline_of(parameters, driven, problem.size, frequency), *drive_coordinates(parameters))
+    return replace(problem, baseline=baseline)
+
+
+def in_the_loop_hz(measurement: Measurement, parameters: ParameterSet, motor: VoltageDrive) -> float:
+    """Natural frequency of a rig that its controller holds, beside its own spring."""
+    mass, _, stiffness = RIG_KEYS["inertia_kg_m2" in parameters]
+    course = course_of(measurement)
+    held = motor.gain * course.controller.gain if course is not None and course.controller is not None else 0.0
+    stiff = max(float(parameters[stiffness].value), 0.0) + held
+    return math.sqrt(stiff / (float(parameters[mass].value) + motor.inertia)) / (2.0 * math.pi)
 
 
 def known_bandwidth(measurements: Sequence[Measurement], parameters: ParameterSet) -> float:
@@ -69,10 +84,12 @@ def known_bandwidth(measurements: Sequence[Measurement], parameters: ParameterSe
 
 def made(
     measurements: Sequence[Measurement], bodies: Sequence[str], baseline: tuple[Coordinate, ...], frequency: float,
-    fastest: float, bandwidth: float,
+    fastest: float, bandwidth: float, motor: bool = False,
 ) -> Problem:  # fmt: skip
     """The problem of recordings of a rig, or of a network of given bodies; frequencies in Hz."""
-    pieces = first_white([p for i, m in enumerate(measurements) for p in pieces_of(m, i, fastest, bandwidth, bodies)])
+    pieces = first_white(
+        [p for i, m in enumerate(measurements) for p in pieces_of(m, i, fastest, bandwidth, bodies, motor)]
+    )
     size = float(np.sqrt(np.mean([_size(p, frequency) ** 2 for p in pieces])))
     if not size:
         raise InputError(

@@ -22,6 +22,13 @@ stays within a single sample's noise is nothing that a sheet would promise."""
 ZERO_SHARE = 0.3
 """Standard deviation of a drive's zero, in the drive's own."""
 
+SIGNAL_SHARE = 0.03
+"""The same of what a motor is given, which is a number before it is a voltage or a goal: what an encoder's zero is off
+by."""
+
+NONE = 1e-12
+"""Of what cannot be: an encoder counts, so that its gain and zero stay."""
+
 
 def nuisance_scales(problem: Problem, node: Node, piece: Piece) -> Array:
     """Prior standard deviations of a piece's nuisances."""
@@ -29,16 +36,19 @@ def nuisance_scales(problem: Problem, node: Node, piece: Piece) -> Array:
     # what holds a mass aside has loaded its friction, and so has what went before; a driven log begins at rest
     sizes[node.linear_states :] *= 1e-6 if piece.driven and piece.time[0] <= piece.begin else 0.1
     zero, offsets = zero_scales(piece)
-    usual = node.values(np.array([c.mean for c in node.coordinates]))[: len(node.baseline)]
+    gain = np.full(len(zero), GAIN if piece.motor is None else NONE)
+    usual = node.values(np.array([c.mean for c in node.coordinates]))[: len(node.layout.keys)]
     held = bool(np.any(usual[len(node.layout.bodies) + 1 :: 2] > 0.0))
     # the path of a mass that nothing holds may itself go on and on
-    drifts = DRIFT * piece.white if held else np.full(len(offsets), 1e-12)
-    return np.concatenate([sizes, zero, np.full(len(zero), GAIN), offsets, drifts])
+    drifts = DRIFT * piece.white if held and piece.motor is None else np.full(len(offsets), NONE)
+    return np.concatenate([sizes, zero, gain, offsets, drifts])
 
 
 def zero_scales(piece: Piece) -> list[Array]:
-    spread = np.std(piece.drive) if piece.driven else 0.0
-    zero = np.array([max(ZERO_SHARE * spread, 1e-12)]) if piece.driven else np.zeros(0)
+    spread = ZERO_SHARE * float(np.std(piece.drive)) if piece.driven else 0.0
+    if piece.motor is not None:
+        spread = SIGNAL_SHARE * piece.motor.spread
+    zero = np.array([max(spread, 1e-12)]) if piece.driven else np.zeros(0)
     return [zero, 3.0 * piece.y.std(axis=0) + np.abs(piece.y.mean(axis=0))]
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -11,6 +12,7 @@ from scipy.interpolate import CubicSpline
 
 from ssmr_ident.estimate.instrument import OUTPUT, passed_on
 from ssmr_ident.estimate.motion_kernel import run
+from ssmr_ident.estimate.motor import drive_of
 from ssmr_ident.estimate.node import MEMORY, Node, Tables, law_places, law_vector, merged, stepped_with_slopes
 from ssmr_ident.estimate.pieces import Piece
 from ssmr_ident.estimate.values import Problem
@@ -19,6 +21,9 @@ Array = np.ndarray
 
 REMEMBER = ("dry_friction", "hysteresis", "viscoelastic_relaxation")
 """Laws by the hidden state of an element that they use."""
+
+GEARS = "load_dependent_friction"
+"""The law that looks at what drives."""
 
 SEES = {
     "v": (True, False, False),
@@ -55,14 +60,15 @@ class Compiled:
 
     @cached_property
     def uses(self) -> Array:
-        """(7,) bool: what the laws look at (speed, deflection, stiffness, three hidden states), and whether any has
-        terms that no list holds."""
+        """(8,) bool: what the laws look at (speed, deflection, stiffness, three hidden states), whether any has terms
+        that no list holds, and whether gears carry what drives."""
         laws = [m for m in self.node.members if m.law is not None]
         sees = np.array(
             [SEES.get(m.id if m.kind == MEMORY else m.variable, (True, True, True)) for m in laws], dtype=bool
         ).reshape(-1, 3)
         remembers = [any(m.id == name and m.kind == MEMORY for m in laws) for name in REMEMBER]
-        return np.concatenate([sees.any(axis=0), remembers, [any(m.id == "unlisted" for m in laws)]])
+        further = [any(m.id == name for m in laws) for name in ("unlisted", GEARS)]
+        return np.concatenate([sees.any(axis=0), remembers, further])
 
     @cached_property
     def turned(self) -> tuple[Array, Array, Array] | None:
@@ -143,7 +149,7 @@ def simulate(model: Compiled, index: int, starts: Array, borders: Array, zero: f
         tables.by_both, model.courses(piece), tables.kinds, np.ascontiguousarray(generic),
         np.stack([model.values[:n_lin][order], model.slopes[:n_lin][order]]), tables.yields,
         n_law > 0 or _has_law(node), model.law, model.places, model.scales, problem.size, problem.speed,
-        model.uses,
+        model.uses, _motor(model, piece),
     )  # fmt: skip
     drive, drives = piece.drive, np.ones((1, len(piece.drive)))
     delay = model.delay()
@@ -154,14 +160,19 @@ def simulate(model: Compiled, index: int, starts: Array, borders: Array, zero: f
         at = np.clip(grid - late / piece.step, 0.0, grid[-1])
         drive = between(at)
         drives = np.stack([drives[0], -between(at, 1) / piece.step])
-    drive = drive + zero
+    given = np.zeros(1), np.zeros(1)
+    if piece.motor is None:
+        drive = drive + zero
+    else:
+        drives[0], given = 0.0, (piece.motor.signal + zero, piece.motor.on)
     states = starts.shape[1]
     columns = states + n_lin + n_tab + n_law + len(drives)
     y, dy = np.empty(piece.y.shape), np.empty((*piece.y.shape, columns))
     ends, dends = np.empty(starts.shape), np.empty((*starts.shape, columns))
     begin = float(piece.time[0])
     begun = starts if turned is None else np.hstack([starts[:, :moved] @ turned[0].T, starts[:, moved:]])
-    run(lin, d_lin, rows, d_rows, g, node.beside, begun, borders, drive, drives, piece.every, piece.step, begin,
+    beside = node.beside or piece.motor is not None
+    run(lin, d_lin, rows, d_rows, g, beside, begun, borders, drive, drives, given, piece.every, piece.step, begin,
         y, dy, ends, dends)  # fmt: skip
     if turned is not None:
         into, back, _ = turned
@@ -171,6 +182,16 @@ def simulate(model: Compiled, index: int, starts: Array, borders: Array, zero: f
             slopes[..., :moved] = slopes[..., :moved] @ into
             slopes[..., states + order] = slopes[..., states : states + n_lin].copy()
     return _arranged(model, index, Simulated(y, dy, ends, dends), states, n_lin, n_tab + n_law, delay)
+
+
+def _motor(model: Compiled, piece: Piece) -> tuple[bool, float, float, float, float]:
+    """Whether there is a motor, gain and limit of its controller, its gear ratio, and the size of what drives."""
+    problem = model.problem
+    size = float(model.values[0]) * (2.0 * math.pi * problem.frequency) ** 2 * problem.size
+    motor = drive_of(model.values[: len(model.node.baseline)]) if piece.motor is not None else None
+    if motor is None or piece.motor is None:
+        return False, 0.0, math.inf, 1.0, size
+    return True, piece.motor.gain, piece.motor.limit, motor.ratio, size
 
 
 def _has_law(node: Node) -> bool:

@@ -9,7 +9,8 @@ from enum import Enum
 
 import numpy as np
 
-from ssmr_ident.estimate.node import Coordinate, Node
+from ssmr_ident.estimate.coordinate import Coordinate
+from ssmr_ident.estimate.node import Node
 from ssmr_ident.estimate.pieces import Piece
 from ssmr_ident.physics.network import ONE, Layout
 from ssmr_ident.signals.noise import AutoregressiveNoise

@@ -20,6 +20,7 @@ from ssmr_ident.experiments.together import Log, merged, one_of_each, undelayed
 from ssmr_ident.physics.network import NETWORK, bodies_of
 from ssmr_ident.physics.robot import accelerometer_from_parameters
 from ssmr_ident.physics.sensor import Accelerometer
+from ssmr_ident.physics.voltage_drive import DRIVE, VoltageDrive, drive_from_parameters
 from ssmr_ident.readers import ReadOptions, read_one
 from ssmr_ident.session import Entry, Reading, Session, read_parameters, read_session
 
@@ -101,10 +102,12 @@ def load_logs(session: Session, progress: Callable[[int, int], None] | None = No
     """As ``load``, of a session whose file is read already."""
     parameters = read_parameters(session.robot)
     places_known(session, parameters)
+    motor = drive_from_parameters(parameters)
+    drives_known(session, parameters, motor)
     accelerometer = accelerometer_from_parameters(parameters)
     measurements: list[Measurement] = []
     for index, entry in enumerate(session.entries):
-        measurements += _decays(_measure(session, entry, accelerometer), session.baseline)
+        measurements += _decays(_measure(session, entry, accelerometer, motor), session.baseline)
         if progress:
             progress(index + 1, len(session.entries))
     return Campaign(session, parameters, tuple(measurements))
@@ -138,7 +141,32 @@ def places_known(session: Session, parameters: ParameterSet) -> None:
                 raise InputError(f"{here}.{quantity}", "names no body", mend)
 
 
-def _measure(session: Session, entry: Entry, accelerometer: Accelerometer) -> Measurement:
+def drives_known(session: Session, parameters: ParameterSet, motor: VoltageDrive | None) -> None:
+    """Refuse what a motor is given where no file describes the motor, and a motor on what has no joint.
+
+    Raises
+    ------
+    InputError
+        With the entry and the key.
+    """
+    file = Path(parameters.file).name
+    if motor is not None and (session.baseline != "sdof" or "inertia_kg_m2" not in parameters):
+        mend = "Write inertia_kg_m2 and its spring in rotary units, with baseline: sdof; or take drive: out"
+        raise InputError(f"{parameters.file}: {DRIVE}", "turns the one joint of a rotary rig, and here is none", mend)
+    for index, entry in enumerate(session.entries):
+        here = f"{session.folder / 'session.yaml'}: recordings[{index}]"
+        asked = [f"channels.{name}" for name in ("voltage", "enabled") if name in entry.channels]
+        asked += ["controller"] if entry.controller is not None else []
+        if asked and motor is None:
+            mend = f"Write {DRIVE}: {{kt_N_m_A: {{value: …}}, R_ohm: {{value: …}}}} in {file}"
+            raise InputError(f"{here}.{asked[0]}", f"is of a motor, and {file} has no {DRIVE}:", mend)
+        if asked and not EXPERIMENTS[entry.experiment].driven:
+            raise InputError(
+                f"{here}.{asked[0]}", f"drives nothing in a {entry.experiment}", "Write experiment: forced"
+            )
+
+
+def _measure(session: Session, entry: Entry, accelerometer: Accelerometer, motor: VoltageDrive | None) -> Measurement:
     if entry.files:
         recording = _of_several(session, entry, accelerometer)
     else:
@@ -150,8 +178,10 @@ def _measure(session: Session, entry: Entry, accelerometer: Accelerometer) -> Me
     if any(entry.delay_s.values()):
         recording = undelayed(recording, entry.delay_s)
     entry = replace(entry, experiment=_as_logged(entry, recording).name)
-    for group in EXPERIMENTS[entry.experiment].channels:
-        if not any(name in recording for name in group):
+    groups = EXPERIMENTS[entry.experiment].channels
+    # under a controller the goal drives
+    for group in groups if entry.controller is None else (("position_reference",), *groups[1:]):
+        if not any(name in recording and (name != "voltage" or motor is not None) for name in group):
             raise InputError(
                 str(session.folder / entry.file),
                 f"{entry.experiment} needs {' or '.join(group)}; found {', '.join(recording.names) or 'nothing'}",

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated
 
 from ssmr_ident.core.domain import Choice, Number, Text
 from ssmr_ident.core.nested_domain import declared
-from ssmr_ident.session.entry import Entry
+from ssmr_ident.session.entry import CONTROLLER, Entry
 
 _ENTRY = declared(Entry)
 
@@ -51,6 +52,8 @@ class Conditions:
         Wanted of a swivel.
     speed_m_s : float
         Wanted of a straight run.
+    kp_V_rad, limit_V : float
+        Of the controller of a rig's drive, and the most that it gives; a gain of 0 where the voltage itself is given.
     """
 
     motion: Annotated[str, _ENTRY["motion"][0]] = "roll"
@@ -69,3 +72,5 @@ class Conditions:
     free_normal: bool = True
     yaw_rate_deg_s: Annotated[float, _ENTRY["yaw_rate_deg_s"][0]] = 45.0
     speed_m_s: Annotated[float, _ENTRY["wheel_speed_m_s"][0]] = 0.3
+    kp_V_rad: Annotated[float, Number("V/rad", least=0.0, most=1e9)] = 0.0
+    limit_V: Annotated[float, CONTROLLER.keys["limit_V"][0]] = math.inf

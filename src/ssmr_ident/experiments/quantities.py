@@ -8,6 +8,7 @@ import numpy as np
 
 from ssmr_ident.core.errors import InputError, did_you_mean
 from ssmr_ident.core.recording import Channel, Note, Recording
+from ssmr_ident.core.units import OF_A_GOAL
 from ssmr_ident.physics.sensor import Accelerometer
 from ssmr_ident.readers.health import ends_of_supply
 from ssmr_ident.session import Entry
@@ -15,6 +16,7 @@ from ssmr_ident.session.entry import FURTHER, MOTIONS
 
 UNITS = {
     **{"force": "N", "torque": "N m", "position": "m", "position_reference": "m", "velocity": "m/s"},
+    **{"voltage": "V", "enabled": "1"},
     **dict.fromkeys(("acceleration", "base_acceleration", "ax", "ay", "az"), "m/s^2"),
     **{"base_position": "m"},
     **{"angle": "rad", "angular_rate": "rad/s", "wx": "rad/s", "wy": "rad/s", "wz": "rad/s"},
@@ -35,13 +37,16 @@ def to_quantities(recording: Recording, entry: Entry, accelerometer: Acceleromet
     notes: list[Note] = []
     channels = []
     for channel in named:
-        if channel.unit == "V":
+        if channel.unit == "V" and channel.name != "voltage":
             channel, note = _from_volts(channel, recording, entry, accelerometer)
             notes += [note] if note else []
         expected = UNITS.get(channel.name)
+        if channel.name == "position_reference" and channel.unit in OF_A_GOAL:
+            expected = channel.unit
         if expected and channel.unit == "" and channel.name in entry.channels:
             channel = replace(channel, unit=expected)
-            notes.append(Note("warning", f"{channel.label}: no unit in the file, taken as {expected}"))
+            if expected != "1":
+                notes.append(Note("warning", f"{channel.label}: no unit in the file, taken as {expected}"))
         elif expected and channel.unit not in (expected, "", "V" if channel.name not in entry.channels else expected):
             raise InputError(
                 f"{recording.provenance.file}: {channel.label or channel.name}",

@@ -17,6 +17,7 @@ class Site(Enum):
     ==========  ======================================================================================
     ELEMENT     ``force(s, v, z, ...)``: further force of one tire or rig spring [N], against s [m], v [m/s]
     STATE       ``advance(z, s, v, step, ...)``: the element's hidden state one step later
+    DRIVE       ``force(v, carried, ...)``: what the gears of a rig's drive take of the force that they carry
     FRICTION    ``coefficient(mu, ...)``: friction coefficient of a contact
     GROUND      ``height(...)``: height of the floor under a wheel [m]
     BODY        extra bodies and terms of the equations of motion
@@ -29,6 +30,7 @@ class Site(Enum):
 
     ELEMENT = "element"
     STATE = "state"
+    DRIVE = "drive"
     FRICTION = "friction"
     GROUND = "ground"
     BODY = "body"
@@ -163,6 +165,11 @@ class Effect(Shown):
     def moves(self) -> bool:
         """Whether it changes the motion, and not only what instruments make of it."""
         return not set(self.acts) <= {Site.SENSOR, Site.OUTPUT}
+
+    @property
+    def robot(self) -> bool:
+        """Whether it acts on a robot, and not on the drive of a rig alone."""
+        return set(self.acts) != {Site.DRIVE}
 
     def values(self, given: Mapping[str, float] | None = None) -> dict[str, float]:
         """All parameters: the given ones, nominal for the rest."""

@@ -97,6 +97,20 @@ def element_force(s, v, z, stiffness, ratio, gap_share, tangential, e):
 
 
 @kernel
+def spring_force(s, stiffness, e):
+    """K·s and what hardens or softens it [N]: what a spring or a weight pulls, whatever rubs or damps beside it.
+
+    s : float [m], stiffness : float [N/m], e : (SLOTS,) float, or a tuple.
+    """
+    f = stiffness * s + _cubic(s, e[CUBIC] + e[CUBIC_SHARE] * stiffness)
+    if e[KNEE_SHARE] != 0.0:
+        f += _beyond(s, stiffness, e[KNEE_SHARE], e[KNEE])
+    if e[SINE_SHARE] != 0.0:
+        f += _pendulum(s, stiffness, e[SINE_SHARE])
+    return f
+
+
+@kernel
 def element_next(z, v, step, tangential, e):
     """Hidden states one step later, exactly for a constant rate; (STATES,) tuple."""
     friction, loop, relaxation = z[0], z[1], z[2]

@@ -49,6 +49,9 @@ SLOTS = (
     "motor_belt.K_b_N_m",
     "motor_belt.D_b_N_s_m",
     "motor_belt.rim_mass_kg",
+    "load_dependent_friction.F_c_N",
+    "load_dependent_friction.c",
+    "load_dependent_friction.rounding_m_s",
     *(f"unlisted.{parameter.name}" for parameter in unlisted.EFFECT.parameters),
 )
 CUBIC, KNEE_SHARE, KNEE, CUBIC_SHARE, SINE_SHARE, QUADRATIC = range(6)
@@ -58,7 +61,8 @@ RELAXATION_STIFFNESS, RELAXATION_TIME, GAP, GAP_ROUNDING, GAP_SHARE_X = range(14
 KINETIC_SHARE, STRIBECK_SPEED, STRIBECK_EXPONENT, LOAD_EXPONENT, ROLLING = range(19, 24)
 JOINT_DEPTH, JOINT_PITCH, JOINT_WIDTH, ECCENTRICITY, ROUGHNESS = range(24, 29)
 LIFT, CORIOLIS, MAST_HZ, MAST_MASS, MAST_HEIGHT, MAST_DAMPING = range(29, 35)
-BELT_STIFFNESS, BELT_DAMPING, RIM_MASS, UNLISTED = range(35, 39)
+BELT_STIFFNESS, BELT_DAMPING, RIM_MASS = range(35, 38)
+LOAD_FRICTION, LOAD_SHARE, LOAD_ROUNDING, UNLISTED = range(38, 42)
 """First of what no list holds; these are the last slots."""
 
 Effects = Mapping[str, Mapping[str, float]]
@@ -104,6 +108,9 @@ def checked_for_robot(effects: Effects) -> dict[str, dict[str, float]]:
         raise InputError(
             "effects: unlisted.rider_share", "is a part of a rig's mass", "On a robot this is flexible_mast"
         )
+    for name, values in active.items():
+        if not (CATALOGUE[name].robot or CATALOGUE[name].is_off(values)):
+            raise InputError(f"effects: {name}", "acts in the gears of a rig's drive", "A robot has no such joint")
     if active.get("nonlinear_stiffness", {}).get("sine_share"):
         raise InputError("effects: nonlinear_stiffness.sine_share", "is of a rig that turns: a pendulum's moment")
     return active

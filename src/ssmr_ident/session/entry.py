@@ -23,7 +23,7 @@ MOTIONS = ("acceleration", "velocity", "position", "angle", "angular_rate")
 FURTHER = tuple(f"{name}_{number}" for name in MOTIONS for number in range(2, 10))
 """The same of further sensors."""
 QUANTITIES = (
-    *("force", "torque", *MOTIONS, *FURTHER, "position_reference"),
+    *("force", "torque", "voltage", "enabled", *MOTIONS, *FURTHER, "position_reference"),
     *("base_acceleration", "base_position", "ax", "ay", "az", "wx", "wy", "wz", "time"),
 )
 
@@ -46,6 +46,13 @@ CABLE = Keyed(
         "stiffness_N_m": (Number("N/m", least=1e-12, infinite=True), ""),
         "damping_N_s_m": (Number("N s/m", above=0.0, most=1e12), ""),
     }
+)
+CONTROLLER = Keyed(
+    {
+        "kp_V_rad": (Number("V/rad", above=0.0, most=1e9), "voltage per radian between goal and angle"),
+        "limit_V": (Number("V", above=0.0, infinite=True), "most that it gives, either way; left out: no limit"),
+    },
+    ("kp_V_rad",),
 )
 SPEED = Number("mm/s", least=1e-9, most=1e7)
 HEIGHT = Number("m", least=-1e3, most=1e3)
@@ -150,6 +157,9 @@ class Entry(Reading):
     ] = field(default_factory=dict)
     band_hz: Annotated[
         tuple[float, float] | None, BAND, "[lower, upper]: in which alone a rig or network is fitted and judged"
+    ] = None
+    controller: Annotated[
+        Mapping[str, float] | None, CONTROLLER, "of a drive: position_reference is its goal, and it stands in the loop"
     ] = None
     bodies: Mapping[str, str] = field(default_factory=dict)
     """Quantity: body of a network, as ``channels`` says."""

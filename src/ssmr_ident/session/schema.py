@@ -41,6 +41,7 @@ _DAMPING = Number(least=0.0, most=1e12)
 _LENGTH = Number(least=-1e4, most=1e4)
 _FRICTION = Number(least=0.0, most=100.0)
 _NOISE = Number(least=0.0, most=1e9)
+_RATIO = Number(above=0.0, most=1e6)
 _SIGN = Choice((1, -1))
 _GAIN = Number(least=0.1, most=10.0)
 
@@ -64,6 +65,12 @@ KEYS: dict[str, Key] = {
     "damping_N_s_m": Key("N s/m", "viscous damper of a rig", _DAMPING),
     "stiffness_N_m_rad": Key("N m/rad", "spring of a rotary rig", _SPRING, zero_is_none=True),
     "damping_N_m_s_rad": Key("N m s/rad", "viscous damper of a rotary rig", _DAMPING),
+    "drive.kt_N_m_A": Key(
+        "N m/A", "torque of a rotary rig's motor per ampere, and its voltage per rad/s", Number(above=0.0, most=1e6)
+    ),
+    "drive.R_ohm": Key("ohm", "resistance of the motor's winding", Number(above=0.0, most=1e9)),
+    "drive.armature_kg_m2": Key("kg m^2", "inertia of the motor itself, before its gears", Number(least=0.0, most=1e6)),
+    "drive.gear_ratio": Key("1", "turns of the motor per turn of the joint; known exactly", _RATIO),
     "mu_static": Key("1", "static friction of a dragged block", _FRICTION),
     "mu_kinetic": Key("1", "kinetic friction of a dragged block", _FRICTION),
     "contact_points_m": Key(
@@ -134,6 +141,7 @@ _SPELLINGS = {
     "kg.m^2": "kg m^2", "N*s/m": "N s/m", "N·s/m": "N s/m", "Ns/m": "N s/m", "s^-1": "1/s", "m/s²": "m/s^2",
     "m/s2": "m/s^2", "N*m/rad": "N m/rad", "N·m/rad": "N m/rad", "Nm/rad": "N m/rad", "V s²/m": "V s^2/m",
     "V/(m/s^2)": "V s^2/m", "N*m*s/rad": "N m s/rad", "Nms/rad": "N m s/rad", "hz": "Hz", "N/m³": "N/m^3",
+    "N*m/A": "N m/A", "N·m/A": "N m/A", "Nm/A": "N m/A", "Ω": "ohm", "Ohm": "ohm",
 }  # fmt: skip
 
 

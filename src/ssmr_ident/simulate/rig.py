@@ -3,21 +3,32 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 from scipy.linalg import expm
 
 from ssmr_ident.core.errors import InputError, SimulationError
 from ssmr_ident.core.kernel import kernel
-from ssmr_ident.physics.effects import CATALOGUE, unlisted
-from ssmr_ident.physics.element import STATES, element_advance, element_force
+from ssmr_ident.physics.effects import CATALOGUE, load_dependent_friction, unlisted
+from ssmr_ident.physics.element import STATES, element_advance, element_force, spring_force
 from ssmr_ident.physics.rig import Rig
 from ssmr_ident.physics.sensor import filter_step, low_pass_coefficients
-from ssmr_ident.physics.slots import UNLISTED, Effects, checked, effect_vector
+from ssmr_ident.physics.slots import (
+    LOAD_FRICTION,
+    LOAD_ROUNDING,
+    LOAD_SHARE,
+    UNLISTED,
+    Effects,
+    checked,
+    effect_vector,
+)
+from ssmr_ident.physics.voltage_drive import Controller, Course, VoltageDrive, torque, voltage
 from ssmr_ident.signals.grid import band_limited
 from ssmr_ident.simulate.sensed import sensed
 
 _unlisted = unlisted.force
+_gears, _slowed = load_dependent_friction.force, load_dependent_friction.slowed
 RIDER_SHARE, RIDER_HZ, RIDER_RATIO = unlisted.RIDER_SHARE, unlisted.RIDER_HZ, unlisted.RIDER_RATIO
 
 
@@ -31,8 +42,10 @@ def simulate_rig(
     bandwidth_hz: float = math.inf,
     effects: Effects | None = None,
     fine: bool = False,
+    motor: VoltageDrive | None = None,
+    course: Course | None = None,
 ) -> np.ndarray:
-    """Motion of the rig under a sampled force.
+    """Motion of the rig under a sampled force, or driven by a motor.
 
     The mass, spring and damper are propagated exactly over a step with the force in a straight line across it; the
     force is first made ``oversampling`` times finer within its band, because straight lines between the samples
@@ -54,6 +67,10 @@ def simulate_rig(
     fine : bool
         ``force`` has been made ``oversampling`` times finer already, ((n - 1)·oversampling + 1,): who runs one force
         many times need not interpolate it every time.
+    motor : VoltageDrive, optional
+        Whose armature turns with the rig.
+    course : Course, optional
+        What the motor is given, beside the force; straight between its samples.
 
     Returns
     -------
@@ -80,12 +97,15 @@ def simulate_rig(
         bandwidth_hz = min(bandwidth_hz, active["sensor_bandwidth"]["bandwidth_hz"])
     if math.isfinite(bandwidth_hz) and not fine:  # the bilinear low-pass is true to 0.1 % in phase from here on
         oversampling = max(oversampling, math.ceil(8.0 * bandwidth_hz / sample_rate))
+    if motor is not None:
+        rig = replace(rig, mass=rig.mass + motor.inertia)
     driving = force if fine or oversampling == 1 else band_limited(force, oversampling)
     step = 1.0 / (sample_rate * oversampling)
     out = np.empty((n, 3))
     e = effect_vector(active)
-    beside = not np.array_equal(e, effect_vector({}))
-    laws = (rig.mass, rig.damping, rig.stiffness, e, beside, low_pass_coefficients(bandwidth_hz, step))
+    given = _given(motor, course, len(driving))
+    beside = given[0] or not np.array_equal(e, effect_vector({}))
+    laws = (rig.mass, rig.damping, rig.stiffness, e, beside, low_pass_coefficients(bandwidth_hz, step), given)
     _run(*_propagators(rig, e[UNLISTED:], step), *laws, driving, position, velocity, step, oversampling, out)
     if not np.isfinite(out[-1]).all():
         row = int(np.flatnonzero(~np.isfinite(out).all(axis=1))[0])
@@ -96,6 +116,19 @@ def simulate_rig(
     names = ("angle", "angular_rate") if rig.rotary else ("position", "velocity")
     logged = dict(zip((*names, "acceleration"), out.T, strict=True))
     return np.column_stack(list(sensed(np.arange(n) / sample_rate, logged, active).values()))
+
+
+def _given(
+    motor: VoltageDrive | None, course: Course | None, count: int
+) -> tuple[bool, np.ndarray, np.ndarray, float, float, float, float]:
+    """Whether a motor is given anything; on the fine grid what that is and whether it is connected; controller's gain
+    and limit; the motor's gain and braking."""
+    if motor is None or course is None:
+        return False, np.zeros(1), np.zeros(1), 0.0, math.inf, 0.0, 0.0
+    at = np.linspace(0.0, len(course.signal) - 1.0, count)
+    signal, on = (np.interp(at, np.arange(len(x)), x) for x in (course.signal, course.on))
+    held = course.controller or Controller(0.0)
+    return True, signal, on, held.gain, held.limit, motor.gain, motor.braking
 
 
 def _propagators(rig: Rig, free: np.ndarray, step: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -122,8 +155,32 @@ def _propagators(rig: Rig, free: np.ndarray, step: float) -> tuple[np.ndarray, n
 
 
 @kernel
+def _extra(x, v, hidden, time, half, here, n, stiffness, e, given):
+    """Force beside spring, damper and what drives from outside [N] once it has kicked the velocity ``v`` for ``half``
+    [s/kg]; ``here`` : force from outside [N]."""
+    driven, signal, on, gain, limit, motor_gain, braking = given
+    loads = e[LOAD_FRICTION] != 0.0 or e[LOAD_SHARE] != 0.0
+    extra, kicked = 0.0, v
+    # the kick takes the velocity after it, so that damping keeps the second order
+    for _ in range(3 if half > 0.0 else 1):
+        extra = element_force(x, kicked, hidden, stiffness, 1.0, 1.0, True, e)
+        extra += _unlisted(x, kicked, time, 1.0, e[UNLISTED:])
+        drive = here
+        if driven:
+            own = torque(voltage(signal[n], x, gain, limit), kicked, on[n], motor_gain, braking)
+            extra -= own
+            drive += own
+        if loads:
+            carried = drive + spring_force(x, stiffness, e)
+            rubs = e[LOAD_FRICTION], e[LOAD_SHARE], e[LOAD_ROUNDING]
+            extra += _gears(_slowed(v - half * extra, half, carried, *rubs), carried, *rubs)
+        kicked = v - half * extra
+    return extra
+
+
+@kernel
 def _run(
-    transition, weight_now, weight_next, mass, damping, stiffness, e, beside, low_pass,
+    transition, weight_now, weight_next, mass, damping, stiffness, e, beside, low_pass, given,
     force, position, velocity, step, every, out,
 ):  # fmt: skip
     x, v, y, w = position, velocity, 0.0, 0.0
@@ -133,9 +190,7 @@ def _run(
     share = free[RIDER_SHARE] if riding else 0.0
     body, turning = mass * (1.0 - share), 2.0 * math.pi * free[RIDER_HZ]
     pull_y, pull_w = mass * share * turning * turning, 2.0 * mass * share * free[RIDER_RATIO] * turning
-    extra = (
-        element_force(x, v, hidden, stiffness, 1.0, 1.0, True, e) + _unlisted(x, v, 0.0, 1.0, free) if beside else 0.0
-    )
+    extra = _extra(x, v, hidden, 0.0, 0.0, force[0], 0, stiffness, e, given) if beside else 0.0
     first = (force[0] - damping * v - stiffness * x - extra) / body
     history = np.full((1, 4), first)
     steps = (out.shape[0] - 1) * every
@@ -166,10 +221,6 @@ def _run(
                 w += weight_now[3] * now + weight_next[3] * later
             if beside:
                 element_advance(hidden, (x - start) / step, step, True, e)
-                # the second kick takes the velocity after it, so that damping keeps the second order
-                kicked = v
-                for _ in range(3):
-                    extra = element_force(x, kicked, hidden, stiffness, 1.0, 1.0, True, e)
-                    extra += _unlisted(x, kicked, (n + 1) * step, 1.0, free)
-                    kicked = v - 0.5 * step / body * extra
-                v, w = kicked, w + v - kicked
+                half = 0.5 * step / body
+                extra = _extra(x, v, hidden, (n + 1) * step, half, later, n + 1, stiffness, e, given)
+                v, w = v - half * extra, w + half * extra

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ssmr_ident.core.recording import Channel, Note
+from ssmr_ident.core.units import OF_A_GOAL
 from ssmr_ident.readers.source import Source
 from ssmr_ident.readers.table.columns import Column, Table
 from ssmr_ident.readers.table.headings import SI_UNIT
@@ -184,6 +185,8 @@ def _ask_for_units(
             raise source.error(
                 f"unit {column.unit!r} of {column.shown} is not known", _mend([column], "N, mm or V"), table.part
             )
+        elif column.quantity == "position_reference" and conversion is not None and conversion.unit in OF_A_GOAL:
+            continue
         elif conversion is not None and expected and conversion.unit not in (expected, "V"):
             if column.unit not in _AMBIGUOUS and not column.given:
                 table.warn(

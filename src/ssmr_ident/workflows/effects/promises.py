@@ -188,6 +188,9 @@ def moves(effect: Effect, robot: Robot, values: Values | None = None) -> Outcome
                 plain, other = (simulate(robot, scenario, 200.0, effects=e) for e in ({}, on))
                 asked += 1
                 changed += any(not np.array_equal(plain[name], other[name]) for name in names)
+    if not effect.robot:
+        asked += 1
+        changed += not np.array_equal(rig_motion(on), rig_motion({}))
     expected = "expected some" if effect.moves else "expected none, as it acts on a sensor alone"
     return Outcome("motion", bool(changed) == effect.moves, f"other in {changed} of {asked} runs, {expected}")
 
@@ -196,7 +199,10 @@ def inputs_left(effect: Effect, robot: Robot) -> Outcome:
     """Robot, scenario and values are as they were before."""
     given = robot, swivel(wheel_rates(robot, 0.0, 1.0), 0.1), {effect.id: effect.values()}
     before = copy.deepcopy(given)
-    simulate(given[0], given[1], effects=given[2])
+    if effect.robot:
+        simulate(given[0], given[1], effects=given[2])
+    else:
+        rig_motion(given[2])
     touched = [type(now).__name__ for kept, now in zip(before, given, strict=True) if _plain(kept) != _plain(now)]
     return Outcome("inputs", not touched, f"changed: {', '.join(touched)}" if touched else "left as they were")
 

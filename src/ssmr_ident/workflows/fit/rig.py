@@ -16,12 +16,14 @@ from ssmr_ident.doctor.table import over_noise
 from ssmr_ident.estimate.baseline import fitted_baseline
 from ssmr_ident.estimate.clipped import within_range
 from ssmr_ident.estimate.one_recording import oscillation
+from ssmr_ident.estimate.pieces import FORCES
 from ssmr_ident.estimate.problem import natural_hz, problem_of
 from ssmr_ident.estimate.values import Fit, Problem
 from ssmr_ident.experiments.campaign import Campaign, Measurement
 from ssmr_ident.identify.lmfit_report import Variable
 from ssmr_ident.identify.posterior.findings import trade_offs
 from ssmr_ident.physics.rig import RIG_KEYS, rig_from_parameters
+from ssmr_ident.physics.voltage_drive import DRIVE_KEYS
 from ssmr_ident.report.text_fit import file_variables
 from ssmr_ident.workflows.fit.after_hit import modes_after_a_hit
 from ssmr_ident.workflows.fit.drive import with_friction
@@ -63,8 +65,8 @@ def fit_rig_session(campaign: Campaign, chosen: tuple[Measurement, ...], coulomb
         found.findings.append(str(far))
     seen = recordings_of(problem, fit, known, here, found)
     if springs(fit):
-        driven = [m for m in here if m.experiment.driven and not m.experiment.on_a_base]
-        found.findings.extend(modes_after_a_hit(driven, found.lines, found.results))
+        pushed = [m for m in here if not m.experiment.on_a_base and any(name in m.recording for name in FORCES)]
+        found.findings.extend(modes_after_a_hit(pushed, found.lines, found.results))
     return _answer(campaign, chosen, _parameters(problem, fit, known, seen, found), found, fit)
 
 
@@ -95,7 +97,7 @@ def _parameters(problem: Problem, fit: Fit, known: ParameterSet, seen: Sequence[
         found.findings.extend(_another_mode(fit, known))
     untold = [c for c in fit.node.baseline if c.std > EXACTLY and (after[c.name].std or 0.0) > LEARNT * c.std * c.scale]
     found.findings.extend(f"{c.name} keeps its prior: these recordings do not tell it" for c in untold)
-    held = [c for c in fit.node.baseline if c.std < EXACTLY and not known[c.name].fixed]
+    held = [c for c in fit.node.baseline if c.std < EXACTLY and c.name in known and not known[c.name].fixed]
     stay = {
         c.name: replace(known[c.name], source=f"prior: {known[c.name].source}".removesuffix(": "))
         for c in (*untold, *held)
@@ -118,7 +120,8 @@ def _answer(
     campaign: Campaign, chosen: Sequence[Measurement], after: ParameterSet, found: Found, fit: Fit | None = None
 ) -> SessionFit:
     known = campaign.parameters
-    keys = [key for key in RIG_KEYS["inertia_kg_m2" in known] if not known[key].fixed]
+    asked = (*RIG_KEYS["inertia_kg_m2" in known], *(key for key in DRIVE_KEYS[:-1] if key in known))
+    keys = [key for key in asked if not known[key].fixed]
     statistics = [f"{len(chosen)} recordings, {len(keys)} parameters with priors"]
     correlations: list[tuple[str, str, float]] = []
     if fit is not None:
@@ -128,7 +131,7 @@ def _answer(
         covariance = baseline_covariance(fit, known)[np.ix_(places, places)]
         size = np.sqrt(np.maximum(np.diag(covariance), 1e-300))
         matrix = covariance / np.outer(size, size)
-        if all(c.std > EXACTLY for c in fit.node.baseline):
+        if all(c.std > EXACTLY for c in fit.node.baseline if c.name in known and c.name != DRIVE_KEYS[-1]):
             found.findings.extend(trade_offs(names, matrix))
         correlations = [
             (names[j], names[i], float(matrix[i, j]))

@@ -14,6 +14,7 @@ from ssmr_ident.experiments.experiment import BASES
 from ssmr_ident.experiments.quantities import UNITS
 from ssmr_ident.physics.rig import Rig, block_from_parameters, rig_from_parameters
 from ssmr_ident.physics.slots import effect_values
+from ssmr_ident.physics.voltage_drive import Controller, Course, VoltageDrive, drive_from_parameters
 from ssmr_ident.readers import ReadOptions, read_one
 from ssmr_ident.simulate.bench import pull_block
 from ssmr_ident.simulate.rig import simulate_rig
@@ -25,12 +26,32 @@ STRAIGHT, ROTARY = ("position", "velocity", "acceleration"), ("angle", "angular_
 
 
 def driven(parameters: ParameterSet, request: Request) -> Recording:
-    """Under a measured force, or torque."""
-    rig = rig_from_parameters(parameters)
+    """Under a measured force, or torque, or by a motor."""
+    rig, motor = rig_from_parameters(parameters), drive_from_parameters(parameters)
+    conditions = request.conditions
+    if motor is not None:
+        return _by_motor(parameters, request, rig, motor)
+    if conditions.kp_V_rad:
+        where = f"{parameters.file or parameters.name}: --kp-V-rad"
+        raise InputError(where, "is of a motor's controller, and the file has no drive:", "Leave it out")
     name = "torque" if rig.rotary else "force"
     time, rate, force = drive_of(request, "force", (name,))[:3]
     motion = _motion(parameters, rig, force, rate)
     return logged(request, time, **{name: (force, UNITS[name])}, **_channels(rig, motion))
+
+
+def _by_motor(parameters: ParameterSet, request: Request, rig: Rig, motor: VoltageDrive) -> Recording:
+    """Given a voltage, or a goal and its controller; ``enabled`` is 0 where the motor is open."""
+    conditions = request.conditions
+    wanted = "position_reference" if conditions.kp_V_rad else "voltage"
+    log, name = log_of(request, "force", (wanted,))
+    on = log["enabled"] if "enabled" in log else np.ones(len(log.time))
+    held = Controller(conditions.kp_V_rad, conditions.limit_V) if conditions.kp_V_rad else None
+    course = Course(log[name], on, held)
+    effects = effect_values(parameters)
+    motion = simulate_rig(rig, np.zeros(len(on)), log.sample_rate, effects=effects, motor=motor, course=course)
+    given = {name: (log[name], "rad" if held else "V")} | ({"enabled": (on, "1")} if "enabled" in log else {})
+    return logged(request, log.time, **given, **_channels(rig, motion))
 
 
 def let_go(parameters: ParameterSet, request: Request) -> Recording:
@@ -72,6 +93,12 @@ def pulled_block(parameters: ParameterSet, request: Request) -> Recording:
 
 def drive_of(request: Request, option: str, names: tuple[str, ...]) -> tuple[np.ndarray, float, np.ndarray, str]:
     """Time, rate, samples and name of the first of the channels that the option's log has."""
+    log, name = log_of(request, option, names)
+    return log.time, log.sample_rate, log[name], name
+
+
+def log_of(request: Request, option: str, names: tuple[str, ...]) -> tuple[Recording, str]:
+    """The option's log, and the first of the channels that it has."""
     path = {"force": request.force, "base": request.base}[option]
     if not path:
         raise InputError(f"--{option}", "is missing", f"Name a log with columns time and {' or '.join(names)}")
@@ -82,13 +109,14 @@ def drive_of(request: Request, option: str, names: tuple[str, ...]) -> tuple[np.
     if name is None:
         mend = f"Head the column '{names[0]} ({UNITS[names[0]]})'"
         raise InputError(path, f"has no {' or '.join(names)}; found {', '.join(log.names)}", mend)
-    return log.time, log.sample_rate, log[name], name
+    return log, name
 
 
 def _motion(parameters: ParameterSet, rig: Rig, force: np.ndarray, rate: float, start: float = 0.0) -> np.ndarray:
     """Position, velocity and acceleration, (n, 3) float."""
-    bandwidth = parameters.number("accelerometer.bandwidth_hz", math.inf)
-    return simulate_rig(rig, force, rate, start, bandwidth_hz=bandwidth, effects=effect_values(parameters))
+    bandwidth, motor = parameters.number("accelerometer.bandwidth_hz", math.inf), drive_from_parameters(parameters)
+    effects = effect_values(parameters)
+    return simulate_rig(rig, force, rate, start, bandwidth_hz=bandwidth, effects=effects, motor=motor)
 
 
 def _channels(rig: Rig, motion: np.ndarray) -> dict[str, tuple[np.ndarray, str]]:
