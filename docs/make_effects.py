@@ -34,8 +34,7 @@ def section(effect: Effect) -> list[str]:
     where = ", ".join(site.value for site in effect.acts)
     lines = [f"## {effect.id}", "", effect.sentence, "", f"$$ {effect.equation} $$", ""]
     lines += [f"*How it shows*: {effect.signature}.", ""]
-    bearer = "a rig" if effect.experiments == ("forced",) else f"the robot{' and of a rig' if effect.rig else ''}"
-    lines += [f"*Acts on*: {where} of {bearer}.  "]
+    lines += [f"*Acts on*: {where} of {effect.bearer}.  "]
     lines += [f"*Source*: {effect.source}.", ""]
     lines += ["| parameter | unit | nominal | bounds | off | |", "| --- | --- | --- | --- | --- | --- |"]
     return lines + [_row(parameter) for parameter in effect.parameters]

@@ -88,3 +88,26 @@ def test_what_cannot_be_is_said_in_one_line(
     assert "\n" not in said
     for word in words:
         assert word in said, said
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("controller", [False, True])
+def test_a_simulated_log_reads_back_by_its_own_names(tmp_path: Path, controller: bool) -> None:
+    from ssmr_ident.compare import compare
+    from ssmr_ident.experiments import FORCED, Conditions
+    from ssmr_ident.workflows.simulate.request import Request
+    from ssmr_ident.workflows.simulate.run import simulate_to_file
+
+    session(tmp_path, "controller: {kp_V_rad: 3.0, limit_V: 2.0}" if controller else "trial: 1")
+    time = np.arange(300) / 100.0
+    given, header = [time, 2.0 * np.sin(3.0 * time)], "time [s],voltage [V],enabled"
+    if controller:
+        header = "time [s],position_reference [rad],enabled"
+    rows = np.column_stack([*given, (time < 2.0).astype(float)])
+    np.savetxt(tmp_path / "given.csv", rows, "%.9g", ",", header=header, comments="")
+    conditions = Conditions(kp_V_rad=3.0, limit_V=2.0) if controller else Conditions()
+    request = Request(FORCED, conditions, force=str(tmp_path / "given.csv"))
+    written = simulate_to_file(str(tmp_path / "rig.yaml"), request, tmp_path / "log.csv")
+    assert written.names[1] == "enabled"
+    campaign = load(tmp_path)
+    assert compare(campaign, campaign.parameters).recordings[0].value < 0.2

@@ -8,12 +8,14 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from ssmr_ident.doctor.laws import simpler
+from ssmr_ident.doctor.table import row_of
 from ssmr_ident.estimate.coordinate import Coordinate
 from ssmr_ident.estimate.motor import Given
 from ssmr_ident.estimate.node import Member, Node
 from ssmr_ident.estimate.pieces import Piece
 from ssmr_ident.estimate.simulated import Compiled, simulate
-from ssmr_ident.estimate.values import Problem
+from ssmr_ident.estimate.values import Fit, Problem
 from ssmr_ident.physics.rig import Rig
 from ssmr_ident.physics.voltage_drive import Controller, Course, VoltageDrive
 from ssmr_ident.simulate.rig import simulate_rig
@@ -98,3 +100,14 @@ def test_the_fit_has_the_simulators_motion_and_its_slopes(controller: Controller
             apart = (run(point + aside) - run(point - aside)) / (2.0 * step)
         size = np.abs(apart).max(axis=0)
         assert np.abs(one.dy[:, :, 2 + k] - apart).max(axis=0) == pytest.approx(0.0, abs=0.02 * size.max()), name
+
+
+@pytest.mark.parametrize(("std", "name"), [(0.1, "load_dependent_friction"), (1.0, "dry_friction")])
+def test_friction_in_which_no_load_is_seen_is_dry(std: float, name: str) -> None:
+    problem, node, point, piece = _problem(None)
+    covariance = np.diag([std**2 if c.name == "c" else 1e-6 for c in node.coordinates])
+    fit = Fit(node, point, (np.zeros(2),), covariance, (np.zeros(piece.y.shape),), 600.0, 0.0, 5.0)
+    assert row_of(fit, problem).ids == (name, "nonlinear_stiffness")
+    (dry,) = [n for n in simpler(node) if n.members[0].id == "dry_friction"]
+    assert [c.name for c in dry.members[0].coordinates] == ["F_c_N", "rounding_m_s"]
+    assert (dry.members[0].variable, dry.members[1]) == ("v", node.members[1])

@@ -73,8 +73,10 @@ def command(
         print_json({**effect_values(effect), "figure": None if written is None else str(written)})
     elif not quiet:
         typer.echo(effect_text(effect))
-        hint = f"figure: {written}" if written else f"a figure of it: ident effects {effect.id} -o {effect.id}.png"
-        typer.echo(f"\n  {hint}")
+        if written is not None:
+            typer.echo(f"\n  figure: {written}")
+        elif effect.bearer != "a rig":  # of which there is no drawing
+            typer.echo(f"\n  a figure of it: ident effects {effect.id} -o {effect.id}.png")
 
 
 def _check(file: Path, as_json: bool, quiet: bool) -> None:

@@ -37,6 +37,9 @@ SINE = "sine"
 HYSTERESIS = "hysteresis"
 """A share of the spring's own stiffness: where there is no spring there is no loop."""
 
+WITHIN = {GEARS: "dry_friction"}
+"""Laws that are another one where a share of theirs is 0."""
+
 Shape = Mapping[str, float]
 _OnPath = tuple[float, Shape, float, float, Shape]
 
@@ -221,13 +224,15 @@ def _another(form: Form, beside: Sequence[Member]) -> bool:
 
 
 def simpler(node: Node) -> list[Node]:
-    """The same with a part of one law's formula dropped, where that is a formula itself."""
+    """The same with a part of one law's formula dropped, where that is a formula itself, of this law or of one that it
+    contains."""
     found = []
     for member in (m for m in node.members if m.law is not None):
         names = {c.name for c in member.coordinates}
-        for form in (f for f in FORMS if f.effect == member.id and set(f.moved) < names):
+        for form in (f for f in FORMS if f.effect in (member.id, WITHIN.get(member.id)) and set(f.moved) < names):
             kept = tuple(c for c in member.coordinates if c.name in form.moved)
-            less = replace(member, form=form.name, coordinates=kept, law={})
+            what = {"id": form.effect, "kind": form.kind, "form": form.name, "variable": form.variable}
+            less = replace(member, **what, coordinates=kept, law={})
             members = tuple(less if m is member else m for m in node.members)
             found.append(replace(node, members=members))
     return found

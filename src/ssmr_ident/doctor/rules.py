@@ -41,3 +41,7 @@ which something happened that no noise is. Set by judgement; heavy tails not cal
 LOOP = 0.5
 """Travel of Dahl's friction, in RMS deflections, from which it is a loop as well: a swing from one end to the other,
 2.8 of these, no longer brings it within 1 % of what it slides at (5.3 travels); Dahl's law is Bouc's with n = 1."""
+
+SEEN = 2.0
+"""Standard deviations from which a share of the load is one, in the friction of gears: with less it is dry friction,
+which is the same law without it."""

@@ -8,11 +8,14 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ssmr_ident.doctor.left import Left
-from ssmr_ident.doctor.rules import LOOP
-from ssmr_ident.estimate.node import MEMORY
+from ssmr_ident.doctor.rules import LOOP, SEEN
+from ssmr_ident.estimate.node import MEMORY, Member
+from ssmr_ident.estimate.simulated import GEARS
 from ssmr_ident.estimate.values import Fit, Problem
 
 FRICTION = "dry_friction"
+SHARE = "c"
+"""Of the load, in the friction of gears."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,10 +73,19 @@ def log_evidence(fit: Fit, samples: float) -> float:
 def row_of(fit: Fit, problem: Problem, zero: float = 0.0) -> Row:
     members = fit.node.members
     return Row(
-        tuple(m.id for m in members), tuple(m.kind for m in members), fit.node.name, fit.node.generic,
+        tuple(_called(fit, m) for m in members), tuple(m.kind for m in members), fit.node.name, fit.node.generic,
         log_evidence(fit, problem.samples) - zero, fit.chi2, problem.samples, over_noise(problem, fit), fit=fit,
         variables=tuple(m.variable for m in members), equal=_equal(fit, problem.size),
     )  # fmt: skip
+
+
+def _called(fit: Fit, member: Member) -> str:
+    """A member's law; friction of gears in which no load is seen is dry friction."""
+    if member.id != GEARS:
+        return member.id
+    at = next(k for k, c in enumerate(fit.node.coordinates) if c.name == SHARE and c in member.coordinates)
+    share, slope = fit.node.values(fit.point)[at], fit.node.slopes(fit.point)[at]
+    return GEARS if share > SEEN * abs(slope) * math.sqrt(max(fit.covariance[at, at], 0.0)) else FRICTION
 
 
 def _equal(fit: Fit, size: float) -> tuple[str, ...]:

@@ -46,7 +46,7 @@ def effect_text(effect: Effect) -> str:
     lines = [f"{effect.id}: {effect.sentence}", "", f"  equation   {effect.equation}"]
     lines += [f"  signature  {effect.signature}", f"  seen in    {', '.join(effect.experiments)}"]
     lines += [f"  acts on    {', '.join(site.value for site in effect.acts)}"]
-    lines[-1] += " of the robot and of a rig" if effect.rig else " of the robot"
+    lines[-1] += f" of {effect.bearer}"
     lines += [f"  source     {effect.source}", "", "  parameters"]
     name_width = max(len(parameter.name) for parameter in effect.parameters)
     unit_width = max(len(parameter.unit) for parameter in effect.parameters)

@@ -50,7 +50,7 @@ def _by_motor(parameters: ParameterSet, request: Request, rig: Rig, motor: Volta
     course = Course(log[name], on, held)
     effects = effect_values(parameters)
     motion = simulate_rig(rig, np.zeros(len(on)), log.sample_rate, effects=effects, motor=motor, course=course)
-    given = {name: (log[name], "rad" if held else "V")} | ({"enabled": (on, "1")} if "enabled" in log else {})
+    given = {name: (log[name], "rad" if held else "V")} | ({"enabled": (on, "")} if "enabled" in log else {})
     return logged(request, log.time, **given, **_channels(rig, motion))
 
 
@@ -107,7 +107,8 @@ def log_of(request: Request, option: str, names: tuple[str, ...]) -> tuple[Recor
     log = read_one(path, ReadOptions())
     name = next((name for name in names if name in log), None)
     if name is None:
-        mend = f"Head the column '{names[0]} ({UNITS[names[0]]})'"
+        unit = "rad" if names[0] == "position_reference" else UNITS[names[0]]
+        mend = f"Head the column '{names[0]} ({unit})'"
         raise InputError(path, f"has no {' or '.join(names)}; found {', '.join(log.names)}", mend)
     return log, name
 
