@@ -231,8 +231,8 @@ def simpler(node: Node) -> list[Node]:
         names = {c.name for c in member.coordinates}
         for form in (f for f in FORMS if f.effect in (member.id, WITHIN.get(member.id)) and set(f.moved) < names):
             kept = tuple(c for c in member.coordinates if c.name in form.moved)
-            what = {"id": form.effect, "kind": form.kind, "form": form.name, "variable": form.variable}
-            less = replace(member, **what, coordinates=kept, law={})
+            what = Member(form.effect, form.kind, form.name, kept, law={}, variable=form.variable)
+            less = replace(what, element=member.element)
             members = tuple(less if m is member else m for m in node.members)
             found.append(replace(node, members=members))
     return found
