@@ -94,7 +94,7 @@ def test_kernel_is_the_simulator_and_its_slopes_are_differences(member, finer: i
     start = np.zeros((1, node.states))
     start[0, :2] = p.size, -p.speed
     borders = np.array([0, len(own.y)])
-    found = simulate(compiled(p, node, point), 0, start, borders, 0.0)
+    (found,) = simulate(compiled(p, node, point), [start], [borders], [0.0])
     values = node.values(point)
     effects = {node.members[0].id: dict(zip([c.name for c in node.members[0].coordinates], values[3:], strict=True))}
     rig = Rig(values[0], values[1], values[2])
@@ -105,7 +105,7 @@ def test_kernel_is_the_simulator_and_its_slopes_are_differences(member, finer: i
     for k in range(len(point)):
         moved = point.copy()
         moved[k] += 1e-5
-        other = simulate(compiled(p, node, moved), 0, start, borders, 0.0)
+        (other,) = simulate(compiled(p, node, moved), [start], [borders], [0.0])
         differences = (other.y - found.y)[:, 0] / 1e-5
         slopes = found.dy[:, 0, node.states + k]
         assert np.abs(differences - slopes).max() < 4e-3 * np.abs(differences).max()
@@ -128,7 +128,8 @@ def test_a_force_that_jumps_where_motion_turns_does_so_within_the_step(every: in
     point = np.array([0.0, 0.0, 0.0, 1.0, node.coordinates[4].at(1e-4)])
     point[1] = node.coordinates[1].at(DAMPING)
     begin, borders = np.array([start]), np.array([0, count])
-    found = simulate(compiled(p, node, point), 0, np.pad(begin, ((0, 0), (0, node.states - 2))), borders, 0.0)
+    start = np.pad(begin, ((0, 0), (0, node.states - 2)))
+    (found,) = simulate(compiled(p, node, point), [start], [borders], [0.0])
     moves = np.abs(true.y[1]) > 0.01  # of a sample within the jump none is sure
     assert np.sqrt(np.mean((found.y - own.y)[moves] ** 2)) < agree * own.y.std()
 
@@ -142,11 +143,12 @@ def test_a_shape_of_one_variable_moves_the_rig_beside_a_law(variable: str) -> No
     start, borders = np.zeros((1, node.states)), np.array([0, len(own.y)])
     point = np.array([c.mean for c in node.coordinates])
     point[-2:] = 0.7, 0.1
-    found = simulate(compiled(p, node, point), 0, start, borders, 0.0)
+    (found,) = simulate(compiled(p, node, point), [start], [borders], [0.0])
     for k in range(3, len(point) - 2):
         moved = point.copy()
         moved[k] += 1e-6
-        differences = (simulate(compiled(p, node, moved), 0, start, borders, 0.0).y - found.y)[:, 0] / 1e-6
+        (other,) = simulate(compiled(p, node, moved), [start], [borders], [0.0])
+        differences = (other.y - found.y)[:, 0] / 1e-6
         slopes = found.dy[:, 0, node.states + k]
         assert np.abs(differences).max() > 0.0
         assert np.abs(differences - slopes).max() < 3e-3 * np.abs(differences).max()

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 
 from ssmr_ident.estimate.node import Node
 from ssmr_ident.estimate.regression import starts_of
-from ssmr_ident.estimate.scales import bounded, nuisance_scales, priors
-from ssmr_ident.estimate.simulated import Compiled, simulate
+from ssmr_ident.estimate.scales import bounded, nuisance_count, nuisance_scales, priors
+from ssmr_ident.estimate.simulated import Compiled, lanes, simulate_whole
 from ssmr_ident.estimate.values import Fit, Problem, Start, Stop
 
 Array = np.ndarray
@@ -24,78 +23,89 @@ LEAST_GAIN, LEAST_SHARE = 0.02, 5e-6
 """Of the cost, a step that lowers it by less than their sum is the last: a hundredth of what a decision looks at."""
 
 
+@np.errstate(over="ignore", invalid="ignore")  # a cost that is not finite is refused
+def _exact(problem: Problem, node: Node, point: Array, local: Array) -> tuple[float, list[Array], Array]:
+    """Exact simulation: chi2, residuals (n, c) per piece, and per piece the normal equations.
+
+    ``local`` : (pieces, k) float, nuisances, with room behind those of pieces that have fewer. The normal equations are
+    (pieces, k + p + 1, k + p + 1) float: nuisances, coordinates, residual.
+    """
+    model = Compiled.of(problem, node, point, problem.pieces)
+    residuals: list[Array] = []
+    normal = np.empty((len(local), *[local.shape[1] + len(point) + 1] * 2))
+    for lane in lanes(problem.pieces):
+        whole = _linearised(model, lane, local)
+        row = 0
+        for k in lane:
+            columns = whole[row : row + len(problem.pieces[k].y)]
+            row += len(columns)
+            columns[: problem.passed_over(problem.pieces[k])] = 0.0
+            residuals.append(columns[..., -1].copy())
+            white = _whitened(problem, k, columns).reshape(-1, columns.shape[2])
+            np.matmul(white.T, white, out=normal[k])
+        if not np.isfinite(normal[: lane.stop]).all():
+            return math.inf, [], normal
+    return float(normal[:, -1, -1].sum()), residuals, normal
+
+
+def _linearised(model: Compiled, lane: range, local: Array) -> Array:
+    """(n, c, columns) float: slopes of what pieces leave over nuisances and coordinates, and what they leave."""
+    pieces, n, room = model.pieces[lane.start : lane.stop], model.node.states, local.shape[1]
+    s = simulate_whole(model, lane, local)
+    c, k = s.y.shape[1], nuisance_count(model.node, pieces[0])
+    counts = [len(p.y) for p in pieces]
+    own = np.repeat(local[lane.start : lane.stop, :k], counts, axis=0)
+    course = np.concatenate([np.linspace(-1.0, 1.0, count) for count in counts])[:, None]
+    gain = 1.0 + own[:, n + 1, None] if pieces[0].driven else np.ones((len(own), 1))
+    whole = np.zeros((*s.y.shape, room + len(model.values) + 1))
+    np.multiply(s.dy[..., :n], gain[..., None], out=whole[..., :n])
+    np.multiply(s.dy[..., n:-1], gain[..., None], out=whole[..., room:-1])
+    if pieces[0].driven:
+        np.multiply(s.dy[..., -1], gain, out=whole[..., n])
+        whole[..., n + 1] = s.y
+    for channel in range(c):
+        whole[:, channel, k - 2 * c + channel] = 1.0
+        whole[:, channel, k - c + channel] = course[:, 0]
+    measured = np.concatenate([p.y for p in pieces])
+    whole[..., -1] = gain * s.y + own[:, k - 2 * c : k - c] + course * own[:, k - c :] - measured
+    return whole
+
+
 def _whitened(problem: Problem, index: int, columns: Array) -> Array:
     """(n, c, …) to (m, c, …): what counts, through each channel's whitening filter, in its standard deviation."""
     piece = problem.pieces[index]
     out = piece.counted(columns, problem.passed_over(piece))
     filtered = [noise.filtered(out[:, c]) for c, noise in enumerate(problem.noises[index])]
-    return np.stack(filtered, axis=1)
-
-
-@np.errstate(over="ignore", invalid="ignore")  # a cost that is not finite is refused
-def _exact(problem: Problem, node: Node, point: Array, nuisances: Sequence[Array]):
-    """Normal equations by exact simulation: chi2, residuals, and per piece (J, r) over (nuisance, coordinates)."""
-    model = Compiled.of(problem, node, point, problem.pieces)
-    n = node.states
-    chi2, residuals, parts = 0.0, [], []
-    for index, (piece, nuisance) in enumerate(zip(problem.pieces, nuisances, strict=True)):
-        start = nuisance[None, :n].copy()
-        zero = float(nuisance[n]) if piece.driven else 0.0
-        s = simulate(model, index, start, np.array([0, len(piece.y)]), zero)
-        c, k, passed = piece.y.shape[1], len(nuisance), problem.passed_over(piece)
-        gain = 1.0 + nuisance[n + 1] if piece.driven else 1.0
-        course = np.linspace(-1.0, 1.0, len(piece.y))
-        rest = gain * s.y + nuisance[-2 * c : -c] + course[:, None] * nuisance[-c:] - piece.y
-        rest[:passed] = 0.0
-        if not np.isfinite(rest).all():
-            return math.inf, [], []
-        whole = np.zeros((*piece.y.shape, k + len(point) + 1))  # nuisances, coordinates, residuals
-        np.multiply(s.dy[..., :n], gain, out=whole[..., :n])
-        if piece.driven:
-            np.multiply(s.dy[..., -1], gain, out=whole[..., n])
-            whole[..., n + 1] = s.y
-        for channel in range(c):
-            whole[:, channel, k - 2 * c + channel] = 1.0
-            whole[:, channel, k - c + channel] = course
-        np.multiply(s.dy[..., n:-1], gain, out=whole[..., k:-1])
-        whole[..., -1] = rest
-        whole[:passed] = 0.0
-        white = _whitened(problem, index, whole).reshape(-1, whole.shape[2])
-        normal = white.T @ white
-        residuals.append(rest)
-        if not np.isfinite(normal).all():
-            return math.inf, [], []
-        chi2 += float(normal[-1, -1])
-        parts.append((normal[:-1, :-1], normal[:-1, -1], k))
-    return chi2, residuals, parts
+    return filtered[0][:, None] if len(filtered) == 1 else np.stack(filtered, axis=1)
 
 
 def polish(problem: Problem, node: Node, start: Start, steps: int = 30, freeze: Sequence[int] = ()) -> Fit:
     """Levenberg-Marquardt on the exact simulation, nuisances eliminated piece by piece."""
     point = bounded(node, start.point)
-    nuisances = list(start.nuisances if start.nuisances is not None else starts_of(problem, node, start))
+    begun = start.nuisances if start.nuisances is not None else starts_of(problem, node, start)
+    counts = [len(own) for own in begun]
+    local, scales = np.zeros((len(begun), max(counts))), np.ones((len(begun), max(counts)))
+    for k, (piece, own) in enumerate(zip(problem.pieces, begun, strict=True)):
+        local[k, : counts[k]], scales[k, : counts[k]] = own, nuisance_scales(problem, node, piece)
     mean, precision = priors(node)
-    scales = [nuisance_scales(problem, node, piece) for piece in problem.pieces]
-    held = np.zeros(len(point), dtype=bool)
-    held[list(freeze)] = True
+    free = np.ones(len(point), dtype=bool)
+    free[list(freeze)] = False
 
-    def total(chi2: float, at: Array, local: Sequence[Array]) -> float:
-        own = sum(float(np.sum((v / s) ** 2)) for v, s in zip(local, scales, strict=True))
-        return chi2 + float(np.sum(precision * (at - mean) ** 2)) + own
+    def total(chi2: float, at: Array, own: Array) -> float:
+        return chi2 + float(np.sum(precision * (at - mean) ** 2)) + float(np.sum((own / scales) ** 2))
 
-    chi2, residuals, parts = _exact(problem, node, point, nuisances)
-    cost = total(chi2, point, nuisances)
+    chi2, residuals, normal = _exact(problem, node, point, local)
+    cost = total(chi2, point, local)
     if not math.isfinite(cost):
-        return _failed(problem, node, point, nuisances)
+        return _failed(problem, node, point, tuple(begun))
     damping, gain, stop = 1e-3, 0.0, Stop.STEPS
     for _ in range(steps):
         lower_any, enough = False, LEAST_GAIN + LEAST_SHARE * cost
         for _ in range(6):
-            solved = _step(parts, point, nuisances, mean, precision, scales, damping, held)
-            if solved[2] < enough:  # not worth another simulation
+            step, moves, promised = _step(normal, point, local, mean, precision, scales, damping, free)
+            if promised < enough:  # not worth another simulation
                 break
-            new_point = bounded(node, point + solved[0])
-            new = [v + d for v, d in zip(nuisances, solved[1], strict=True)]
+            new_point, new = bounded(node, point + step), local + moves
             trial = _exact(problem, node, new_point, new)
             lower = total(trial[0], new_point, new)
             if lower < cost:
@@ -106,16 +116,18 @@ def polish(problem: Problem, node: Node, start: Start, steps: int = 30, freeze: 
             stop = Stop.CONVERGED
             break
         gain, cost = cost - lower, lower
-        point, nuisances, (chi2, residuals, parts) = new_point, new, trial
-        damping *= damped_next(gain / solved[2])
+        point, local, (chi2, residuals, normal) = new_point, new, trial
+        damping *= damped_next(gain / promised)
         if gain < enough:
             stop = Stop.CONVERGED
             break
     further = 0.0
     if stop is Stop.STEPS:
-        further = max(gain, _step(parts, point, nuisances, mean, precision, scales, 0.0, held)[2])
-    found = _finished(node, point, nuisances, mean, precision, scales, chi2, residuals, parts, stop, held)
-    return replace(found, promised=further)
+        further = max(gain, _step(normal, point, local, mean, precision, scales, 0.0, free)[2])
+    covariance, dof = _decided(node, normal, precision, scales, free)
+    nuisances = tuple(own[:count].copy() for own, count in zip(local, counts, strict=True))
+    prior = float(np.sum(precision * (point - mean) ** 2))
+    return Fit(node, point, nuisances, covariance, tuple(residuals), chi2, prior, dof, stop, further)
 
 
 def damped_next(ratio: float) -> float:
@@ -124,39 +136,39 @@ def damped_next(ratio: float) -> float:
     return max(0.2, 1.0 - (2.0 * min(ratio, 1.0) - 1.0) ** 3)
 
 
-def _step(parts, point, nuisances, mean, precision, scales, damping, held):
-    p = len(point)
-    left = np.diag(precision + LEAST_CURVATURE)
-    right = -precision * (point - mean)
-    eliminated, promised = [], 0.0
-    for (h, g, k), nuisance, scale in zip(parts, nuisances, scales, strict=True):
-        cross, line = h[:k, k:], g[:k] + nuisance / scale**2
-        solved = solved_positive(_own(h, k, scale, damping), np.column_stack([cross, line]))
-        left = left + h[k:, k:] - cross.T @ solved[:, :-1]
-        right = right - g[k:] + cross.T @ solved[:, -1]
-        eliminated.append(solved)
-        promised += float(line @ solved[:, -1])
+def _step(
+    normal: Array, point: Array, local: Array, mean: Array, precision: Array, scales: Array, damping: float, free: Array
+) -> tuple[Array, Array, float]:
+    """Moves of point and nuisances, and by how much the cost falls where all is linear."""
+    k = local.shape[1]
+    cross, line = normal[:, :k, k:-1], normal[:, :k, -1] + local / scales**2
+    solved = solved_positive(_own(normal, scales, damping), np.concatenate([cross, line[..., None]], axis=2))
+    eliminated, last = solved[..., :-1], solved[..., -1]
+    left = np.diag(precision + LEAST_CURVATURE) + _reduced(normal, cross, eliminated)
+    right = -precision * (point - mean) - normal[:, k:-1, -1].sum(axis=0) + np.einsum("skp,sk->p", cross, last)
     _on_diagonal(left)[:] += damping * np.maximum(_on_diagonal(left), 1e-12)
-    step = np.zeros(p)
-    if held.any():
-        free = ~held
-        step[free] = solved_evenly(left[np.ix_(free, free)], right[free])
-    else:
-        step = solved_evenly(left, right)
-    promised += float(right @ step)
-    return step, [-(solved[:, :-1] @ step) - solved[:, -1] for solved in eliminated], promised
+    step = np.zeros(len(point))
+    step[free] = solved_evenly(left[np.ix_(free, free)], right[free])
+    return step, -(eliminated @ step) - last, float(np.sum(line * last)) + float(right @ step)
+
+
+def _reduced(normal: Array, cross: Array, eliminated: Array) -> Array:
+    """Curvature of the coordinates with every piece's nuisances at their best."""
+    k = cross.shape[1]
+    return np.asarray(normal[:, k:-1, k:-1].sum(axis=0) - np.tensordot(cross, eliminated, axes=([0, 1], [0, 1])))
 
 
 def _on_diagonal(square: Array) -> Array:
-    """Its diagonal, to be written to."""
-    return np.einsum("ii->i", square)
+    """Its diagonal, or those of several, to be written to."""
+    return np.einsum("...ii->...i", square)
 
 
-def _own(h: Array, k: int, scale: Array, damping: float) -> Array:
-    """Curvature of a piece's nuisances with their priors."""
-    own = h[:k, :k].copy()
+def _own(normal: Array, scales: Array, damping: float) -> Array:
+    """Curvature of the pieces' nuisances with their priors."""
+    k = scales.shape[1]
+    own = normal[:, :k, :k].copy()
     diagonal = _on_diagonal(own)
-    diagonal += 1.0 / scale**2
+    diagonal += 1.0 / scales**2
     diagonal *= 1.0 + damping
     return own
 
@@ -169,17 +181,17 @@ def solved_evenly(left: Array, right: Array) -> Array:
 
 def solved_positive(left: Array, columns: Array) -> Array:
     """Positive definite equations, rows and columns first brought to one size; what round-off alone decides stays."""
-    size = np.sqrt(_on_diagonal(left))[:, None]
-    even = left / (size * size.T)
-    _on_diagonal(even)[:] += LEAST_CURVATURE
-    return np.linalg.solve(even, columns / size) / size
+    size = np.sqrt(_on_diagonal(left))[..., None]
+    even = left / (size * np.swapaxes(size, -1, -2))
+    _on_diagonal(even)[...] += LEAST_CURVATURE
+    return np.asarray(np.linalg.solve(even, columns / size) / size)
 
 
-def _finished(node, point, nuisances, mean, precision, scales, chi2, residuals, parts, stop, held) -> Fit:
-    information = np.zeros((len(point), len(point)))
-    for (h, _, k), scale in zip(parts, scales, strict=True):
-        information += h[k:, k:] - h[:k, k:].T @ solved_positive(_own(h, k, scale, 0.0), h[:k, k:])
-    free = ~held
+def _decided(node: Node, normal: Array, precision: Array, scales: Array, free: Array) -> tuple[Array, float]:
+    """Covariance of the coordinates, and how many of them the data decide."""
+    k = scales.shape[1]
+    cross = normal[:, :k, k:-1]
+    information = _reduced(normal, cross, solved_positive(_own(normal, scales, 0.0), cross))
     covariance = np.zeros_like(information)
     whole = (information + np.diag(precision + LEAST_CURVATURE))[np.ix_(free, free)]
     size = np.sqrt(np.maximum(np.diag(whole), LEAST_CURVATURE))
@@ -191,8 +203,7 @@ def _finished(node, point, nuisances, mean, precision, scales, chi2, residuals, 
     decided = np.where(free, np.diag(covariance @ information), 0.0)
     moving = [float(f and c.std > 1e-6) for c, f in zip(node.coordinates, free, strict=True)]
     dof = sum(float(d) if id(c) in shapes else m for c, d, m in zip(node.coordinates, decided, moving, strict=True))
-    prior = float(np.sum(precision * (point - mean) ** 2))
-    return Fit(node, point, tuple(nuisances), covariance, tuple(residuals), chi2, prior, dof, stop)
+    return covariance, dof
 
 
 def _failed(problem: Problem, node: Node, point: Array, nuisances: Sequence[Array]) -> Fit:

@@ -8,7 +8,7 @@ import numpy as np
 
 from ssmr_ident.estimate.instrument import OUTPUT
 from ssmr_ident.estimate.node import Node
-from ssmr_ident.estimate.simulated import Compiled, simulate
+from ssmr_ident.estimate.simulated import Compiled, motions
 from ssmr_ident.estimate.values import Fit, Problem
 
 Array = np.ndarray
@@ -20,19 +20,16 @@ def motion(problem: Problem, found: Fit) -> list[Array]:
         replace(p, channels=("position", "velocity", "acceleration"), orders=np.arange(3), y=np.zeros((len(p.y), 3)))
         for p in problem.pieces
     ]
-    node, paths = found.node, []
+    node, begun = found.node, []
     bare = Node(node.baseline, tuple(m for m in node.members if m.linear != "lag" and m.after not in ("clip", OUTPUT)))
     names = [id(c) for c in node.coordinates]
     point = np.array([found.point[names.index(id(c))] for c in bare.coordinates])
     model = Compiled.of(problem, bare, point, pieces)
-    for index, (piece, nuisance) in enumerate(zip(pieces, found.nuisances, strict=True)):
-        start = np.zeros((1, bare.linear_states + bare.hidden_states))
+    for nuisance in found.nuisances:
         own, at = [], 2
         for member in (m for m in node.members if m.linear):
             size = {"lag": 2, "branch": 1, "rider": 2}[member.linear]
             own += list(nuisance[at : at + size]) if member.linear != "lag" else []
             at += size
-        start[0] = [*nuisance[:2], *own, *nuisance[node.linear_states : node.states]]
-        zero = float(nuisance[node.states]) if piece.driven else 0.0
-        paths.append(simulate(model, index, start, np.array([0, len(piece.y)]), zero).y)
-    return paths
+        begun.append(np.array([*nuisance[:2], *own, *nuisance[node.linear_states :]]))
+    return motions(model, begun)

@@ -340,10 +340,10 @@ def _advance(z, tangents, change, change_slopes, step, first, by_v, g):
 
 @kernel
 def run(
-    lin, slopes_lin, rows, slopes_rows, g, beside, starts, borders, drive, drives, motor, every, step, begin,
+    lin, slopes_lin, rows, slopes_rows, g, beside, starts, places, times, drive, drives, motor, every, step,
     y, dy, ends, dends,
 ):  # fmt: skip
-    """Simulate stretches of a recording.
+    """Simulate stretches of recordings that stand one behind the other.
 
     Parameters
     ----------
@@ -359,17 +359,20 @@ def run(
         Whether there are any.
     starts : (s, states) float
         Linear states, then hidden ones, at the begin of each stretch.
-    borders : (s + 1,) int
-        Samples at which stretches begin; the last is the number of samples.
+    places : (s, 5) int
+        Of each stretch: its first sample and that after its last one, the last sample of its recording; on the fine
+        grid where the drive is at its begin, and the recording's last value, which goes on.
+    times : (s,) float [s]
+        At which stretches begin.
     drive, drives : (m,), (e, m) float
-        On the fine grid; the last value goes on. ``drives`` are its slopes over what may change in it: 1 for its zero,
-        which with a motor is that of what the motor is given.
+        On the fine grid. ``drives`` are its slopes over what may change in it: 1 for its zero, which with a motor is
+        that of what the motor is given.
     motor : pair of (m,) float
         What a motor is given, and whether it is connected, on the fine grid; a single number each where there is none.
     every : int
         Steps a sample.
-    step, begin : float [s]
-        Of the fine grid, and the time of the first sample.
+    step : float [s]
+        Of the fine grid.
     y, dy : (n, channels), (n, channels, columns) float
         Filled. Columns are starts, parameters (linear, beside), slopes of the drive.
     ends, dends : (s, states), (s, states, columns) float
@@ -400,7 +403,6 @@ def run(
     for k in range(n_lin):
         for i in range(n_lin):
             moved_by[k] += transition[k, i] * kick[i]
-    last, last_given = len(drive) - 1, len(motor[0]) - 1
     jumps = g[16][0] or g[3].shape[1] > 0 or g[4].shape[2] > 0  # what does not look at speed does not jump with it
     for stretch in range(starts.shape[0]):
         ds[:], dz[:], df[:] = 0.0, 0.0, 0.0
@@ -412,16 +414,16 @@ def run(
             dz[k, n_lin + k] = 1.0
         f, fx, fv, x_was, v_was = 0.0, 0.0, 0.0, 0.0, 0.0
         f_was, fx_was, fv_was = 0.0, 0.0, 0.0
-        first, after = borders[stretch], borders[stretch + 1]
+        first, after, last_row, driven_from, last = places[stretch]
         total = (after - first) * every
         for n in range(total + 1):
-            at = first * every + n
-            here = drive[min(at, last)]
-            given = here, motor[0][min(at, last_given)], motor[1][min(at, last_given)]
+            at = min(driven_from + n, last)
+            here, turned = drive[at], at if g[17][0] else 0
+            given = here, motor[0][turned], motor[1][turned]
             if beside:
                 moved = s[1]
-                row = min(at // every, y.shape[0] - 1)
-                time = begin + at * step
+                row = min(first + n // every, last_row)
+                time = times[stretch] + n * step
                 half = 1.0 if n else 0.0
                 v = moved
                 if n:  # as the last force goes on, to first order
@@ -497,7 +499,7 @@ def run(
                         for p in range(n_par):
                             ds[k, states + p] -= d_kick[p, k] * f
             if n % every == 0 and n < total:
-                row = at // every
+                row = first + n // every
                 for k in range(channels):
                     value = from_drive[k] * here + from_force[k] * f
                     for i in range(n_lin):
@@ -522,7 +524,7 @@ def run(
                             own += d_c[p, k, i] * s[i]
                         out[states + p] += own
                     for q in range(extra):
-                        out[zero + q] += from_drive[k] * drives[q, min(at, last)]
+                        out[zero + q] += from_drive[k] * drives[q, at]
             if n == total:
                 break
             if jumps:
@@ -532,7 +534,8 @@ def run(
             if hidden:
                 for j in range(columns):
                     change[j] = ds[0, j]
-            there = drive[min(at + 1, last)]
+            next_at = min(at + 1, last)
+            there = drive[next_at]
             if beside:
                 for k in range(n_lin):
                     s[k] -= kick[k] * f
@@ -560,7 +563,7 @@ def run(
                         own += d_transition[p, k, i] * s[i]
                     dnew[k, states + p] += own
                 for q in range(extra):
-                    dnew[k, zero + q] += now[k] * drives[q, min(at, last)] + later[k] * drives[q, min(at + 1, last)]
+                    dnew[k, zero + q] += now[k] * drives[q, at] + later[k] * drives[q, next_at]
             ds, dnew = dnew, ds
             for k in range(n_lin):
                 s[k] = new[k]

@@ -95,6 +95,13 @@ def drive_of(values: Array) -> VoltageDrive | None:
     return VoltageDrive(*values[FIRST : FIRST + len(DRIVE_KEYS)].tolist()) if len(values) > FIRST else None
 
 
+def armature(values: Array) -> Array:
+    """What the armature adds to a rig's inertia [kg m^2], of values (…, k) float; nothing where there is no drive."""
+    if values.shape[-1] <= FIRST:
+        return np.zeros(values.shape[:-1])
+    return np.asarray(values[..., FIRST + 3] ** 2 * values[..., FIRST + 2])
+
+
 def torque_along(given: Given, every: int, path: Array, drive: VoltageDrive, zero: float = 0.0) -> Array:
     """Torque of the motor along a path [N m], (n,) float.
 

@@ -15,7 +15,7 @@ from ssmr_ident.estimate.latent_force import network_paths
 from ssmr_ident.estimate.node import Node
 from ssmr_ident.estimate.problem import VAGUE, known_bandwidth, made, seen_hz
 from ssmr_ident.estimate.shooting import shot
-from ssmr_ident.estimate.simulated import Compiled, simulate
+from ssmr_ident.estimate.simulated import Compiled, motions
 from ssmr_ident.estimate.smoother import smoothed
 from ssmr_ident.estimate.values import Fit, Problem, Start
 from ssmr_ident.experiments.campaign import Measurement
@@ -97,12 +97,8 @@ def motion_of(problem: Problem, found: Fit) -> list[Array]:
         replace(p, channels=("",) * len(orders), orders=orders, bodies=places, y=np.zeros((len(p.y), len(orders))))
         for p in problem.pieces
     ]
-    model, n = Compiled.of(problem, found.node, found.point, pieces), found.node.states
-    paths = []
-    for index, (piece, nuisance) in enumerate(zip(pieces, found.nuisances, strict=True)):
-        zero = float(nuisance[n]) if piece.driven else 0.0
-        paths.append(simulate(model, index, nuisance[None, :n].copy(), np.array([0, len(piece.y)]), zero).y)
-    return paths
+    model = Compiled.of(problem, found.node, found.point, pieces)
+    return motions(model, found.nuisances)
 
 
 def followed(problem: Problem, node: Node, point: Array) -> Fit:

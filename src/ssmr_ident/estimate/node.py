@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
-from scipy.linalg import expm
 
 from ssmr_ident.estimate.coordinate import Coordinate
-from ssmr_ident.estimate.motor import drive_of
+from ssmr_ident.estimate.motor import armature
 from ssmr_ident.estimate.pieces import Piece, Seen
 from ssmr_ident.physics.effects import CATALOGUE
 from ssmr_ident.physics.element import STATES
+from ssmr_ident.physics.exponential import exponentials
 from ssmr_ident.physics.network import ONE, Layout
 from ssmr_ident.physics.slots import SLOTS, effect_vector
 
@@ -159,7 +160,7 @@ class Node:
     def generic(self) -> bool:
         return any(m.tables for m in self.members)
 
-    @property
+    @cached_property
     def coordinates(self) -> tuple[Coordinate, ...]:
         """Linear ones, then those of tables, laws, and what is done afterwards."""
         rest = [m for m in self.members if not m.linear]
@@ -242,108 +243,112 @@ def matrices(node: Node, values: Array, seen: Seen) -> tuple[Array, ...]:
     Parameters
     ----------
     node : Node
-    values : (linear,) float
-        Of the baseline and the linear members.
+    values : (…, linear) float
+        Of the baseline and the linear members; axes in front are those of what is returned.
     seen : Seen
     """
-    layout, count, n = node.layout, len(node.layout.bodies), node.linear_states
+    layout, count, n, lead = node.layout, len(node.layout.bodies), node.linear_states, values.shape[:-1]
     rates = slice(count, 2 * count)
-    mass, damping, stiffness = layout.matrices(values[: len(layout.keys)])
-    drive_at = drive_of(values[: len(node.baseline)]) if layout == ONE else None
-    if drive_at is not None:
-        mass = mass + drive_at.inertia
+    mass, damping, stiffness = layout.matrices(values[..., : len(layout.keys)])
+    mass = np.diagonal(mass, axis1=-2, axis2=-1)
+    if layout == ONE:
+        mass = mass + armature(values[..., : len(node.baseline)])[..., None]
     stretch = layout.stretch
-    a = np.zeros((n, n))
+    a = np.zeros((*lead, n, n))
     at, place = len(node.baseline), 2 * count
-    share = np.zeros(count)
+    share = np.zeros((*lead, count))
     places: dict[str, list[tuple[int, int, Array]]] = {}
     for member in (m for m in node.members if m.linear):
         size = len(member.coordinates)
-        own = values[at : at + size]
+        own = np.moveaxis(values[..., at : at + size], -1, 0)
         names = layout.springs if member.linear == BRANCH else layout.bodies
         element = names.index(member.element) if member.element else 0
         places.setdefault(member.linear, []).append((place, element, own))
         at, place = at + size, place + {LAG: 2, BRANCH: 1, RIDER: 2}[member.linear]
         if member.linear == RIDER:
-            share[element] += own[0]
-    body = np.diag(mass) * (1.0 - share)
-    a[:count, rates] = np.eye(count)
-    a[rates, :count], a[rates, rates] = -stiffness / body[:, None], -damping / body[:, None]
+            share[..., element] += own[0]
+    body = mass * (1.0 - share)
+    a[..., :count, rates] = np.eye(count)
+    a[..., rates, :count], a[..., rates, rates] = -stiffness / body[..., None], -damping / body[..., None]
     for i, spring, (stiff, tau) in places.get(BRANCH, []):
-        a[rates, i] = -stiff * stretch[spring] / body
-        a[i, rates], a[i, i] = stretch[spring], -1.0 / tau
-    kick, drive = np.zeros(n), np.zeros(n)
-    kick[rates] = stretch[node.site] / body
-    drive[count + seen.into] = 1.0 / body[seen.into]
+        a[..., rates, i] = -stiff[..., None] * stretch[spring] / body
+        a[..., i, rates], a[..., i, i] = stretch[spring], -1.0 / tau
+    kick, drive = np.zeros((*lead, n)), np.zeros((*lead, n))
+    kick[..., rates] = stretch[node.site] / body
+    drive[..., count + seen.into] = 1.0 / body[..., seen.into]
     if seen.based:
-        drive[rates] = -1.0
-    for i, on, (own, hz, ratio) in places.get(RIDER, []):
-        turning = 2.0 * math.pi * hz
-        pull = np.array([turning**2, 2.0 * ratio * turning])
-        a[count + on, i : i + 2] += pull * own * mass[on, on] / body[on]
-    for i, on, (_, hz, ratio) in places.get(RIDER, []):
-        turning, at = 2.0 * math.pi * hz, count + on
-        a[i, i + 1] = 1.0
-        a[i + 1] = -a[at]
-        a[i + 1, i : i + 2] -= np.array([turning**2, 2.0 * ratio * turning])
-        kick[i + 1] = -kick[at]
-        drive[i + 1] = 0.0 if seen.based else -drive[at]
+        drive[..., rates] = -1.0
+    pulls = {i: _pull(hz, ratio) for i, _, (_, hz, ratio) in places.get(RIDER, [])}
+    for i, on, (own, _, _) in places.get(RIDER, []):
+        a[..., count + on, i : i + 2] += pulls[i] * (own * mass[..., on] / body[..., on])[..., None]
+    for i, on, _ in places.get(RIDER, []):
+        at = count + on
+        a[..., i, i + 1] = 1.0
+        a[..., i + 1, :] = -a[..., at, :]
+        a[..., i + 1, i : i + 2] -= pulls[i]
+        kick[..., i + 1] = -kick[..., at]
+        drive[..., i + 1] = 0.0 if seen.based else -drive[..., at]
     channels = len(seen.orders)
-    rows, by_drive, by_force = np.zeros((channels, n)), np.zeros(channels), np.zeros(channels)
+    rows = np.zeros((*lead, channels, n))
+    by_drive, by_force = np.zeros((*lead, channels)), np.zeros((*lead, channels))
     felt = 1.0 if seen.based else 0.0
     for c, (order, on) in enumerate(zip(seen.orders, seen.bodies, strict=True)):
         at = count + on
         if order < 2:
-            rows[c, on + count * order] = 1.0
+            rows[..., c, on + count * order] = 1.0
         else:
-            rows[c], by_drive[c], by_force[c] = a[at], drive[at] + felt, -kick[at]
+            rows[..., c, :], by_drive[..., c], by_force[..., c] = a[..., at, :], drive[..., at] + felt, -kick[..., at]
     for i, on, (hz, *known) in places.get(LAG, []):
         # logs are rid of the low-pass that is known: this one takes its place, so that the two delay as one does
-        turning, slow, at = 2.0 * math.pi / (1.0 / hz - sum(1.0 / f for f in known)), np.zeros(n), count + on
-        slow[i], slow[i + 1] = -(turning**2), -math.sqrt(2.0) * turning
-        a[i, i + 1] = 1.0
-        a[i + 1] = turning**2 * a[at] + slow
-        kick[i + 1] = turning**2 * kick[at]
-        drive[i + 1] = turning**2 * (drive[at] + felt)
+        turning, at = 2.0 * math.pi / (1.0 / hz - sum(1.0 / f for f in known)), count + on
+        a[..., i, i + 1] = 1.0
+        a[..., i + 1, :] = (turning**2)[..., None] * a[..., at, :]
+        a[..., i + 1, i] -= turning**2
+        a[..., i + 1, i + 1] -= math.sqrt(2.0) * turning
+        kick[..., i + 1] = turning**2 * kick[..., at]
+        drive[..., i + 1] = turning**2 * (drive[..., at] + felt)
         for c in (c for c, order in enumerate(seen.orders) if order == 2 and seen.bodies[c] == on):
-            rows[c], by_drive[c], by_force[c] = 0.0, 0.0, 0.0
-            rows[c, i] = 1.0
+            rows[..., c, :], by_drive[..., c], by_force[..., c] = 0.0, 0.0, 0.0
+            rows[..., c, i] = 1.0
     return a, drive, kick, rows, by_drive, by_force
 
 
-def stepped(node: Node, values: Array, seen: Seen, step: float) -> tuple[tuple[Array, ...], ...]:
-    """Exact step under a drive in a straight line, and the channels: ((T, now, later, half a kick), rows)."""
-    return _stepped(node, [values], seen, step)[0]
+def _pull(hz: Array, ratio: Array) -> Array:
+    """What a rider's spring and damper do to it, of its displacement and its rate, per mass."""
+    turning = 2.0 * math.pi * hz
+    return np.stack([turning**2, 2.0 * ratio * turning], axis=-1)
 
 
-def _stepped(node: Node, points: Sequence[Array], seen: Seen, step: float) -> list[tuple[tuple[Array, ...], ...]]:
-    """``stepped`` at several values, whose exponentials are taken together."""
-    found = [matrices(node, values, seen) for values in points]
-    n = len(found[0][0])
-    blocks = np.zeros((len(points), n + 2, n + 2))
-    blocks[:, n, n + 1] = 1.0
-    for block, (a, drive, *_) in zip(blocks, found, strict=True):
-        block[:n, :n], block[:n, n] = a * step, drive * step
-    steps: list[tuple[tuple[Array, ...], ...]] = []
-    for e, (_, _, kick, *rows) in zip(expm(blocks), found, strict=True):
-        later = e[:n, n + 1].copy()
-        steps.append(((e[:n, :n].copy(), e[:n, n] - later, later, 0.5 * step * kick), tuple(rows)))
-    return steps
+def stepped(node: Node, values: Array, seen: Seen, step: float) -> tuple[tuple[Array, ...], tuple[Array, ...]]:
+    """Exact step under a drive in a straight line, and the channels: ((T, now, later, half a kick), rows).
+
+    Parameters
+    ----------
+    values : (…, linear) float
+        Axes in front are those of what is returned.
+    """
+    a, drive, kick, *rows = matrices(node, values, seen)
+    n = a.shape[-1]
+    blocks = np.zeros((*a.shape[:-2], n + 2, n + 2))
+    blocks[..., :n, :n], blocks[..., :n, n], blocks[..., n, n + 1] = a * step, drive * step, 1.0
+    e = exponentials(blocks.reshape(-1, n + 2, n + 2)).reshape(blocks.shape)
+    later = e[..., :n, n + 1].copy()
+    return (e[..., :n, :n].copy(), e[..., :n, n] - later, later, 0.5 * step * kick), tuple(rows)
 
 
 def stepped_with_slopes(node: Node, values: Array, slopes: Array, seen: Seen, step: float):
     """``stepped`` and its derivatives over the linear coordinates by central differences of the small matrices."""
     changes = APART * np.maximum(np.abs(values), 1e-3 * np.abs(slopes))
-    aside = np.diag(changes)
-    (lin, rows), *moved = _stepped(node, [values, *(values + aside), *(values - aside)], seen, step)
+    aside, count = np.diag(changes), len(values)
+    found = stepped(node, np.vstack([values[None], values + aside, values - aside]), seen, step)
     scales = slopes / (2.0 * changes)
-    pairs = list(zip(moved[: len(values)], moved[len(values) :], scales, strict=True))
-    return (
-        lin,
-        tuple(np.array([(up[0][i] - down[0][i]) * f for up, down, f in pairs]) for i in range(4)),
-        rows,
-        tuple(np.array([(up[1][i] - down[1][i]) * f for up, down, f in pairs]) for i in range(3)),
-    )
+
+    def slope(x: Array) -> Array:
+        return (x[1 : count + 1] - x[count + 1 :]) * scales.reshape(-1, *[1] * (x.ndim - 1))
+
+    lin, rows = (tuple(np.ascontiguousarray(x[0]) for x in part) for part in found)
+    d_lin, d_rows = (tuple(slope(x) for x in part) for part in found)
+    return lin, d_lin, rows, d_rows
 
 
 def law_places(node: Node) -> tuple[Array, Array]:

@@ -7,6 +7,7 @@ import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -143,6 +144,11 @@ class Piece:
         wild = self.counts.reshape(*self.counts.shape, *[1] * (columns.ndim - 2))
         columns = columns if self.counts.all() else np.where(wild, columns, 0.0)
         return columns if self.band is None else series(columns, self.rate, self.band, skipped)
+
+    @cached_property
+    def sizes(self) -> Array:
+        """(1 + c,) float: standard deviation of the drive, and how far each channel may be off zero."""
+        return np.append(np.std(self.drive), 3.0 * self.y.std(axis=0) + np.abs(self.y.mean(axis=0)))
 
     def samples(self, skipped: int = 0) -> int:
         """How many numbers count, of all channels together."""

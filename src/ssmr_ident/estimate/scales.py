@@ -44,12 +44,14 @@ def nuisance_scales(problem: Problem, node: Node, piece: Piece) -> Array:
     return np.concatenate([sizes, zero, gain, offsets, drifts])
 
 
+def nuisance_count(node: Node, piece: Piece) -> int:
+    """How many a piece has: states, zero and gain of its drive, zeros and drifts of its channels."""
+    return node.states + 2 * int(piece.driven) + 2 * piece.y.shape[1]
+
+
 def zero_scales(piece: Piece) -> list[Array]:
-    spread = ZERO_SHARE * float(np.std(piece.drive)) if piece.driven else 0.0
-    if piece.motor is not None:
-        spread = SIGNAL_SHARE * piece.motor.spread
-    zero = np.array([max(spread, 1e-12)]) if piece.driven else np.zeros(0)
-    return [zero, 3.0 * piece.y.std(axis=0) + np.abs(piece.y.mean(axis=0))]
+    spread = ZERO_SHARE * piece.sizes[0] if piece.motor is None else SIGNAL_SHARE * piece.motor.spread
+    return [np.full(int(piece.driven), max(spread, 1e-12)), piece.sizes[1:]]
 
 
 def state_sizes(problem: Problem, node: Node) -> Array:

@@ -116,10 +116,9 @@ def _shooting(problem, node, point, states, local, borders, weights, weight, loc
     model = Compiled.of(problem, node, point, problem.pieces)
     cost = float(np.sum(precision * (point - mean) ** 2))
     systems = []
-    for index, piece in enumerate(problem.pieces):
+    zeros = [float(own[0]) if piece.driven else 0.0 for piece, own in zip(problem.pieces, local, strict=True)]
+    for index, (piece, s) in enumerate(zip(problem.pieces, simulate(model, states, borders, zeros), strict=True)):
         driven, c = int(piece.driven), piece.y.shape[1]
-        zero = float(local[index][0]) if driven else 0.0
-        s = simulate(model, index, states[index], borders[index], zero)
         rest = (s.y + local[index][driven:] - piece.y) * weights[index] * piece.counts
         defect = s.ends[:-1] - states[index][1:]
         cost += float(np.sum(rest**2) + np.sum(weight * defect**2) + np.sum((local[index] / local_scales[index]) ** 2))

@@ -1,9 +1,9 @@
-"""A node at a point as the compiled loop takes it, and a piece run through that loop with its slopes."""
+"""A node at a point as the compiled loop takes it, and pieces run through that loop with their slopes."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -109,8 +109,22 @@ class Compiled:
             self.steps[key] = found if self.turned is None else _turned(found, *self.turned)
         return self.steps[key]
 
-    def courses(self, piece: Piece) -> Array:
-        return np.ascontiguousarray(self.tables.courses(piece))
+    def beside(self, pieces: Sequence[Piece]) -> tuple:
+        """Forces beside the linear rig along pieces that step alike, as the loop takes them."""
+        n, tables = self.node.linear_count, self.tables
+        generic = np.ascontiguousarray(self.values[n : n + self.node.count("tables")])
+        order = slice(None) if self.turned is None else self.turned[2]
+        courses = [tables.courses(p) for p in pieces] if len(tables.kinds) else [np.zeros((1, 0))]
+        return (
+            tables.reach, (tables.low, tables.top, 0.0 if pieces[0].based else 1.0), tables.by_position,
+            tables.by_velocity, tables.by_both, np.ascontiguousarray(np.vstack(courses)), tables.kinds, generic,
+            np.stack([self.values[:n][order], self.slopes[:n][order]]), tables.yields, self.has_law, self.law,
+            self.places, self.scales, self.problem.size, self.problem.speed, self.uses, _motor(self, pieces[0]),
+        )  # fmt: skip
+
+    @cached_property
+    def has_law(self) -> bool:
+        return any(m.law is not None for m in self.node.members)
 
     def delay(self) -> tuple[float, int] | None:
         for member in self.node.members:
@@ -134,54 +148,114 @@ def _turned(stepping: tuple, into: Array, back: Array, order: Array) -> tuple:
     return step(*lin), step(*(d[order] for d in d_lin)), rows(*seen), rows(*(d[order] for d in d_seen))
 
 
-def simulate(model: Compiled, index: int, starts: Array, borders: Array, zero: float) -> Simulated:
-    """A piece in stretches, with slopes over (states, coordinates, zero of the drive)."""
-    node, piece, problem = model.node, model.pieces[index], model.problem
+LANE = 20_000
+"""Samples of pieces that are run at once: of more, what a call costs is nothing beside the steps."""
+
+
+def lanes(pieces: Sequence[Piece]) -> Iterator[range]:
+    """Numbers of neighbours that step and are measured alike, up to ``LANE`` samples of them."""
+    first, samples = 0, 0
+    for index, piece in enumerate(pieces):
+        alike = _alike(piece) == _alike(pieces[first])
+        if index > first and (not alike or samples + len(piece.y) > LANE):
+            yield range(first, index)
+            first, samples = index, 0
+        samples += len(piece.y)
+    yield range(first, len(pieces))
+
+
+def _alike(piece: Piece) -> tuple:
+    motor = None if piece.motor is None else (piece.motor.gain, piece.motor.limit)
+    return piece.step, piece.every, piece.seen, piece.driven, piece.channels, motor
+
+
+def simulate(
+    model: Compiled, starts: Sequence[Array], borders: Sequence[Array], zeros: Sequence[float]
+) -> Iterator[Simulated]:
+    """Every piece in stretches, with slopes over (states, coordinates, zero of the drive).
+
+    Parameters
+    ----------
+    model : Compiled
+    starts : sequence of (s, states) float
+        Per piece, at the begin of each stretch.
+    borders : sequence of (s + 1,) int
+        Samples at which these begin; the last is the number of samples.
+    zeros : sequence of float
+        Of the drives.
+    """
+    for lane in lanes(model.pieces):
+        own = slice(lane.start, lane.stop)
+        s = _lane(model, model.pieces[own], starts[own], borders[own], zeros[own])
+        row, part = 0, 0
+        for k in lane:
+            rows, parts = slice(row, row + len(model.pieces[k].y)), slice(part, part + len(starts[k]))
+            yield Simulated(s.y[rows], s.dy[rows], s.ends[parts], s.dends[parts])
+            row, part = rows.stop, parts.stop
+
+
+def simulate_whole(model: Compiled, lane: range, begun: Sequence[Array] | Array) -> Simulated:
+    """Pieces that step alike from their begins to their ends, one behind the other.
+
+    Parameters
+    ----------
+    model : Compiled
+    lane : range
+        Numbers of the pieces.
+    begun : sequence of (k,) float
+        What a fit has of each piece: states, then the zero of its drive.
+    """
+    n, pieces = model.node.states, model.pieces[lane.start : lane.stop]
+    own = [begun[k] for k in lane]
+    borders = [np.array([0, len(p.y)]) for p in pieces]
+    zeros = [float(o[n]) if p.driven else 0.0 for p, o in zip(pieces, own, strict=True)]
+    return _lane(model, pieces, [o[None, :n] for o in own], borders, zeros)
+
+
+def motions(model: Compiled, begun: Sequence[Array]) -> list[Array]:
+    """Channels of every piece from its begin to its end, (n, c) float, by what a fit has of each."""
+    found: list[Array] = []
+    for lane in lanes(model.pieces):
+        y = simulate_whole(model, lane, begun).y
+        found += np.split(y, np.cumsum([len(model.pieces[k].y) for k in lane])[:-1])
+    return found
+
+
+def _lane(
+    model: Compiled, pieces: Sequence[Piece], starts: Sequence[Array], borders: Sequence[Array], zeros: Sequence[float]
+) -> Simulated:
+    """Pieces that step alike, in one run."""
+    node, piece = model.node, pieces[0]
     lin, d_lin, rows, d_rows = model.stepping(piece)
-    n_lin = node.linear_count
-    n_tab, n_law = node.count("tables"), node.count("law")
-    tables = model.tables
-    generic = model.values[n_lin : n_lin + n_tab]
-    turned, moved = model.turned, node.linear_states
-    order = np.arange(n_lin) if turned is None else turned[2]
-    g = (
-        tables.reach, (tables.low, tables.top, 0.0 if piece.based else 1.0), tables.by_position, tables.by_velocity,
-        tables.by_both, model.courses(piece), tables.kinds, np.ascontiguousarray(generic),
-        np.stack([model.values[:n_lin][order], model.slopes[:n_lin][order]]), tables.yields,
-        n_law > 0 or _has_law(node), model.law, model.places, model.scales, problem.size, problem.speed,
-        model.uses, _motor(model, piece),
-    )  # fmt: skip
-    drive, drives = piece.drive, np.ones((1, len(piece.drive)))
-    delay = model.delay()
-    if delay is not None:
-        late, _ = delay
-        grid = np.arange(len(drive))
-        between = CubicSpline(grid, piece.drive)  # straight lines would round a drive's corners off
-        at = np.clip(grid - late / piece.step, 0.0, grid[-1])
-        drive = between(at)
-        drives = np.stack([drives[0], -between(at, 1) / piece.step])
-    given = np.zeros(1), np.zeros(1)
-    if piece.motor is None:
-        drive = drive + zero
-    else:
-        drives[0], given = 0.0, (piece.motor.signal + zero, piece.motor.on)
-    states = starts.shape[1]
+    n_lin, n_tab, n_law = node.linear_count, node.count("tables"), node.count("law")
+    drive, drives, motor, at = _drives(model, pieces, zeros)
+    row = np.cumsum([0, *(len(p.y) for p in pieces)])
+    both = list(zip(pieces, borders, strict=True))
+    places = np.vstack([_places(p, b, row[i], at[i], at[i + 1]) for i, (p, b) in enumerate(both)])
+    times = np.concatenate([p.time[0] + b[:-1] * p.every * p.step for p, b in both])
+    begun = np.vstack(starts)
+    states, moved, turned = begun.shape[1], node.linear_states, model.turned
     columns = states + n_lin + n_tab + n_law + len(drives)
-    y, dy = np.empty(piece.y.shape), np.empty((*piece.y.shape, columns))
-    ends, dends = np.empty(starts.shape), np.empty((*starts.shape, columns))
-    begin = float(piece.time[0])
-    begun = starts if turned is None else np.hstack([starts[:, :moved] @ turned[0].T, starts[:, moved:]])
-    beside = node.beside or piece.motor is not None
-    run(lin, d_lin, rows, d_rows, g, beside, begun, borders, drive, drives, given, piece.every, piece.step, begin,
-        y, dy, ends, dends)  # fmt: skip
+    y, dy = np.empty((row[-1], piece.y.shape[1])), np.empty((row[-1], piece.y.shape[1], columns))
+    ends, dends = np.empty(begun.shape), np.empty((*begun.shape, columns))
     if turned is not None:
-        into, back, _ = turned
+        begun = np.hstack([begun[:, :moved] @ turned[0].T, begun[:, moved:]])
+    beside = node.beside or piece.motor is not None
+    run(lin, d_lin, rows, d_rows, model.beside(pieces), beside, begun, places, times, drive, drives, motor, piece.every,
+        piece.step, y, dy, ends, dends)  # fmt: skip
+    if turned is not None:
+        into, back, order = turned
         ends[:, :moved] = ends[:, :moved] @ back.T
         dends[:, :moved] = np.einsum("ij,sjc->sic", back, dends[:, :moved])
         for slopes in (dy, dends):
             slopes[..., :moved] = slopes[..., :moved] @ into
             slopes[..., states + order] = slopes[..., states : states + n_lin].copy()
-    return _arranged(model, index, Simulated(y, dy, ends, dends), states, n_lin, n_tab + n_law, delay)
+    delay = model.delay()
+    dy, dends = (_arranged(model, slopes, states, n_lin, n_tab + n_law, delay) for slopes in (dy, dends))
+    if any(m.after for m in node.members):
+        for own, first, after in zip(pieces, row[:-1], row[1:], strict=True):
+            y[first:after], dy[first:after] = _afterwards(model, own, y[first:after], dy[first:after], states)
+    return Simulated(y, dy, ends, dends)
 
 
 def _motor(model: Compiled, piece: Piece) -> tuple[bool, float, float, float, float]:
@@ -194,32 +268,61 @@ def _motor(model: Compiled, piece: Piece) -> tuple[bool, float, float, float, fl
     return True, piece.motor.gain, piece.motor.limit, motor.ratio, size
 
 
-def _has_law(node: Node) -> bool:
-    return any(m.law is not None for m in node.members)
+def _places(piece: Piece, borders: Array, row: int, at: int, after: int) -> Array:
+    """Of each stretch of a piece, as ``run`` takes it."""
+    found = np.empty((len(borders) - 1, 5), dtype=np.int64)
+    found[:, 0], found[:, 1], found[:, 2] = row + borders[:-1], row + borders[1:], row + len(piece.y) - 1
+    found[:, 3], found[:, 4] = np.minimum(at + borders[:-1] * piece.every, after - 1), after - 1
+    return found
 
 
-def _arranged(model: Compiled, index: int, s: Simulated, states: int, n_lin: int, rest: int, delay) -> Simulated:
-    """Columns in the order (states, coordinates, zero), what is done to channels afterwards among them."""
-    node, count = model.node, len(model.values)
-    first = states + n_lin
+def _drives(
+    model: Compiled, pieces: Sequence[Piece], zeros: Sequence[float]
+) -> tuple[Array, Array, tuple[Array, Array], Array]:
+    """What drives pieces, one behind the other, its slopes over what may change in it, what a motor is given and whether
+    it is connected, and where each one begins."""
+    found, slopes, delay = [p.drive for p in pieces], [], model.delay()
+    if delay is not None:
+        for i, piece in enumerate(pieces):
+            grid = np.arange(len(piece.drive))
+            between = CubicSpline(grid, piece.drive)  # straight lines would round a drive's corners off
+            at = np.clip(grid - delay[0] / piece.step, 0.0, grid[-1])
+            found[i] = between(at)
+            slopes.append(-between(at, 1) / piece.step)
+    begins = np.cumsum([0, *(len(d) for d in found)])
+    drive, zero = np.concatenate(found), np.repeat(zeros, np.diff(begins))
+    given = [p.motor for p in pieces if p.motor is not None]
+    if given:
+        motor = np.concatenate([m.signal for m in given]) + zero, np.concatenate([m.on for m in given])
+        own = np.zeros((1, len(drive)))
+    else:
+        motor, own = (np.zeros(1), np.zeros(1)), np.ones((1, len(drive)))
+        drive = drive + zero
+    return drive, np.vstack([own, np.concatenate(slopes)]) if slopes else own, motor, begins
 
-    def order(d: Array) -> Array:
-        if d.shape[-1] == states + count + 1 and delay is None:  # nothing is done afterwards
-            d[..., first : first + rest] *= model.slopes[n_lin : n_lin + rest]
-            return d
-        out = np.zeros((*d.shape[:-1], states + count + 1))
-        out[..., : first + rest] = d[..., : first + rest]
-        out[..., first : first + rest] *= model.slopes[n_lin : n_lin + rest]
-        out[..., -1] = d[..., first + rest]
-        if delay is not None:
-            out[..., states + delay[1]] = d[..., first + rest + 1] * model.slopes[delay[1]]
-        return out
 
-    y, dy = s.y, order(s.dy)
+def _arranged(model: Compiled, slopes: Array, states: int, n_lin: int, rest: int, delay) -> Array:
+    """Columns in the order (states, coordinates, zero), with room for what is done to channels afterwards."""
+    count, first = len(model.values), states + n_lin
+    if slopes.shape[-1] == states + count + 1 and delay is None:
+        slopes[..., first : first + rest] *= model.slopes[n_lin : n_lin + rest]
+        return slopes
+    out = np.zeros((*slopes.shape[:-1], states + count + 1))
+    out[..., : first + rest] = slopes[..., : first + rest]
+    out[..., first : first + rest] *= model.slopes[n_lin : n_lin + rest]
+    out[..., -1] = slopes[..., first + rest]
+    if delay is not None:
+        out[..., states + delay[1]] = slopes[..., first + rest + 1] * model.slopes[delay[1]]
+    return out
+
+
+def _afterwards(model: Compiled, piece: Piece, y: Array, dy: Array, states: int) -> tuple[Array, Array]:
+    """What instruments do to a piece's channels."""
+    node = model.node
     for member in (m for m in node.members if m.after == "clip"):
         at = [id(c) for c in node.coordinates].index(id(member.coordinates[0]))
         limit = model.values[at]
-        for c in (c for c, name in enumerate(model.pieces[index].channels) if name == member.channel):
+        for c in (c for c, name in enumerate(piece.channels) if name == member.channel):
             beyond = np.abs(y[:, c]) > limit
             dy[beyond, c] = 0.0
             dy[beyond, c, states + at] = np.sign(y[beyond, c]) * model.slopes[at]
@@ -229,5 +332,5 @@ def _arranged(model: Compiled, index: int, s: Simulated, states: int, n_lin: int
         names = [c.name for c in member.coordinates]
         given = {name: float(model.values[k]) for name, k in zip(names, places, strict=True)}
         own = {name: (states + k, float(model.slopes[k])) for name, k in zip(names, places, strict=True)}
-        y, dy = passed_on(member, model.pieces[index], y, dy, given, own)
-    return Simulated(y, dy, s.ends, order(s.dends))
+        y, dy = passed_on(member, piece, y, dy, given, own)
+    return y, dy

@@ -10,7 +10,7 @@ import numpy as np
 
 from ssmr_ident.estimate.pieces import Piece, cut
 from ssmr_ident.estimate.scales import state_sizes
-from ssmr_ident.estimate.simulated import Compiled, simulate
+from ssmr_ident.estimate.simulated import Compiled, lanes, simulate_whole
 from ssmr_ident.estimate.values import Fit, Problem
 
 SEARCHED = 120.0
@@ -83,13 +83,11 @@ def predictable(problem: Problem, fit: Fit) -> float:
     simulation has of its end over its begin.
     """
     model = Compiled.of(problem, fit.node, fit.point, problem.pieces)
-    sizes, n = state_sizes(problem, fit.node), fit.node.states
+    sizes, k = state_sizes(problem, fit.node), fit.node.motion_states
     grown, periods = 0.0, 0.0
-    for index, (piece, nuisance) in enumerate(zip(problem.pieces, fit.nuisances, strict=True)):
-        zero = float(nuisance[n]) if piece.driven else 0.0
-        s = simulate(model, index, nuisance[None, :n].copy(), np.array([0, len(piece.y)]), zero)
-        k = fit.node.motion_states
-        slopes = s.dends[0][:k, :k] * sizes[None, :k] / sizes[:k, None]
+    ends = np.concatenate([simulate_whole(model, lane, fit.nuisances).dends for lane in lanes(model.pieces)])
+    for piece, own in zip(problem.pieces, ends, strict=True):
+        slopes = own[:k, :k] * sizes[None, :k] / sizes[:k, None]
         if not np.isfinite(slopes).all():
             return math.inf
         grown += math.log(max(float(np.linalg.norm(slopes, 2)), 1e-300))

@@ -62,10 +62,11 @@ class Layout:
         return any(-1 in ends for ends in self.ends)
 
     def matrices(self, values: Array) -> tuple[Array, Array, Array]:
-        """Mass, damping and stiffness matrices, (n, n) float each, of the values of ``keys``."""
+        """Mass, damping and stiffness matrices, (…, n, n) float each, of the values of ``keys``, (…, k) float."""
         n, stretch = len(self.bodies), self.stretch
-        damping, stiffness = values[n::2], values[n + 1 :: 2]
-        return np.diag(values[:n]), (stretch.T * damping) @ stretch, (stretch.T * stiffness) @ stretch
+        damping, stiffness = values[..., None, n::2], values[..., None, n + 1 :: 2]
+        mass = values[..., :n, None] * np.eye(n)
+        return mass, (stretch.T * damping) @ stretch, (stretch.T * stiffness) @ stretch
 
 
 ONE = Layout(("body",), ("spring",), ((-1, 0),))

@@ -150,7 +150,8 @@ class Run:
                 1.0 / self.rate, 1, np.ones(3 * bodies), bodies=tuple(range(bodies)) * 3, into=self.into,
             )  # fmt: skip
             problem = Problem((piece,), node.baseline, (), hertz, size, layout=node.layout)
-            moved = simulate(Compiled.of(problem, node, point, [piece]), 0, state, np.array([0, count]), 0.0)
+            model = Compiled.of(problem, node, point, [piece])
+            (moved,) = simulate(model, [state], [np.array([0, count])], [0.0])
             if not np.isfinite(moved.y).all():
                 raise SimulationError(f"the network left the finite numbers before {piece.time[-1]:.4g} s")
             found.append(moved.y)
