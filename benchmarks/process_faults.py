@@ -268,8 +268,8 @@ def faults(ground: Ground, moments: int) -> Iterator[tuple[str, Callable[[], Row
     for verb in ("simulate", "spectrum", "diagnose", "batch", "sweep"):
         yield f"full disk {verb}", lambda v=verb: full(ground, v, 12)
     for verb in ("simulate", "fit", "batch"):
-        what = "files of 1 kB at the most"
-        yield f"limit {verb}", lambda v=verb, w=what: limited(ground, v, w, resource.RLIMIT_FSIZE, 1024, (1, 2))
+        what = "files of 100 bytes at the most"
+        yield f"limit {verb}", lambda v=verb, w=what: limited(ground, v, w, resource.RLIMIT_FSIZE, 100, (1, 2))
     yield "limit", lambda: limited(ground, "fit", "900 MB of addresses", resource.RLIMIT_AS, 900 << 20, (0, 1))
     yield "limit", lambda: limited(ground, "batch", "24 open files", resource.RLIMIT_NOFILE, 24, (0, 1, 2))
     for verb in ("fit", "simulate"):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 from pathlib import Path
 
 import pytest
@@ -55,4 +56,27 @@ def test_a_loop_stays_where_only_files_change_that_it_is_not_made_of(package: Pa
     assert index.exists()
     (package / "simulate" / "loop.py").unlink()
     forget_other_sources(package)
+    assert not index.exists()
+
+
+@pytest.mark.parametrize("left", ["", '{"seen": "ab', "[1, 2]", '{"seen": "ab"}', "\x00" * 40])
+def test_what_was_written_down_in_part_is_not_known(package: Path, left: str) -> None:
+    forget_other_sources(package)
+    index = compiled(package)
+    (package / "__pycache__" / "compiled_from.json").write_text(left)
+    assert forget_other_sources(package)
+    assert not index.exists()
+    assert not forget_other_sources(package)
+
+
+def test_a_disk_without_room_costs_the_memory_and_not_the_run(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: object, **__: object) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Path, "replace", full)
+        assert forget_other_sources(package)
+    assert [file.name for file in (package / "__pycache__").iterdir()] == []
+    index = compiled(package)
+    assert forget_other_sources(package)
     assert not index.exists()

@@ -10,8 +10,12 @@ import ast
 import hashlib
 import json
 import os
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
+
+from ssmr_ident.core.atomic import write_text
+from ssmr_ident.core.errors import InputError
 
 STAMP = "compiled_from.json"
 
@@ -39,9 +43,7 @@ def forget_other_sources(package: Path) -> bool:
     facts = [(file.relative_to(package).as_posix(), file.stat().st_size, file.stat().st_mtime_ns) for file in files]
     seen = hashlib.sha256(repr(facts).encode()).hexdigest()
     stamp = kept / STAMP
-    before: dict[str, Any] = (
-        json.loads(stamp.read_text(encoding="ascii")) if stamp.is_file() else {"seen": "", "sources": {}}
-    )
+    before = _before(stamp)
     if before["seen"] == seen:
         return False
     sources = _sources(package, files)
@@ -49,8 +51,18 @@ def forget_other_sources(package: Path) -> bool:
         own = (index.parent.parent / f"{index.name.split('.')[0]}.py").relative_to(package).as_posix()
         if own not in sources or before["sources"].get(own) != sources[own]:
             index.unlink(missing_ok=True)
-    stamp.write_text(json.dumps({"seen": seen, "sources": sources}), encoding="ascii")
+    with suppress(InputError):  # a full disk: what is kept is asked for once more by the next run
+        write_text(stamp, json.dumps({"seen": seen, "sources": sources}))
     return True
+
+
+def _before(stamp: Path) -> dict[str, Any]:
+    """What loops were compiled of; nothing where that was never written, or is no longer whole."""
+    with suppress(OSError, ValueError):
+        found = json.loads(stamp.read_text(encoding="ascii"))
+        if isinstance(found, dict) and found.keys() == {"seen", "sources"} and isinstance(found["sources"], dict):
+            return found
+    return {"seen": "", "sources": {}}
 
 
 def _sources(package: Path, files: list[Path]) -> dict[str, str]:
