@@ -93,8 +93,8 @@ def carried(node: Node, fit: Fit) -> tuple[Array, ...]:
     return tuple(found)
 
 
-def again(problem: Problem, fit: Fit, steps: int) -> Fit:
-    return polish(problem, fit.node, Start(fit.point, fit.nuisances), steps)
+def again(problem: Problem, fit: Fit, steps: int, to_the_end: bool = False) -> Fit:
+    return polish(problem, fit.node, Start(fit.point, fit.nuisances), steps, to_the_end=to_the_end)
 
 
 def over(fit: Fit, problem: Problem) -> float:

@@ -35,7 +35,7 @@ from ssmr_ident.estimate.network import paths_of
 from ssmr_ident.estimate.noise import left_white, own_noise
 from ssmr_ident.estimate.shooting import shot
 from ssmr_ident.estimate.stretches import in_stretches, predictable, sampled
-from ssmr_ident.estimate.values import Fit, Problem, Start, Stop, with_noises
+from ssmr_ident.estimate.values import Fit, Problem, Start, with_noises
 from ssmr_ident.physics.network import ONE
 
 NEAR = 200.0
@@ -43,8 +43,12 @@ NEAR = 200.0
 ``FORMULA`` of the misfit at the most, for means over several samples are a little off themselves."""
 
 
-ROUNDS = 6
-"""Short fits, one after the other, by which a model that may still be the best goes to its end."""
+ROUNDS = 2
+"""Fits, one after the other, by which a model that may still be the best goes to its end."""
+
+ENDED = 0.1
+"""Fall of the cost that a straight line promises at the end of a fit: a parameter is then within a third of its standard
+deviation of its best."""
 
 
 def searched(problem: Problem, budget: float = math.inf, progress: Progress | None = None) -> Search:
@@ -88,7 +92,10 @@ def searched(problem: Problem, budget: float = math.inf, progress: Progress | No
         paired(search, say)
     offered_back(search)
     exchanged(search, say)
-    return search if problem is whole else _in_full(search, whole, begins, say)
+    if problem is not whole:
+        return _in_full(search, whole, begins, say)
+    _ended(search)
+    return search
 
 
 def _with_white(search: Search) -> Search:
@@ -149,7 +156,7 @@ def _in_full(search: Search, whole: Problem, begins: Sequence[int], say: Progres
 
 def _ended(search: Search) -> None:
     """Models that may still come within a tie of the best go on until they have ended: those that promise half of what
-    they lack, for valleys bend."""
+    they lack, for valleys bend; in directions that the data hardly see too."""
     gone: Counter[str] = Counter()
     while not search.late:
         best = search.rows()[0].log_evidence
@@ -157,7 +164,7 @@ def _ended(search: Search) -> None:
             r
             for r in search.rows()
             if r.fit is not None
-            and r.fit.stop is Stop.STEPS
+            and r.fit.promised > ENDED
             and gone[r.name] < ROUNDS
             and r.log_evidence + r.fit.promised > best - TIE
         ]
@@ -165,8 +172,8 @@ def _ended(search: Search) -> None:
             return
         fit = open_rows[0].fit
         assert fit is not None
-        gone[fit.node.name] += 1
-        search.add(again(search.problem, fit, SHORT))
+        better = search.add(again(search.problem, fit, FULL, to_the_end=True))
+        gone[fit.node.name] += ROUNDS if better is fit else 1
 
 
 def _at_begins(fit: Fit, begins: Sequence[int]) -> Start:

@@ -56,13 +56,13 @@ def _linearised(model: Compiled, lane: range, local: Array) -> Array:
     counts = [len(p.y) for p in pieces]
     own = np.repeat(local[lane.start : lane.stop, :k], counts, axis=0)
     course = np.concatenate([np.linspace(-1.0, 1.0, count) for count in counts])[:, None]
-    gain = 1.0 + own[:, n + 1, None] if pieces[0].driven else np.ones((len(own), 1))
+    gain = np.exp(own[:, n + 1, None]) if pieces[0].driven else np.ones((len(own), 1))
     whole = np.zeros((*s.y.shape, room + len(model.values) + 1))
     np.multiply(s.dy[..., :n], gain[..., None], out=whole[..., :n])
     np.multiply(s.dy[..., n:-1], gain[..., None], out=whole[..., room:-1])
     if pieces[0].driven:
         np.multiply(s.dy[..., -1], gain, out=whole[..., n])
-        whole[..., n + 1] = s.y
+        whole[..., n + 1] = gain * s.y
     for channel in range(c):
         whole[:, channel, k - 2 * c + channel] = 1.0
         whole[:, channel, k - c + channel] = course[:, 0]
@@ -79,8 +79,23 @@ def _whitened(problem: Problem, index: int, columns: Array) -> Array:
     return filtered[0][:, None] if len(filtered) == 1 else np.stack(filtered, axis=1)
 
 
-def polish(problem: Problem, node: Node, start: Start, steps: int = 30, freeze: Sequence[int] = ()) -> Fit:
-    """Levenberg-Marquardt on the exact simulation, nuisances eliminated piece by piece."""
+def polish(
+    problem: Problem, node: Node, start: Start, steps: int = 30, freeze: Sequence[int] = (), to_the_end: bool = False
+) -> Fit:
+    """Levenberg-Marquardt on the exact simulation, nuisances eliminated piece by piece.
+
+    Parameters
+    ----------
+    problem : Problem
+    node : Node
+    start : Start
+    steps : int
+        At the most.
+    freeze : sequence of int
+        Coordinates that stay.
+    to_the_end : bool
+        Whether steps go on without damping where that alone keeps from moving what the data hardly see.
+    """
     point = bounded(node, start.point)
     begun = start.nuisances if start.nuisances is not None else starts_of(problem, node, start)
     counts = [len(own) for own in begun]
@@ -100,18 +115,25 @@ def polish(problem: Problem, node: Node, start: Start, steps: int = 30, freeze: 
         return _failed(problem, node, point, tuple(begun))
     damping, gain, stop = 1e-3, 0.0, Stop.STEPS
     for _ in range(steps):
-        lower_any, enough = False, LEAST_GAIN + LEAST_SHARE * cost
+        lower_any, share, enough = False, 1.0, LEAST_GAIN + LEAST_SHARE * cost
+        step, moves, promised = _step(normal, point, local, mean, precision, scales, damping, free)
+        damped = promised >= enough or not to_the_end
+        if not damped:
+            step, moves, promised = _step(normal, point, local, mean, precision, scales, 0.0, free)
         for _ in range(6):
-            step, moves, promised = _step(normal, point, local, mean, precision, scales, damping, free)
-            if promised < enough:  # not worth another simulation
+            if share * promised < enough:  # not worth another simulation
                 break
-            new_point, new = bounded(node, point + step), local + moves
+            new_point, new = bounded(node, point + share * step), local + share * moves
             trial = _exact(problem, node, new_point, new)
             lower = total(trial[0], new_point, new)
             if lower < cost:
                 lower_any = True
                 break
+            if not damped:
+                share *= 0.5
+                continue
             damping = max(damping * 4.0, 1e-4)
+            step, moves, promised = _step(normal, point, local, mean, precision, scales, damping, free)
         if not lower_any:
             stop = Stop.CONVERGED
             break
@@ -121,9 +143,8 @@ def polish(problem: Problem, node: Node, start: Start, steps: int = 30, freeze: 
         if gain < enough:
             stop = Stop.CONVERGED
             break
-    further = 0.0
-    if stop is Stop.STEPS:
-        further = max(gain, _step(normal, point, local, mean, precision, scales, 0.0, free)[2])
+    further = _step(normal, point, local, mean, precision, scales, 0.0, free)[2]
+    further = max(gain, further) if stop is Stop.STEPS else further
     covariance, dof = _decided(node, normal, precision, scales, free)
     nuisances = tuple(own[:count].copy() for own, count in zip(local, counts, strict=True))
     prior = float(np.sum(precision * (point - mean) ** 2))

@@ -89,7 +89,7 @@ class Fit:
         Coordinates.
     nuisances : tuple of (k,) float
         Per piece: states at its begin (linear, hidden), where it is driven the drive's
-        zero and what the gain is off by, zeros of the channels, and what these drift by to either side.
+        zero and the logarithm of its channels' gain, zeros of the channels, and what these drift by to either side.
     covariance : (p, p) float
         Of the coordinates.
     residuals : tuple of (n, c) float
@@ -102,8 +102,8 @@ class Fit:
         Parameters that the data decide, of those with a prior in part.
     stop : Stop
     promised : float
-        Of a fit whose steps were used up, what the cost may fall by yet: what its last step gained, or what a straight
-        line promises where that is more.
+        What the cost may fall by yet: what a straight line promises, or the last step gained where that is more and the
+        steps were used up.
     """
 
     node: Node

@@ -143,8 +143,15 @@ def _compared(search: Search, say: Progress) -> bool:
         return False
     if search.over(search.baseline) < NEAR and not search.has_laws:
         _laws_beside(search, search.baseline, say)
+        _settled(search, say, _best_law(search))
         _finished(search, say)
     return True
+
+
+def _best_law(search: Search) -> Found | None:
+    """The best single law: short of its end it is no measure of what is linear."""
+    laws = [f for f in search.found if len(f.members) == 1 and not f.members[0].linear and not f.members[0].generic]
+    return min(laws, key=lambda f: f.cost, default=None)
 
 
 def _matters(search: Search) -> bool:
@@ -320,9 +327,10 @@ def _simulated(search: Search, found: Found) -> Found:
     return simulated
 
 
-def _settled(search: Search, say: Progress) -> None:
-    """The best law to its end, and once more from what is known of the robot where that has been left."""
-    best = search.best
+def _settled(search: Search, say: Progress, found: Found | None = None) -> None:
+    """A law to its end, the best model's if none is given, and once more from what is known of the robot where that has
+    been left."""
+    best = found or search.best
     if best.fit is None or not best.members or search.over(best) < FORMULA_OVER:
         return
     say("the best law to its end", 0, 1)
