@@ -82,9 +82,10 @@ def test_the_fit_has_the_simulators_motion_and_its_slopes(controller: Controller
     borders = np.array([0, len(piece.y)])
 
     def run(at: np.ndarray, begun: np.ndarray = start, zero: float = 0.0) -> np.ndarray:
-        return simulate(Compiled.of(problem, node, at, [piece]), 0, begun, borders, zero).y
+        (found,) = simulate(Compiled.of(problem, node, at, [piece]), [begun], [borders], [zero])
+        return found.y
 
-    one = simulate(Compiled.of(problem, node, point, [piece]), 0, start, borders, 0.0)
+    (one,) = simulate(Compiled.of(problem, node, point, [piece]), [start], [borders], [0.0])
     effects = {"load_dependent_friction": GEARS, **SINE}
     course = _course(len(piece.y) / RATE, controller)
     own = simulate_rig(RIG, np.zeros(len(piece.y)), RATE, 0.2, 0.1, 4, effects=effects, motor=MOTOR, course=course)

@@ -47,8 +47,8 @@ ROUNDS = 2
 """Fits, one after the other, by which a model that may still be the best goes to its end."""
 
 ENDED = 0.1
-"""Fall of the cost that a straight line promises at the end of a fit: a parameter is then within a third of its standard
-deviation of its best."""
+"""Fall of the cost that a straight line promises at the end of a fit: a parameter is then within a third of its
+standard deviation of its best."""
 
 
 def searched(problem: Problem, budget: float = math.inf, progress: Progress | None = None) -> Search:

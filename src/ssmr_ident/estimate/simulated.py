@@ -279,8 +279,8 @@ def _places(piece: Piece, borders: Array, row: int, at: int, after: int) -> Arra
 def _drives(
     model: Compiled, pieces: Sequence[Piece], zeros: Sequence[float]
 ) -> tuple[Array, Array, tuple[Array, Array], Array]:
-    """What drives pieces, one behind the other, its slopes over what may change in it, what a motor is given and whether
-    it is connected, and where each one begins."""
+    """What drives pieces, one behind the other, its slopes over what may change in it, what a motor is given and
+    whether it is connected, and where each one begins."""
     found, slopes, delay = [p.drive for p in pieces], [], model.delay()
     if delay is not None:
         for i, piece in enumerate(pieces):
