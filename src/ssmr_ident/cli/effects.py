@@ -49,7 +49,7 @@ def command(
     from ssmr_ident.cli.progress import doing
     from ssmr_ident.core.errors import InputError
     from ssmr_ident.physics.effects import CATALOGUE
-    from ssmr_ident.workflows.effects.catalogue import catalogue_text, draw, effect_text, effect_values, find
+    from ssmr_ident.workflows.effects.catalogue import bearer, catalogue_text, draw, effect_text, effect_values, find
 
     if check is not None:
         if effect_id is not None or output is not None:
@@ -75,7 +75,7 @@ def command(
         typer.echo(effect_text(effect))
         if written is not None:
             typer.echo(f"\n  figure: {written}")
-        elif effect.bearer != "a rig":  # of which there is no drawing
+        elif bearer(effect) != "a rig":  # of which there is no drawing
             typer.echo(f"\n  a figure of it: ident effects {effect.id} -o {effect.id}.png")
 
 

@@ -171,13 +171,6 @@ class Effect(Shown):
         """Whether it acts on a robot, and not on the drive of a rig alone."""
         return set(self.acts) != {Site.DRIVE}
 
-    @property
-    def bearer(self) -> str:
-        """On what it can be seen, in words."""
-        if self.experiments == ("forced",):
-            return "a rig"
-        return "the robot and of a rig" if self.rig else "the robot"
-
     def values(self, given: Mapping[str, float] | None = None) -> dict[str, float]:
         """All parameters: the given ones, nominal for the rest."""
         return {p.name: float((given or {}).get(p.name, p.nominal)) for p in self.parameters}

@@ -11,6 +11,7 @@ from typing import Any
 
 from ssmr_ident.core.errors import InputError, did_you_mean
 from ssmr_ident.core.parameter import Parameter
+from ssmr_ident.experiments import EXPERIMENTS
 from ssmr_ident.physics.effect import Effect
 from ssmr_ident.physics.effects import CATALOGUE
 
@@ -26,6 +27,13 @@ def find(effect_id: str) -> Effect:
     if effect_id not in CATALOGUE:
         raise InputError(f"effects: {effect_id}", "is no known effect", did_you_mean(effect_id, CATALOGUE))
     return CATALOGUE[effect_id]
+
+
+def bearer(effect: Effect) -> str:
+    """On what an effect can be seen, in words."""
+    if not any(EXPERIMENTS[name].scenario for name in effect.experiments):
+        return "a rig"
+    return "the robot and of a rig" if effect.rig else "the robot"
 
 
 def catalogue_text(width: int | None = None) -> str:
@@ -46,7 +54,7 @@ def effect_text(effect: Effect) -> str:
     lines = [f"{effect.id}: {effect.sentence}", "", f"  equation   {effect.equation}"]
     lines += [f"  signature  {effect.signature}", f"  seen in    {', '.join(effect.experiments)}"]
     lines += [f"  acts on    {', '.join(site.value for site in effect.acts)}"]
-    lines[-1] += f" of {effect.bearer}"
+    lines[-1] += f" of {bearer(effect)}"
     lines += [f"  source     {effect.source}", "", "  parameters"]
     name_width = max(len(parameter.name) for parameter in effect.parameters)
     unit_width = max(len(parameter.unit) for parameter in effect.parameters)
