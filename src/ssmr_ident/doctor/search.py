@@ -43,7 +43,7 @@ NEAR = 200.0
 ``FORMULA`` of the misfit at the most, for means over several samples are a little off themselves."""
 
 
-ROUNDS = 2
+ROUNDS = 4
 """Fits, one after the other, by which a model that may still be the best goes to its end."""
 
 ENDED = 0.1
@@ -173,7 +173,7 @@ def _ended(search: Search) -> None:
         fit = open_rows[0].fit
         assert fit is not None
         better = search.add(again(search.problem, fit, FULL, to_the_end=True))
-        gone[fit.node.name] += ROUNDS if better is fit else 1
+        gone[fit.node.name] += 1 if better.cost < fit.cost - ENDED else ROUNDS
 
 
 def _at_begins(fit: Fit, begins: Sequence[int]) -> Start:
