@@ -505,3 +505,16 @@ def test_documents_that_are_zips_are_called_by_their_names(tmp_path: Path) -> No
             archive.writestr(part, "x")
         with pytest.raises(InputError, match=said):
             read(tmp_path / "a")
+
+
+def test_a_feather_file_whose_words_are_no_text_is_damaged(tmp_path: Path) -> None:
+    pyarrow = pytest.importorskip("pyarrow")
+    from pyarrow import feather
+
+    file = tmp_path / "a.feather"
+    words = pyarrow.array(["still", "moves"] * 20)
+    table = pyarrow.table({"time": np.arange(40) * 0.01, "state": words, "a [m/s^2]": np.zeros(40)})
+    feather.write_feather(table, file, compression="uncompressed")
+    file.write_bytes(file.read_bytes().replace(b"moves", b"mo\xe0es"))
+    with pytest.raises(InputError, match="damaged"):
+        read(file)

@@ -110,6 +110,11 @@ def test_a_cell_far_to_the_right_is_refused(workbook: Path) -> None:
     refused(repack(workbook, SHEET, lambda data: data.replace(b"</sheetData>", row)), "sheet reaches to row 900")
 
 
+@pytest.mark.parametrize("place", [b'r="A999999999992"', b'r="ABCDEFGHIJKLM2"', b'r="A' + b"9" * 5000 + b'"'])
+def test_a_place_longer_than_any_is_far_away(workbook: Path, place: bytes) -> None:
+    refused(repack(workbook, SHEET, lambda data: data.replace(b'r="A2"', place, 1)), "sheet reaches to row")
+
+
 def test_rows_without_references_are_counted(workbook: Path) -> None:
     rows = (
         b"".join(b"<row>" + b"<c><v>1</v></c>" * 40 + b"</row>" for _ in range(2000))

@@ -83,6 +83,7 @@ def _columns(source: Source, frame: Any, pyarrow: Any) -> tuple[list[Column], di
             values = np.asarray(frame.column(number).to_numpy(), dtype=float)
             made.append(Column(heading.label, heading.unit, values, number=number))
         else:
+            frame.column(number).validate(full=True)  # letters that are none are damage, whoever asks for them later
             words[name] = partial(_texts, frame.column(number))
     return made, words
 

@@ -89,7 +89,12 @@ def walk(
             position, line_number = following, line_number + 1
             continue
         run = _Run(text, layout, width or _width(text, layout, position, cells))
-        position, line_number = run.fill(position, line_number)
+        behind = run.fill(position, line_number)
+        if behind[0] == position:  # a row on its own, and none in the columns of a run
+            yield TextRow(line_number, cells, raw)
+            position, line_number = following, line_number + 1
+            continue
+        position, line_number = behind
         whole = run.whole()
         sign = layout.dialect.delimiter
         whole.written = whole.values.shape[1] if sign == " " else line.count(sign.encode()) + 1

@@ -9,7 +9,8 @@ import numpy as np
 
 LONG = 200_000  # bytes from which on compiling pays
 _ANYWHERE = re.compile(rb"""\br\s{0,9}=\s{0,9}["']([A-Za-z]{0,3})(\d{1,18})""")
-_REFERENCE = re.compile(r"([A-Za-z]{1,3})(\d{1,9})")
+_REFERENCE = re.compile(r"([A-Za-z]+)([0-9]+)")
+_DIGITS, _LETTERS = 18, 9  # of a place that is read at all: as many stand for a sheet that is too large
 
 
 def corner_of(data: bytes) -> tuple[int, int]:
@@ -41,12 +42,12 @@ def _parse(data: bytes) -> tuple[int, int]:
         nonlocal rows, columns, row, column
         local = name.rsplit(":", 1)[-1]
         if local == "row":
-            row = int(attributes["r"]) if re.fullmatch(r"[0-9]{1,9}", attributes.get("r", "")) else row + 1
+            row = int(attributes["r"][:_DIGITS]) if re.fullmatch(r"[0-9]+", attributes.get("r", "")) else row + 1
             column = 0
         elif local == "c":
             match = _REFERENCE.fullmatch(attributes.get("r", ""))
             if match:
-                column, row = _column(match[1]), int(match[2])
+                column, row = _column(match[1][:_LETTERS]), int(match[2][:_DIGITS])
             else:
                 column += 1
             rows, columns = max(rows, row), max(columns, column)
