@@ -56,13 +56,13 @@ def _linearised(model: Compiled, lane: range, local: Array) -> Array:
     counts = [len(p.y) for p in pieces]
     own = np.repeat(local[lane.start : lane.stop, :k], counts, axis=0)
     course = np.concatenate([np.linspace(-1.0, 1.0, count) for count in counts])[:, None]
-    gain = np.exp(own[:, n + 1, None]) if pieces[0].driven else np.ones((len(own), 1))
+    gain = 1.0 + own[:, n + 1, None] if pieces[0].driven else np.ones((len(own), 1))
     whole = np.zeros((*s.y.shape, room + len(model.values) + 1))
     np.multiply(s.dy[..., :n], gain[..., None], out=whole[..., :n])
     np.multiply(s.dy[..., n:-1], gain[..., None], out=whole[..., room:-1])
     if pieces[0].driven:
         np.multiply(s.dy[..., -1], gain, out=whole[..., n])
-        whole[..., n + 1] = gain * s.y
+        whole[..., n + 1] = s.y
     for channel in range(c):
         whole[:, channel, k - 2 * c + channel] = 1.0
         whole[:, channel, k - c + channel] = course[:, 0]

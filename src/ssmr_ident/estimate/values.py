@@ -89,7 +89,7 @@ class Fit:
         Coordinates.
     nuisances : tuple of (k,) float
         Per piece: states at its begin (linear, hidden), where it is driven the drive's
-        zero and the logarithm of its channels' gain, zeros of the channels, and what these drift by to either side.
+        zero and what the gain is off by, zeros of the channels, and what these drift by to either side.
     covariance : (p, p) float
         Of the coordinates.
     residuals : tuple of (n, c) float
