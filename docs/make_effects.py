@@ -7,6 +7,7 @@ from pathlib import Path
 from ssmr_ident.core.parameter import Parameter
 from ssmr_ident.physics.effect import Effect
 from ssmr_ident.physics.effects import CATALOGUE
+from ssmr_ident.workflows.effects.catalogue import bearer
 
 PAGE = Path(__file__).parent / "reference" / "effects.md"
 
@@ -34,7 +35,7 @@ def section(effect: Effect) -> list[str]:
     where = ", ".join(site.value for site in effect.acts)
     lines = [f"## {effect.id}", "", effect.sentence, "", f"$$ {effect.equation} $$", ""]
     lines += [f"*How it shows*: {effect.signature}.", ""]
-    lines += [f"*Acts on*: {where} of {effect.bearer}.  "]
+    lines += [f"*Acts on*: {where} of {bearer(effect)}.  "]
     lines += [f"*Source*: {effect.source}.", ""]
     lines += ["| parameter | unit | nominal | bounds | off | |", "| --- | --- | --- | --- | --- | --- |"]
     return lines + [_row(parameter) for parameter in effect.parameters]
