@@ -11,6 +11,7 @@ from scipy.integrate import solve_ivp
 from scipy.signal import butter, freqs
 from scipy.special import ellipj
 
+from ssmr_ident.doctor.fitted import further
 from ssmr_ident.estimate.coarser import coarser
 from ssmr_ident.estimate.coordinate import Coordinate
 from ssmr_ident.estimate.exact import polish
@@ -308,3 +309,38 @@ def test_fewer_samples_give_a_linear_rig_the_same_parameters() -> None:
         assert found.value("stiffness_N_m") / mass == pytest.approx(STIFFNESS / MASS, rel=5e-3)
         assert found.value("damping_N_s_m") / mass == pytest.approx(DAMPING / MASS, rel=0.1)
         assert found.chi2 / one.samples < 1.5
+
+
+@pytest.mark.parametrize(("k3", "seed"), [(3e3, 3), (3e3, 4), (3e4, 5), (3e4, 6)])
+def test_a_fit_is_led_on_where_gain_and_mass_grow_together(k3: float, seed: int) -> None:
+    """From 7 % along the valley, whose floor only what is known of mass and gain tells apart."""
+    p = problem(driven(k3, 0.005, seed=seed))
+    node = Node(p.baseline, (cubic(p.size),))
+    true = {"mass_kg": MASS, "damping_N_s_m": DAMPING, "stiffness_N_m": STIFFNESS, "k3_N_m3": k3}
+
+    def begun(size: float) -> Start:
+        point = [c.at(true[c.name] * (size**3 if c.name == "k3_N_m3" else size)) for c in node.coordinates]
+        return Start(np.array(point), (np.array([0.0, 0.0, 0.0, size - 1.0, 0.0, 0.0]),))
+
+    best, stopped = polish(p, node, begun(1.0)), polish(p, node, begun(1.07))
+    assert stopped.cost > best.cost + 20.0
+    found = further(p, further(p, further(p, stopped)))
+    assert found.cost < best.cost + 0.1
+    assert found.value("mass_kg") == pytest.approx(best.value("mass_kg"), rel=0.003)
+
+
+def test_pieces_that_step_alike_are_run_as_one_by_one() -> None:
+    """Of different lengths, in stretches, with zeros of their own; and one that steps otherwise between them."""
+    pieces = [driven(1e4, 0.05, seed=s, seconds=t) for s, t in ((3, 2.0), (4, 1.2))]
+    pieces.insert(1, driven(1e4, 0.05, seed=5, seconds=1.5, rate=80.0))
+    p = problem(*pieces)
+    node, point = Node(p.baseline, (cubic(p.size),)), np.array([0.02, 0.04, -0.03, 0.7])
+    starts = [np.array([[1e-3 * k, 0.02], [0.0, 0.01 * k]]) for k in range(3)]
+    borders = [np.array([0, 40 + k, len(own.y)]) for k, own in enumerate(pieces)]
+    zeros = [0.0, 0.3, -0.2]
+    together = list(simulate(compiled(p, node, point), starts, borders, zeros))
+    for k, own in enumerate(pieces):
+        (alone,) = simulate(Compiled.of(p, node, point, [own]), starts[k : k + 1], borders[k : k + 1], zeros[k : k + 1])
+        for one, other in zip((alone.y, alone.dy, alone.ends, alone.dends), (together[k].y, together[k].dy,
+                              together[k].ends, together[k].dends), strict=True):  # fmt: skip
+            np.testing.assert_allclose(one, other, rtol=1e-9, atol=1e-9 * np.abs(other).max())

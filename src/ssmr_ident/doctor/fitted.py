@@ -16,7 +16,7 @@ from ssmr_ident.estimate.exact import polish
 from ssmr_ident.estimate.node import Node
 from ssmr_ident.estimate.regression import regressed
 from ssmr_ident.estimate.shooting import shot
-from ssmr_ident.estimate.values import Fit, Problem, Start
+from ssmr_ident.estimate.values import Fit, Problem, Start, Stop
 from ssmr_ident.physics.network import ONE
 
 Array = np.ndarray
@@ -25,6 +25,10 @@ Progress = Callable[[str, int, int], None]
 
 BEGUN, SHORT, FULL = 2, 6, 25
 """Gauss-Newton steps: the fewest move the states at the begin, in which all is linear."""
+
+ENDED = 0.1
+"""Fall of the cost that a straight line promises at the end of a fit: a parameter is then within a third of its
+standard deviation of its best."""
 
 OFFERED = 5
 """Fits, the best ones, that are offered back to what lies below them."""
@@ -93,8 +97,17 @@ def carried(node: Node, fit: Fit) -> tuple[Array, ...]:
     return tuple(found)
 
 
-def again(problem: Problem, fit: Fit, steps: int, to_the_end: bool = False) -> Fit:
-    return polish(problem, fit.node, Start(fit.point, fit.nuisances), steps, to_the_end=to_the_end)
+def again(problem: Problem, fit: Fit, steps: int) -> Fit:
+    return polish(problem, fit.node, Start(fit.point, fit.nuisances), steps)
+
+
+def further(problem: Problem, fit: Fit) -> Fit:
+    """A fit led on: by damped steps, and from where an undamped one leads, along which the data hardly see and damping
+    keeps all from moving; damped steps then find back to the floor of a valley that bends."""
+    found = again(problem, fit, SHORT) if fit.stop is Stop.STEPS else fit
+    if found.ahead is None or found.promised <= ENDED:
+        return found
+    return min(found, polish(problem, found.node, found.ahead, SHORT), key=lambda f: f.cost)
 
 
 def over(fit: Fit, problem: Problem) -> float:

@@ -10,6 +10,7 @@ from dataclasses import replace
 
 from ssmr_ident.doctor.fitted import (
     BEGUN,
+    ENDED,
     FAR_OFF,
     FULL,
     SHORT,
@@ -18,6 +19,7 @@ from ssmr_ident.doctor.fitted import (
     again,
     carried,
     finished,
+    further,
     joined,
     offered_back,
     offered_up,
@@ -45,10 +47,6 @@ NEAR = 200.0
 
 ROUNDS = 4
 """Fits, one after the other, by which a model that may still be the best goes to its end."""
-
-ENDED = 0.1
-"""Fall of the cost that a straight line promises at the end of a fit: a parameter is then within a third of its
-standard deviation of its best."""
 
 
 def searched(problem: Problem, budget: float = math.inf, progress: Progress | None = None) -> Search:
@@ -172,7 +170,7 @@ def _ended(search: Search) -> None:
             return
         fit = open_rows[0].fit
         assert fit is not None
-        better = search.add(again(search.problem, fit, FULL, to_the_end=True))
+        better = search.add(further(search.problem, fit))
         gone[fit.node.name] += 1 if better.cost < fit.cost - ENDED else ROUNDS
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from ssmr_ident.estimate.node import Node
 from ssmr_ident.estimate.regression import starts_of
 from ssmr_ident.estimate.scales import bounded, nuisance_count, nuisance_scales, priors
-from ssmr_ident.estimate.simulated import Compiled, lanes, simulate_whole
+from ssmr_ident.estimate.simulated import Compiled, batches, simulate_whole
 from ssmr_ident.estimate.values import Fit, Problem, Start, Stop
 
 Array = np.ndarray
@@ -33,28 +33,28 @@ def _exact(problem: Problem, node: Node, point: Array, local: Array) -> tuple[fl
     model = Compiled.of(problem, node, point, problem.pieces)
     residuals: list[Array] = []
     normal = np.empty((len(local), *[local.shape[1] + len(point) + 1] * 2))
-    for lane in lanes(problem.pieces):
-        whole = _linearised(model, lane, local)
+    for batch in batches(problem.pieces):
+        whole = _linearised(model, batch, local)
         row = 0
-        for k in lane:
+        for k in batch:
             columns = whole[row : row + len(problem.pieces[k].y)]
             row += len(columns)
             columns[: problem.passed_over(problem.pieces[k])] = 0.0
             residuals.append(columns[..., -1].copy())
             white = _whitened(problem, k, columns).reshape(-1, columns.shape[2])
             np.matmul(white.T, white, out=normal[k])
-        if not np.isfinite(normal[: lane.stop]).all():
+        if not np.isfinite(normal[: batch.stop]).all():
             return math.inf, [], normal
     return float(normal[:, -1, -1].sum()), residuals, normal
 
 
-def _linearised(model: Compiled, lane: range, local: Array) -> Array:
+def _linearised(model: Compiled, batch: range, local: Array) -> Array:
     """(n, c, columns) float: slopes of what pieces leave over nuisances and coordinates, and what they leave."""
-    pieces, n, room = model.pieces[lane.start : lane.stop], model.node.states, local.shape[1]
-    s = simulate_whole(model, lane, local)
+    pieces, n, room = model.pieces[batch.start : batch.stop], model.node.states, local.shape[1]
+    s = simulate_whole(model, batch, local)
     c, k = s.y.shape[1], nuisance_count(model.node, pieces[0])
     counts = [len(p.y) for p in pieces]
-    own = np.repeat(local[lane.start : lane.stop, :k], counts, axis=0)
+    own = np.repeat(local[batch.start : batch.stop, :k], counts, axis=0)
     course = np.concatenate([np.linspace(-1.0, 1.0, count) for count in counts])[:, None]
     gain = 1.0 + own[:, n + 1, None] if pieces[0].driven else np.ones((len(own), 1))
     whole = np.zeros((*s.y.shape, room + len(model.values) + 1))
@@ -79,9 +79,7 @@ def _whitened(problem: Problem, index: int, columns: Array) -> Array:
     return filtered[0][:, None] if len(filtered) == 1 else np.stack(filtered, axis=1)
 
 
-def polish(
-    problem: Problem, node: Node, start: Start, steps: int = 30, freeze: Sequence[int] = (), to_the_end: bool = False
-) -> Fit:
+def polish(problem: Problem, node: Node, start: Start, steps: int = 30, freeze: Sequence[int] = ()) -> Fit:
     """Levenberg-Marquardt on the exact simulation, nuisances eliminated piece by piece.
 
     Parameters
@@ -93,8 +91,6 @@ def polish(
         At the most.
     freeze : sequence of int
         Coordinates that stay.
-    to_the_end : bool
-        Whether steps go on without damping where that alone keeps from moving what the data hardly see.
     """
     point = bounded(node, start.point)
     begun = start.nuisances if start.nuisances is not None else starts_of(problem, node, start)
@@ -115,25 +111,18 @@ def polish(
         return _failed(problem, node, point, tuple(begun))
     damping, gain, stop = 1e-3, 0.0, Stop.STEPS
     for _ in range(steps):
-        lower_any, share, enough = False, 1.0, LEAST_GAIN + LEAST_SHARE * cost
-        step, moves, promised = _step(normal, point, local, mean, precision, scales, damping, free)
-        damped = promised >= enough or not to_the_end
-        if not damped:
-            step, moves, promised = _step(normal, point, local, mean, precision, scales, 0.0, free)
+        lower_any, enough = False, LEAST_GAIN + LEAST_SHARE * cost
         for _ in range(6):
-            if share * promised < enough:  # not worth another simulation
+            step, moves, promised = _step(normal, point, local, mean, precision, scales, damping, free)
+            if promised < enough:  # not worth another simulation
                 break
-            new_point, new = bounded(node, point + share * step), local + share * moves
+            new_point, new = bounded(node, point + step), local + moves
             trial = _exact(problem, node, new_point, new)
             lower = total(trial[0], new_point, new)
             if lower < cost:
                 lower_any = True
                 break
-            if not damped:
-                share *= 0.5
-                continue
             damping = max(damping * 4.0, 1e-4)
-            step, moves, promised = _step(normal, point, local, mean, precision, scales, damping, free)
         if not lower_any:
             stop = Stop.CONVERGED
             break
@@ -143,12 +132,18 @@ def polish(
         if gain < enough:
             stop = Stop.CONVERGED
             break
-    further = _step(normal, point, local, mean, precision, scales, 0.0, free)[2]
+    step, moves, further = _step(normal, point, local, mean, precision, scales, 0.0, free)
     further = max(gain, further) if stop is Stop.STEPS else further
+    ahead = Start(bounded(node, point + step), _each(local + moves, counts))
     covariance, dof = _decided(node, normal, precision, scales, free)
-    nuisances = tuple(own[:count].copy() for own, count in zip(local, counts, strict=True))
     prior = float(np.sum(precision * (point - mean) ** 2))
-    return Fit(node, point, nuisances, covariance, tuple(residuals), chi2, prior, dof, stop, further)
+    own = _each(local, counts)
+    return Fit(node, point, own, covariance, tuple(residuals), chi2, prior, dof, stop, further, ahead)
+
+
+def _each(local: Array, counts: Sequence[int]) -> tuple[Array, ...]:
+    """Every piece's own nuisances."""
+    return tuple(own[:count].copy() for own, count in zip(local, counts, strict=True))
 
 
 def damped_next(ratio: float) -> float:

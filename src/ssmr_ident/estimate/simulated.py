@@ -148,16 +148,16 @@ def _turned(stepping: tuple, into: Array, back: Array, order: Array) -> tuple:
     return step(*lin), step(*(d[order] for d in d_lin)), rows(*seen), rows(*(d[order] for d in d_seen))
 
 
-LANE = 20_000
+BATCH = 20_000
 """Samples of pieces that are run at once: of more, what a call costs is nothing beside the steps."""
 
 
-def lanes(pieces: Sequence[Piece]) -> Iterator[range]:
-    """Numbers of neighbours that step and are measured alike, up to ``LANE`` samples of them."""
+def batches(pieces: Sequence[Piece]) -> Iterator[range]:
+    """Numbers of neighbours that step and are measured alike, up to ``BATCH`` samples of them."""
     first, samples = 0, 0
     for index, piece in enumerate(pieces):
         alike = _alike(piece) == _alike(pieces[first])
-        if index > first and (not alike or samples + len(piece.y) > LANE):
+        if index > first and (not alike or samples + len(piece.y) > BATCH):
             yield range(first, index)
             first, samples = index, 0
         samples += len(piece.y)
@@ -184,44 +184,44 @@ def simulate(
     zeros : sequence of float
         Of the drives.
     """
-    for lane in lanes(model.pieces):
-        own = slice(lane.start, lane.stop)
-        s = _lane(model, model.pieces[own], starts[own], borders[own], zeros[own])
+    for batch in batches(model.pieces):
+        own = slice(batch.start, batch.stop)
+        s = _batch(model, model.pieces[own], starts[own], borders[own], zeros[own])
         row, part = 0, 0
-        for k in lane:
+        for k in batch:
             rows, parts = slice(row, row + len(model.pieces[k].y)), slice(part, part + len(starts[k]))
             yield Simulated(s.y[rows], s.dy[rows], s.ends[parts], s.dends[parts])
             row, part = rows.stop, parts.stop
 
 
-def simulate_whole(model: Compiled, lane: range, begun: Sequence[Array] | Array) -> Simulated:
+def simulate_whole(model: Compiled, batch: range, begun: Sequence[Array] | Array) -> Simulated:
     """Pieces that step alike from their begins to their ends, one behind the other.
 
     Parameters
     ----------
     model : Compiled
-    lane : range
+    batch : range
         Numbers of the pieces.
     begun : sequence of (k,) float
         What a fit has of each piece: states, then the zero of its drive.
     """
-    n, pieces = model.node.states, model.pieces[lane.start : lane.stop]
-    own = [begun[k] for k in lane]
+    n, pieces = model.node.states, model.pieces[batch.start : batch.stop]
+    own = [begun[k] for k in batch]
     borders = [np.array([0, len(p.y)]) for p in pieces]
     zeros = [float(o[n]) if p.driven else 0.0 for p, o in zip(pieces, own, strict=True)]
-    return _lane(model, pieces, [o[None, :n] for o in own], borders, zeros)
+    return _batch(model, pieces, [o[None, :n] for o in own], borders, zeros)
 
 
 def motions(model: Compiled, begun: Sequence[Array]) -> list[Array]:
     """Channels of every piece from its begin to its end, (n, c) float, by what a fit has of each."""
     found: list[Array] = []
-    for lane in lanes(model.pieces):
-        y = simulate_whole(model, lane, begun).y
-        found += np.split(y, np.cumsum([len(model.pieces[k].y) for k in lane])[:-1])
+    for batch in batches(model.pieces):
+        y = simulate_whole(model, batch, begun).y
+        found += np.split(y, np.cumsum([len(model.pieces[k].y) for k in batch])[:-1])
     return found
 
 
-def _lane(
+def _batch(
     model: Compiled, pieces: Sequence[Piece], starts: Sequence[Array], borders: Sequence[Array], zeros: Sequence[float]
 ) -> Simulated:
     """Pieces that step alike, in one run."""

@@ -10,7 +10,7 @@ import numpy as np
 
 from ssmr_ident.estimate.pieces import Piece, cut
 from ssmr_ident.estimate.scales import state_sizes
-from ssmr_ident.estimate.simulated import Compiled, lanes, simulate_whole
+from ssmr_ident.estimate.simulated import Compiled, batches, simulate_whole
 from ssmr_ident.estimate.values import Fit, Problem
 
 SEARCHED = 120.0
@@ -85,7 +85,7 @@ def predictable(problem: Problem, fit: Fit) -> float:
     model = Compiled.of(problem, fit.node, fit.point, problem.pieces)
     sizes, k = state_sizes(problem, fit.node), fit.node.motion_states
     grown, periods = 0.0, 0.0
-    ends = np.concatenate([simulate_whole(model, lane, fit.nuisances).dends for lane in lanes(model.pieces)])
+    ends = np.concatenate([simulate_whole(model, batch, fit.nuisances).dends for batch in batches(model.pieces)])
     for piece, own in zip(problem.pieces, ends, strict=True):
         slopes = own[:k, :k] * sizes[None, :k] / sizes[:k, None]
         if not np.isfinite(slopes).all():

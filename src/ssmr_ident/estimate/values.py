@@ -104,6 +104,8 @@ class Fit:
     promised : float
         What the cost may fall by yet: what a straight line promises, or the last step gained where that is more and the
         steps were used up.
+    ahead : Start or None
+        Where that straight line leads, without damping.
     """
 
     node: Node
@@ -116,6 +118,7 @@ class Fit:
     dof: float
     stop: Stop = Stop.CONVERGED
     promised: float = 0.0
+    ahead: Start | None = None
 
     @property
     def cost(self) -> float:
