@@ -137,8 +137,8 @@ def polish(problem: Problem, node: Node, start: Start, steps: int = 30, freeze: 
     ahead = Start(bounded(node, point + step), _each(local + moves, counts))
     covariance, dof = _decided(node, normal, precision, scales, free)
     prior = float(np.sum(precision * (point - mean) ** 2))
-    own = _each(local, counts)
-    return Fit(node, point, own, covariance, tuple(residuals), chi2, prior, dof, stop, further, ahead)
+    nuisances = _each(local, counts)
+    return Fit(node, point, nuisances, covariance, tuple(residuals), chi2, prior, dof, stop, further, ahead)
 
 
 def _each(local: Array, counts: Sequence[int]) -> tuple[Array, ...]:
