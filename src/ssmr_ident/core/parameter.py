@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
@@ -106,6 +106,11 @@ class ParameterSet(Shown, Mapping[str, Estimate]):
             raise KeyError(path)
         return default
 
+    @property
+    def rotary(self) -> bool:
+        """Whether it is of a rotary rig, or of a network of inertias."""
+        return turns(self.estimates)
+
     def updated(self, changes: Mapping[str, Estimate], **fields: Any) -> ParameterSet:
         """A copy with some estimates replaced or added."""
         return replace(self, estimates={**self.estimates, **changes}, **fields)
@@ -140,6 +145,11 @@ class ParameterSet(Shown, Mapping[str, Estimate]):
         for effect, parameters in self.effects.items():
             lines += [f"  {effect}: {key} = {estimate}" for key, estimate in parameters.items()]
         return "\n".join(lines)
+
+
+def turns(paths: Iterable[str]) -> bool:
+    """Whether parameters are those of something that turns about one axis."""
+    return any(path.endswith("inertia_kg_m2") for path in paths)
 
 
 def at_element(effect: str, element: str) -> str:

@@ -8,6 +8,7 @@ import numpy as np
 
 from ssmr_ident.core.errors import InputError, did_you_mean
 from ssmr_ident.core.parameter import ParameterSet, effect_and_element
+from ssmr_ident.core.rotary import rotary_name
 from ssmr_ident.physics.effects import CATALOGUE, unlisted
 
 SLOTS = (
@@ -84,14 +85,16 @@ def checked(effects: Effects) -> dict[str, dict[str, float]]:
             raise InputError(f"effects: {effect_id}", "is no known effect", did_you_mean(effect_id, CATALOGUE))
         effect = CATALOGUE[effect_id]
         bounds = {p.name: p for p in effect.parameters}
-        for name, value in given.items():
+        turned = {rotary_name(p.name, p.unit): p.name for p in effect.parameters}
+        plain = {turned.get(name, name): value for name, value in given.items()}
+        for name, value in plain.items():
             if name not in bounds:
                 where = f"effects: {effect_id}.{name}"
                 raise InputError(where, "is no parameter of this effect", did_you_mean(name, bounds))
             if not bounds[name].lower <= value <= bounds[name].upper:
                 limits = f"{bounds[name].lower:g} … {bounds[name].upper:g} {bounds[name].unit}"
                 raise InputError(f"effects: {effect_id}.{name}", f"is {value:g}, expected {limits}")
-        result[key] = effect.begun(given)
+        result[key] = effect.begun(plain)
     return result
 
 

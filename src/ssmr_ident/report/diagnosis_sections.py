@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from ssmr_ident.core.parameter import Estimate, ParameterSet
+from ssmr_ident.core.rotary import both_names, unit_ending
 from ssmr_ident.diagnose.diagnosis import MISSING, NOTHING, UNIT, Conflict, Diagnosis, NamedEffect
 from ssmr_ident.physics.effects import CATALOGUE
 from ssmr_ident.physics.network import layout_of
@@ -55,19 +55,18 @@ def _network(diagnosis: Diagnosis) -> Section:
 
 def turning(diagnosis: Diagnosis) -> bool:
     """Whether it is of a rotary rig."""
-    return any(key.endswith("inertia_kg_m2") for key in diagnosis.before)
+    return diagnosis.before.rotary
 
 
 def quantity(effect: str, name: str) -> str:
     """A parameter's name without the unit that it ends in.
 
-    >>> quantity("dry_friction", "F_c_N"), quantity("nonlinear_stiffness", "k3_N_m3")
+    >>> quantity("dry_friction", "F_c_N"), quantity("nonlinear_stiffness", "k3_N_m_rad3")
     ('F_c', 'k3')
     """
-    known = CATALOGUE.get(effect)
-    units = {p.name: p.unit for p in known.parameters} if known else {}
-    ending = re.sub(r"\W+", "_", units.get(name, "1").replace("^", ""))
-    return name.removesuffix(f"_{ending}")
+    parameters = CATALOGUE[effect].parameters if effect in CATALOGUE else ()
+    units = {named: unit for p in parameters for named, unit in both_names(p.name, p.unit).items()}
+    return name.removesuffix(unit_ending(units.get(name, "1")))
 
 
 def needed(effect: NamedEffect) -> dict[str, Estimate]:
@@ -84,7 +83,7 @@ def _effects(diagnosis: Diagnosis) -> Section:
     several = len(diagnosis.effects) > 1
     for effect in diagnosis.effects:
         known = CATALOGUE.get(effect.id)
-        meanings = {p.name: p.meaning for p in known.parameters} if known else {}
+        meanings = {named: p.meaning for p in known.parameters for named in both_names(p.name, p.unit)} if known else {}
         turns = turning(diagnosis) and effect.kind != "sensor_chain"
         for name, estimate in needed(effect).items():
             first: tuple[Cell, ...] = (readable(effect.id),) if several else ()

@@ -12,7 +12,8 @@ from pathlib import Path
 from ssmr_ident.core.atomic import write_text
 from ssmr_ident.core.domain import Schema
 from ssmr_ident.core.nested_domain import optional
-from ssmr_ident.session.effects_block import effect_keys, rotary
+from ssmr_ident.core.rotary import both_names, rotary
+from ssmr_ident.session.effects_block import effect_keys
 from ssmr_ident.session.estimate_file import Quantity, definitions
 from ssmr_ident.session.network_block import Name, network_schemas
 from ssmr_ident.session.parameters_file import HEAD
@@ -76,9 +77,10 @@ def _effects() -> tuple[Schema, Schema]:
             "additionalProperties": False,
             "properties": element
             | {
-                name: Quantity(domain, (domain.unit, rotary(domain.unit))).schema()
-                | {"description": f"{meaning} [{domain.unit}]".strip()}
+                named: Quantity(domain, (domain.unit, rotary(domain.unit))).schema()
+                | {"description": f"{meaning} [{unit}]".strip()}
                 for name, (domain, meaning) in keys.items()
+                for named, unit in both_names(name, domain.unit).items()
             },
         }
         for effect, keys in effect_keys().items()

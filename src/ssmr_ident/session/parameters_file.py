@@ -12,9 +12,10 @@ import numpy as np
 from ssmr_ident.core.domain import Choice, Number, Text
 from ssmr_ident.core.errors import did_you_mean
 from ssmr_ident.core.nested_domain import Keyed
-from ssmr_ident.core.parameter import Estimate, ParameterSet, at_element
+from ssmr_ident.core.parameter import Estimate, ParameterSet, at_element, turns
 from ssmr_ident.core.place import Place, shown
-from ssmr_ident.session.effects_block import effect_keys, rotary
+from ssmr_ident.core.rotary import rotary, rotary_name
+from ssmr_ident.session.effects_block import effect_keys
 from ssmr_ident.session.estimate_file import Quantity
 from ssmr_ident.session.network_block import BODIES, BODY_KEYS, SPRING_KEYS, SPRINGS, read_network
 from ssmr_ident.session.parameters_text import SCHEMA
@@ -69,8 +70,7 @@ def parameters_of(place: Place, content: Mapping[str, Any]) -> ParameterSet:
         alone = next((key for key in estimates if key in _OF_A_RIG), None)
         if alone:
             raise place.at(alone).error(f"stands beside {BODIES}", f"Write it below {BODIES} or {SPRINGS}")
-    turning = any(key.endswith("inertia_kg_m2") for key in estimates)
-    effects = _effects(place.at("effects"), _given(content, "effects"), turning, tuple(between))
+    effects = _effects(place.at("effects"), _given(content, "effects"), turns(estimates), tuple(between))
     provenance = _given(content, "provenance")
     if not isinstance(provenance, Mapping):
         raise place.at("provenance").error(f"is {shown(provenance)}, expected a mapping")
@@ -145,13 +145,20 @@ def _element(place: Place, block: Mapping[str, Any], springs: tuple[str, ...]) -
 def _one_effect(
     place: Place, block: Mapping[str, Any], known: Mapping[str, tuple[Number, str]], turning: bool
 ) -> dict[str, Estimate]:
-    found = {}
+    found: dict[str, Estimate] = {}
+    turned = {rotary_name(name, domain.unit): name for name, (domain, _) in known.items()} if turning else {}
     for key, entry in block.items():
         if key == ELEMENT:
             continue
-        if key not in known:
-            raise place.at(str(key)).error("is no parameter of this effect", did_you_mean(str(key)[:60], known))
-        domain, _ = known[key]
+        own = turned.get(str(key), key)
+        if own not in known:
+            raise place.at(str(key)).error(
+                "is no parameter of this effect", did_you_mean(str(key)[:60], turned or known)
+            )
+        domain, _ = known[own]
         units = (domain.unit, rotary(domain.unit)) if turning else (domain.unit,)
-        found[key] = Quantity(domain, units).check(place.at(key), entry)
+        name = rotary_name(own, domain.unit) if turning else own
+        if name in found:
+            raise place.at(str(key)).error(f"stands twice: {name} is the same", "Leave one out")
+        found[name] = Quantity(domain, units).check(place.at(key), entry)
     return found

@@ -14,7 +14,7 @@ from ssmr_ident.core.atomic import make_folder, write_text
 from ssmr_ident.core.documents import yaml_text
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import ParameterSet
-from ssmr_ident.diagnose.diagnosis import Diagnosis
+from ssmr_ident.diagnose.diagnosis import Diagnosis, NamedEffect
 from ssmr_ident.doctor.blocks import BLOCK, diagnose_block
 from ssmr_ident.doctor.run import diagnose as diagnose_rig
 from ssmr_ident.experiments.campaign import Campaign, load
@@ -56,17 +56,30 @@ def diagnose(
     # recordings are simulated side by side; matrices are small, and threads of their own would stand in the way
     with threadpool_limits(1, user_api="blas"):
         found = _diagnosed(replace(campaign, parameters=known), known, seed, progress, budget)
-    return in_rig_units(found) if any(key.endswith("inertia_kg_m2") for key in known) else found
+    return in_rig_units(found) if known.rotary else found
 
 
 def in_rig_units(found: Diagnosis) -> Diagnosis:
     """The diagnosis of a rotary rig with its effects' parameters in moments and angles, on the page and in files."""
     named = tuple(
-        replace(effect, parameters=in_rotary_units(effect.parameters), curve=_over_angle(effect.curve))
+        replace(
+            effect, sentence=_told_in_moments(effect), parameters=in_rotary_units(effect.parameters),
+            curve=_over_angle(effect.curve),
+        )
         for effect in found.effects
-    )
+    )  # fmt: skip
     after = {name: in_rotary_units(estimates) for name, estimates in found.after.effects.items()}
     return replace(found, effects=named, after=replace(found.after, effects=after))
+
+
+def _told_in_moments(effect: NamedEffect) -> str:
+    """Its sentence with the numbers that it ends in as they are on a rotary rig."""
+    sentence = effect.sentence
+    for (name, straight), (turned, moment) in zip(
+        effect.parameters.items(), in_rotary_units(effect.parameters).items(), strict=True
+    ):
+        sentence = sentence.replace(f"{name} = {straight}", f"{turned} = {moment}")
+    return sentence
 
 
 def _over_angle(curve: Mapping[str, Any] | None) -> Mapping[str, Any] | None:

@@ -25,6 +25,7 @@ from ssmr_ident.identify.posterior.findings import trade_offs
 from ssmr_ident.physics.rig import RIG_KEYS, rig_from_parameters
 from ssmr_ident.physics.voltage_drive import DRIVE_KEYS
 from ssmr_ident.report.text_fit import file_variables
+from ssmr_ident.session.effects_block import in_rotary_units
 from ssmr_ident.workflows.fit.after_hit import modes_after_a_hit
 from ssmr_ident.workflows.fit.drive import with_friction
 from ssmr_ident.workflows.fit.network import CORRELATED, LEARNT
@@ -102,7 +103,8 @@ def _parameters(problem: Problem, fit: Fit, known: ParameterSet, seen: Sequence[
         c.name: replace(known[c.name], source=f"prior: {known[c.name].source}".removesuffix(": "))
         for c in (*untold, *held)
     }
-    return after.updated(stay, effects={**known.effects, **after.effects})
+    named = {id: in_rotary_units(block) for id, block in after.effects.items()} if known.rotary else after.effects
+    return after.updated(stay, effects={**known.effects, **named})
 
 
 def _another_mode(fit: Fit, known: ParameterSet) -> list[str]:

@@ -11,6 +11,7 @@ from ssmr_ident.core.domain import Domain, Number
 from ssmr_ident.core.errors import InputError, did_you_mean
 from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.core.place import Place
+from ssmr_ident.core.rotary import rotary_name
 from ssmr_ident.physics.effects import CATALOGUE
 from ssmr_ident.session.schema import KEYS
 from ssmr_ident.workflows.simulate.request import Request, asked_for
@@ -66,6 +67,7 @@ class Axis:
             known = parameters.get(self.target) or Estimate(number, None, self.unit)
             return parameters.updated({self.target: replace(known, value=number)}), request
         effect, key = self.target.split(".")
+        key = rotary_name(key, self.unit) if parameters.rotary else key
         block = {**parameters.effects.get(effect, {}), key: Estimate(number, None, self.unit)}
         return replace(parameters, effects={**parameters.effects, effect: block}), request
 
