@@ -115,6 +115,16 @@ def test_a_place_longer_than_any_is_far_away(workbook: Path, place: bytes) -> No
     refused(repack(workbook, SHEET, lambda data: data.replace(b'r="A2"', place, 1)), "sheet reaches to row")
 
 
+def test_a_place_in_what_is_no_xml_is_not_laid_out(workbook: Path) -> None:
+    row = b'<row r="41">\0<c r="ABCDE104857629"><v>1</v></c></row></sheetData>'
+    refused(repack(workbook, SHEET, lambda data: data.replace(b"</sheetData>", row)), "is damaged")
+
+
+@pytest.mark.parametrize("share", [0.3, 0.5, 0.9])
+def test_a_sheet_cut_short_is_damaged(workbook: Path, share: float) -> None:
+    refused(repack(workbook, SHEET, lambda data: data[: int(share * len(data))]), "is damaged")
+
+
 def test_rows_without_references_are_counted(workbook: Path) -> None:
     rows = (
         b"".join(b"<row>" + b"<c><v>1</v></c>" * 40 + b"</row>" for _ in range(2000))
@@ -137,7 +147,9 @@ def test_both_ways_find_the_same_corner() -> None:
         rows, columns = int(rng.integers(3000, 9000)), int(rng.integers(1, 26))
         cells = [f'<row r="{r}"><c r="{chr(64 + columns)}{r}"><v>1.5</v></c></row>' for r in range(1, rows + 1)]
         data = f'<worksheet><dimension ref="A1"/><sheetData>{"".join(cells)}</sheetData></worksheet>'.encode()
-        assert corner_of(data) == corner_of(data.replace(b"<c r", b"<c  r")) == (rows, columns)
+        spaced = data.replace(b"<c r", b"<c  r")
+        assert corner_of(data) == (rows, columns, len(data))
+        assert corner_of(spaced) == (rows, columns, len(spaced))
 
 
 @pytest.mark.slow

@@ -8,18 +8,23 @@ from xml.parsers import expat
 import numpy as np
 
 LONG = 200_000  # bytes from which on compiling pays
-_ANYWHERE = re.compile(rb"""\br\s{0,9}=\s{0,9}["']([A-Za-z]{0,3})(\d{1,18})""")
 _REFERENCE = re.compile(r"([A-Za-z]+)([0-9]+)")
 _DIGITS, _LETTERS = 18, 9  # of a place that is read at all: as many stand for a sheet that is too large
 
 
-def corner_of(data: bytes) -> tuple[int, int]:
-    """Last row and column of any cell.
+def corner_of(data: bytes) -> tuple[int, int, int]:
+    """Last row and column of any cell, and up to which byte a sheet is XML at all.
 
     Parameters
     ----------
     data : bytes
         XML of a worksheet.
+
+    Returns
+    -------
+    rows, columns : int
+    sound : int
+        Of what follows, nobody can foresee which places a lenient parser takes out of it.
 
     Raises
     ------
@@ -31,11 +36,11 @@ def corner_of(data: bytes) -> tuple[int, int]:
 
         plain, rows, columns = scan(np.frombuffer(data, dtype=np.uint8))
         if plain:
-            return rows, columns
+            return rows, columns, len(data)
     return _parse(data)
 
 
-def _parse(data: bytes) -> tuple[int, int]:
+def _parse(data: bytes) -> tuple[int, int, int]:
     rows = columns = row = column = 0
 
     def start(name: str, attributes: dict[str, str]) -> None:
@@ -56,12 +61,9 @@ def _parse(data: bytes) -> tuple[int, int]:
     parser.StartElementHandler = start
     try:
         parser.Parse(data, True)
-    except (
-        expat.ExpatError
-    ):  # reported with its name by whoever parses it, or read over: whatever looks like a place counts
-        for letters, digits in _ANYWHERE.findall(data):
-            rows, columns = max(rows, int(digits)), max(columns, _column(letters.decode()))
-    return rows, columns
+    except expat.ExpatError:
+        return rows, columns, parser.ErrorByteIndex
+    return rows, columns, len(data)
 
 
 def _column(letters: str) -> int:

@@ -69,7 +69,7 @@ def checked(source: Source) -> io.BytesIO:
                 _require_shared_strings(source, names)
             if "/worksheets/" in member.filename or b"<sheetData" in data[:65536]:
                 data = _without_strays(source, member.filename, data)
-                _check_corner(source, member.filename, data)
+                data = data[: _checked_corner(source, member.filename, data)]
             if member.filename not in seen:
                 seen.add(member.filename)
                 repacked.writestr(zipfile.ZipInfo(member.filename), data)
@@ -115,9 +115,10 @@ def _without_strays(source: Source, name: str, data: bytes) -> bytes:
     return data
 
 
-def _check_corner(source: Source, name: str, data: bytes) -> None:
+def _checked_corner(source: Source, name: str, data: bytes) -> int:
+    """Up to which byte a sheet may be parsed: whoever meets its sudden end calls it damaged, by its name."""
     try:
-        rows, columns = corner_of(data)
+        rows, columns, sound = corner_of(data)
     except LookupError as error:
         raise source.error(f"workbook part {name} is not UTF-8", "Save it anew in Excel.", name) from error
     if rows * columns > MAX_CELLS:
@@ -126,3 +127,4 @@ def _check_corner(source: Source, name: str, data: bytes) -> None:
             "Delete stray cells far from the data.",
             name,
         )
+    return sound
