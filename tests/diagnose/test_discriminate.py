@@ -10,7 +10,7 @@ import pytest
 from small_rigs import NOISE, Run, campaign, fitted, prepared, quiet
 
 from ssmr_ident.diagnose import discriminate
-from ssmr_ident.diagnose.discriminate import _apart, next_experiment, repeats
+from ssmr_ident.diagnose.discriminate import _apart, next_experiment
 from ssmr_ident.diagnose.experiments import experiments
 from ssmr_ident.diagnose.setup import Setup
 from ssmr_ident.identify.fitting.descent import descend
@@ -27,12 +27,12 @@ def alike() -> tuple[Setup, JointFit, JointFit]:
     return setup, fitted(setup, HARDENING), fitted(setup)
 
 
-def test_the_proposal_names_what_to_do_and_how_far_they_differ(alike: tuple[Setup, JointFit, JointFit]) -> None:
+def test_the_proposal_names_what_to_do_and_how_likely_it_decides(alike: tuple[Setup, JointFit, JointFit]) -> None:
     setup, best, rival = alike
     text = next_experiment(setup, best, [rival])
-    assert text.startswith("Release the mass from ")
-    assert "nonlinear_stiffness differs there from the baseline by" in text
-    assert "95 % power" in text
+    assert "elease the mass " in text
+    assert "between nonlinear stiffness and no further physics" in text
+    assert "probability of" in text
     assert next_experiment(setup, best, []) == ""
 
 
@@ -59,16 +59,16 @@ def test_a_simulation_that_has_burst_tells_nothing(alike: tuple[Setup, JointFit,
 
 
 @pytest.mark.slow
-def test_distances_grow_with_the_amplitude_and_say_what_a_repeat_gives(
+def test_distances_grow_with_the_amplitude_and_say_what_a_recording_gives(
     alike: tuple[Setup, JointFit, JointFit],
 ) -> None:
     setup, best, rival = alike
-    chosen = [one for one in experiments(setup, best) if one.change in (1.0, 2.0, 3.0)]
+    chosen = [one for one in experiments(setup, best) if one.change in (1.0, 2.0, 4.0)]
     distances = _apart(chosen, best, rival)
-    assert distances[0] < 3.0 < distances[1] < distances[2]
+    assert distances[0] > distances[1] > distances[2]
     # the experiment made: both models fitted to old and new together differ by the square of the distance
     rng = np.random.default_rng(6)
-    one, distance = chosen[1], distances[1]
+    one, distance = chosen[0], distances[0]
     values, effects = best.model.split(best.point)
     clean = one.trial.run(values, effects, one.growth * best.nuisances[0])
     gains = []
@@ -85,26 +85,14 @@ def test_distances_grow_with_the_amplitude_and_say_what_a_repeat_gives(
     gained = np.array(gains) - before
     # the likelihood ratio is normal about d² with variance 4 d²
     assert np.mean(gained) == pytest.approx(distance**2, abs=4.0 * distance)
-    assert np.all(gained > 0.0)
-
-
-def test_repeats_follow_from_the_error_on_either_side() -> None:
-    # by chance: how often does the likelihood ratio of two points d apart point the right way over n recordings
-    rng = np.random.default_rng(7)
-    distance = 1.3
-    count = repeats(distance)
-    ratio = distance * np.sum(rng.standard_normal((20000, count)), axis=1) + 0.5 * count * distance**2
-    assert np.mean(ratio > 0.0) >= 0.945
-    assert count == 7
 
 
 def test_a_shaken_rig_is_shaken_otherwise() -> None:
     setup = prepared(campaign({"nonlinear_stiffness": {"k3_N_m3": 1e6}}, [Run(force=20.0)], seed=8))
     fit = fitted(setup)
     made = experiments(setup, fit)
-    assert len(made) == 3
+    assert len(made) == 4
     sizes = [float(np.std(one.trial.run(*fit.model.split(fit.point), fit.nuisances[0]))) for one in made]
-    assert sizes[1] == pytest.approx(0.3 * sizes[0], rel=0.02)
-    assert sizes[2] == pytest.approx(3.0 * sizes[0], rel=0.02)
+    assert sizes[1:] == pytest.approx([0.5 * sizes[0], 0.25 * sizes[0], 0.125 * sizes[0]], rel=0.02)
     rival = differentiate(evaluate(fit.trials, fit.model, fit.point + 0.01, fit.nuisances))
-    assert "Shake as in run-0.csv" in next_experiment(setup, fit, [rival])
+    assert "hake as in run-0.csv" in next_experiment(setup, fit, [rival])

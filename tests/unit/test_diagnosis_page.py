@@ -23,6 +23,7 @@ from ssmr_ident.report.chart import packed
 from ssmr_ident.report.curves import busiest_part, thinned
 from ssmr_ident.report.diagnosis_page import diagnosis_page, render_report, write_report
 from ssmr_ident.report.diagnosis_sections import scalar
+from ssmr_ident.report.field_words import effect_words, explanation_words, place_words, sentence
 from ssmr_ident.report.html import Number, Page, Table
 from ssmr_ident.report.svg import inline
 
@@ -111,7 +112,7 @@ def test_before_after_and_noise_are_bars_beside_each_other() -> None:
     better, where, sure, following = verdict.facts
     assert better.value == "22.0 → 3.4 %"
     assert [(b.value, round(b.share, 3)) for b in better.bars] == [("22.0 %", 1.0), ("3.4 %", 0.155), ("2.9 %", 0.132)]
-    assert "17.1 … 20.2 %" in better.note
+    assert better.note == "lower by 17.1 … 20.2 points (95 % interval)"
     assert (where.value, where.note) == ("ay of roll-2.xlsx", "81 % of the misfit, |roll| > 1.5 deg")
     assert (sure.value, following.value) == ("99 %", "Nothing more")
 
@@ -157,11 +158,38 @@ def test_a_force_of_any_shape_is_drawn_with_its_band() -> None:
     assert chart.lines[2].y - chart.lines[1].y == pytest.approx(2 * 1.96 * np.array([0.0, 0.1]))
 
 
-def test_where_much_is_left_over_larger_and_smaller_motions_are_advised() -> None:
+def test_where_the_name_is_settled_what_is_left_is_said() -> None:
     left = replace(hardening(), heldout=PredictionQuality(22.0, 9.0, 2.9, ("roll-3.xlsx",)))
     verdict = diagnosis_page(left, "").verdict
     assert verdict is not None
-    assert (verdict.facts[3].value, verdict.facts[3].note[:23]) == ("Other amplitudes", "3.1 times the noise is ")
+    assert verdict.facts[3].value == "Nothing more"
+    assert "3.1 times the noise is left" in verdict.facts[3].note
+
+
+def test_what_no_law_is_has_the_words_of_its_kind_and_says_of_what_it_is_sure() -> None:
+    effect = replace(
+        hardening().effects[0], id="unlisted", form="any shape, over time", kind="changing", element="spring",
+        confidence=0.02,
+    )  # fmt: skip
+    verdict = diagnosis_page(replace(hardening(), effects=(effect,)), "").verdict
+    assert verdict is not None
+    assert verdict.label == "Missing: a parameter that changes with time, by no listed law"
+    assert (verdict.facts[2].value, verdict.facts[2].note[:27]) == ("above 99.9 %", "that something is missing; ")
+
+
+def test_a_spring_stiffens_or_softens_and_a_rig_has_no_tires() -> None:
+    rig = ParameterSet("rig", {"mass_kg": Estimate(2.0, None, "kg")})
+    tires = ParameterSet("robot", {"tire.stiffness_y_N_m": Estimate(18000.0, None, "N/m")})
+    softer = replace(hardening().effects[0], form="", parameters={"k3_N_m3": Estimate(-3e8, 2e7, "N/m^3")})
+    assert sentence(softer, rig) == "The spring softens with deflection."
+    assert sentence(hardening().effects[0], tires) == "The tires stiffen with deflection."
+    assert effect_words(softer) == "nonlinear stiffness (cubic)"
+
+
+def test_explanations_of_a_network_say_where_they_are() -> None:
+    network = ParameterSet("net", {"bodies.tip.mass_kg": Estimate(1.0)}, between={"blade": ("ground", "tip")})
+    assert (place_words("blade", network), place_words("tip", network)) == ("spring blade", "body tip")
+    assert explanation_words("nonlinear_stiffness (cubic) at blade", "nonlinear_stiffness").endswith("(cubic) at blade")
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ from ssmr_ident.diagnose.words import FORMS, LAWS
 from ssmr_ident.physics.effects import CATALOGUE, unlisted
 from ssmr_ident.report.mathml import typeset
 
-WORDS = ("m_rim b''", "no force for", "a pendulum's sine", "z follows s")
+WORDS = ("m_rim b''", "no force for", "z follows s")
 """Parts of laws that are said in words."""
 
 

@@ -180,16 +180,16 @@ def hidden_by_jolts(
     return tuple(UNDER_JOLTS.format(name, w.before, w.after) for name, w in calm if w.after < w.before)
 
 
-def _apart(outcome: Outcome) -> tuple[JointFit, list[JointFit]]:
-    """What the next recording has to tell apart: the answer and its rivals, or what may be beside it; the nearest
-    suspects where there is no answer."""
-    if outcome.beside:
-        return outcome.beside[0].fit, [e.fit for e in outcome.beside[1:]]
-    if outcome.chosen is not outcome.baseline:
-        return outcome.chosen.fit, [r.fit for r in outcome.rivals]
+def _apart(outcome: Outcome) -> tuple[JointFit, list[JointFit], list[float]]:
+    """What the next recording has to tell apart, with its evidence: the answer and its rivals, or what may be beside
+    it; the nearest suspects where there is no answer."""
     ranked = sorted(outcome.tried, key=lambda e: -outcome.found[e.id])
-    suspects = [e.fit for e in ranked if e is not outcome.baseline]
-    return (suspects[0], [*suspects[1:], outcome.baseline.fit]) if suspects else (outcome.baseline.fit, [])
+    left = [*(e for e in ranked if e is not outcome.baseline), outcome.baseline]
+    if outcome.beside:
+        left = list(outcome.beside)
+    elif outcome.chosen is not outcome.baseline:
+        left = [outcome.chosen, *outcome.rivals]
+    return left[0].fit, [e.fit for e in left[1:]], [float(outcome.found[e.id]) for e in left]
 
 
 def conflicting(outcome: Outcome) -> tuple[Conflict, ...]:

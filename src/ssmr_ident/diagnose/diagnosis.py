@@ -94,6 +94,11 @@ class NamedEffect:
     element: str = ""
     curve: Mapping[str, Any] | None = None
 
+    @property
+    def acting(self) -> dict[str, Estimate]:
+        """Its parameters without terms set to zero, and without what the recordings were not asked for."""
+        return {n: e for n, e in self.parameters.items() if e.std is not None or not (e.fixed or e.value == 0)}
+
 
 @dataclass(frozen=True)
 class KindShare:
@@ -112,12 +117,14 @@ class KindShare:
 class Tried:
     """An explanation (ids joined by ``+``; ``baseline`` for none) and how it fared.
 
-    ``heldout_metric`` is in the unit of the fit's metric; ``log_evidence`` is natural, the baseline's being 0.
+    ``heldout_metric`` is in the unit of the fit's metric; ``log_evidence`` is natural, the baseline's being 0; ``name``
+    has formulas and places, where there are several of one id.
     """
 
     id: str
     heldout_metric: float
     log_evidence: float
+    name: str = ""
 
 
 @dataclass(frozen=True)
@@ -234,7 +241,7 @@ class Diagnosis(Shown):
         for effect in self.effects:
             tie = f"; fits as well: {', '.join(effect.indistinguishable_from)}" if effect.indistinguishable_from else ""
             lines.append(f"  {effect.id}  (confidence {effect.confidence:.2f}{tie})  {effect.equation}".rstrip())
-            lines += [f"      {name} = {estimate}" for name, estimate in effect.parameters.items()]
+            lines += [f"      {name} = {estimate}" for name, estimate in effect.acting.items()]
         for name, worth in (("fitted", self.training), ("held out", self.heldout)):
             if math.isnan(worth.before):
                 continue  # nothing could be kept back, which a note says

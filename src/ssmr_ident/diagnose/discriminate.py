@@ -1,39 +1,28 @@
-"""The next experiment: which recording would tell apart explanations that fit alike, by simulating all of them.
-
-Two explanations that predict whitened signals a distance d apart, once everything that the rival may still move is
-taken out, are told apart by the likelihood ratio with an error of 5 % either way when √n·d ≥ 2·1.645 over n
-recordings. Source: Cox and Hinkley, Theoretical Statistics (1974), section 4.2 (Neyman-Pearson, normal means).
-"""
+"""The next experiment: which recording would tell apart explanations that fit alike, by simulating all of them."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.stats import norm
 
+from ssmr_ident.diagnose.deciding import advice, best_of, chance_of_deciding
 from ssmr_ident.diagnose.experiments import Experiment, experiments
 from ssmr_ident.diagnose.setup import Setup
+from ssmr_ident.diagnose.words import readable
 from ssmr_ident.identify.fitting.joint import BURST, JointFit, differentiate, evaluate
 from ssmr_ident.identify.fitting.scatter import covariance
 
 Array = np.ndarray
 
-POWER = 0.95
-NEEDED = 2.0 * float(norm.ppf(POWER))
-"""Distance in noise standard deviations at which one recording suffices."""
-
-MARGIN = 1.5
-"""Times the distance that is needed: the mildest experiment that has it is proposed."""
-
 RIVALS = 2
-HOPELESS = 100
-"""Repeats that nobody makes."""
+"""That are simulated."""
 
 
-def next_experiment(setup: Setup, best: JointFit, rivals: Sequence[JointFit]) -> str:
-    """What to record next, in one sentence with numbers; empty without rivals.
+def next_experiment(
+    setup: Setup, best: JointFit, rivals: Sequence[JointFit], evidence: Sequence[float] = (0.0, 0.0, 0.0)
+) -> str:
+    """What to record next, in one sentence with the chance that it decides; empty without rivals.
 
     Parameters
     ----------
@@ -42,6 +31,8 @@ def next_experiment(setup: Setup, best: JointFit, rivals: Sequence[JointFit]) ->
         What is taken for true.
     rivals : sequence of JointFit
         Fits of other models to the same recordings; the first two are simulated.
+    evidence : sequence of float
+        Log evidence of the best and of the rivals so far.
     """
     rivals = [rival if _complete(rival) else differentiate(rival) for rival in rivals[:RIVALS]]
     if not rivals:
@@ -55,23 +46,21 @@ def next_experiment(setup: Setup, best: JointFit, rivals: Sequence[JointFit]) ->
     # slopes are worked out anew for the variants of one recording alone, the one that shows most
     chosen = [one for one, far in zip(choices, rough, strict=True) if one.index == kind and np.isfinite(far)]
     apart = np.column_stack([_apart(chosen, best, rival) for rival in rivals])
-    nearest = apart.min(axis=1)
-    counts = [repeats(float(d) / MARGIN) for d in nearest]
-    first = min(range(len(chosen)), key=lambda k: (counts[k], chosen[k].change))
-    return _sentence(chosen[first], _name(best), [_name(rival) for rival in rivals], apart[first].tolist())
+    known = np.array(evidence[: 1 + len(rivals)])
+    chances = np.array([chance_of_deciding(known, _both_ways(row)) for row in apart])
+    first = best_of(chances, np.array([one.change for one in chosen]))
+    names = (_name(best), *(_name(rival) for rival in rivals))
+    return advice(chosen[first].words, names, float(chances[first]))
+
+
+def _both_ways(distances: Array) -> Array:
+    """Between the best and each rival either way; two rivals are at least as near as the nearer one is to the best."""
+    every = np.append(np.inf, distances)
+    return np.minimum(every[:, None], every[None, :])
 
 
 def _complete(fit: JointFit) -> bool:
     return bool(fit.slopes) and all(slopes.shared.shape[1] == len(fit.point) for slopes in fit.slopes)
-
-
-def repeats(distance: float) -> int:
-    """Recordings that tell two explanations apart with 95 % power.
-
-    >>> repeats(9.0), repeats(1.0)
-    (1, 11)
-    """
-    return max(1, math.ceil((NEEDED / max(distance, 1e-6)) ** 2))
 
 
 def _differ(experiment: Experiment, best: JointFit, rival: JointFit) -> float:
@@ -121,15 +110,5 @@ def _precision(covariance: Array) -> Array:
     return (along / np.maximum(size, np.finfo(float).eps * size[-1])) @ along.T
 
 
-def _sentence(experiment: Experiment, best: str, rivals: Sequence[str], distances: Sequence[float]) -> str:
-    count = repeats(min(distances))
-    differ = " and ".join(f"{name} by {d:.2g}" for name, d in zip(rivals, distances, strict=True))
-    tell = "recording then tells" if count == 1 else "recordings then tell"
-    ending = f"{count} {tell} them apart with {100 * POWER:.0f} % power"
-    if count > HOPELESS:
-        ending = f"that would take {count} recordings: a sensor with less noise is needed"
-    return f"{experiment.words}: {best} differs there from {differ} noise standard deviations; {ending}."
-
-
 def _name(fit: JointFit) -> str:
-    return " with ".join(fit.model.ids) or "the baseline"
+    return " with ".join(map(readable, fit.model.ids)) or "no further physics"

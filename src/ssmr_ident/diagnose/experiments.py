@@ -1,5 +1,5 @@
-"""Experiments that could be made next, as trials that can be simulated: the recorded ones made larger, smaller,
-faster, slower, or with a sensor that does not clip."""
+"""Experiments that could be made next, as trials that can be simulated: the recorded ones once more or smaller, or at
+another speed that was recorded. What was not shown to be possible is not proposed."""
 
 from __future__ import annotations
 
@@ -21,10 +21,8 @@ from ssmr_ident.identify.trials.trial import Trial
 
 Array = np.ndarray
 
-RELEASES = (1.0, 0.3, 2.0, 3.0)
-FORCES = (1.0, 0.3, 3.0)
-SPEEDS = (1.0, 0.2, 5.0)
-TIMES = {0.2: "a fifth of", 0.3: "a third of", 2.0: "twice", 3.0: "three times", 5.0: "five times"}
+SHARES = {1.0: "", 0.5: "half", 0.25: "a quarter of", 0.125: "an eighth of"}
+"""Of the largest that was recorded."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,21 +80,18 @@ def _variants(
 ) -> list[Experiment]:
     trial = fit.trials[index]
     if trial.channels == ("force",):
-        return [_pulled(trial, index, recorded, share, make) for share in SPEEDS]
+        return [_pulled(trial, index, recorded, share, make) for share in _speeds(setup, recorded)]
     if "force" in recorded.recording or "torque" in recorded.recording:
-        return [_shaken(trial, index, recorded, share, make) for share in FORCES]
+        return [_shaken(trial, index, recorded, share, make) for share in SHARES]
     motion, size = recorded.entry.motion, _release_size(setup, fit, index, recorded.entry.motion)
     what = motion or "the mass"
     found = []
-    for share in RELEASES:
-        how = f"from {TIMES[share]} the displacement ({size(share)})" if share != 1.0 else f"as before ({size(1.0)})"
+    for share, part in SHARES.items():
+        how = f"from {part} the displacement ({size(share)})" if part else f"as before ({size(1.0)})"
         limit = setup.campaign.parameters.number("accelerometer.range_m_s2", np.inf)
         found.append(
             Experiment(f"Release {what} {how}", _clipped(trial, fit, index, share, limit), index, share, _change(share))
         )
-    if trial.facts.get("clipped", 0.0) > 0.0:
-        words = f"Release {what} as before with a sensor of wider range, that does not clip"
-        found.append(Experiment(words, replace(trial, counts=None), index, 1.0, 1.5))
     return found
 
 
@@ -122,7 +117,7 @@ def _shaken(
     if share == 1.0:
         return Experiment(f"Shake as in {recorded.name} ({size} rms)", new, index, 1.0, _change(share))
     return Experiment(
-        f"Shake as in {recorded.name} with {TIMES[share]} the force ({size} rms)", new, index, 1.0, _change(share)
+        f"Shake as in {recorded.name} with {SHARES[share]} the force ({size} rms)", new, index, 1.0, _change(share)
     )
 
 
@@ -135,9 +130,16 @@ def _pulled(
     entry = replace(recorded.entry, speed_mm_s=None if speed is None else speed * share)
     new = make(replace(recorded, entry=entry, recording=recording)).with_noises(trial.noises)
     rate = float(trial.facts["travel_m"]) / float(trial.times[-1] - trial.times[0])
-    how = "as before" if share == 1.0 else f"at {TIMES[share]} the speed"
-    words = f"{trial.experiment.verb} {how} ({prefixed(rate * share, 'm/s')})"
+    how = "as before, at" if share == 1.0 else "at"
+    words = f"{trial.experiment.verb} {how} {prefixed(rate * share, 'm/s')}"
     return Experiment(words, new, index, 1.0, _change(share))
+
+
+def _speeds(setup: Setup, recorded: Measurement) -> list[float]:
+    """The speeds of the session's pulls, in that of one of them, its own first."""
+    own = recorded.entry.speed_mm_s
+    every = {m.entry.speed_mm_s for m in setup.campaign.measurements} - {None, own}
+    return [1.0, *(speed / own for speed in sorted(filter(None, every)))] if own else [1.0]
 
 
 def _scaled(recorded: Measurement, share: float) -> Measurement:

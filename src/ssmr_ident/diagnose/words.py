@@ -39,7 +39,7 @@ FORMS = {
         "F = K s + (k3 + k3_share K) s^3 + knee_share K sign(s) max(|s| - knee, 0)"
     ),
     ("nonlinear_stiffness", "k3_share_1_m2"): "F = K s + k3_share K s^3",
-    ("nonlinear_stiffness", "sine_share"): "M = K s + sine_share K (sin s - s), a pendulum's sine",
+    ("nonlinear_stiffness", "sine_share"): "M = K ((1 - sine_share) s + sine_share sin s)",
     ("nonlinear_stiffness", "k3_N_m3", "knee_share"): "F = K s + k3 s^3 + knee_share K sign(s) max(|s| - knee, 0)",
     ("nonlinear_stiffness", "knee_share"): "F = K s + knee_share K sign(s) max(|s| - knee, 0)",
     ("dry_friction", "rounding_m_s"): "F = F_c tanh(v/rounding)",

@@ -22,6 +22,7 @@ from ssmr_ident.doctor.fitted import Search
 from ssmr_ident.doctor.further_body import mode_parameters, riders, shapes_told, with_further_bodies
 from ssmr_ident.doctor.held import held_fit
 from ssmr_ident.doctor.left import beyond, wandering
+from ssmr_ident.doctor.next_recording import next_recording
 from ssmr_ident.doctor.rules import OVER_NOISE, UNEVEN
 from ssmr_ident.doctor.table import Row
 from ssmr_ident.estimate.node import Member, effects_of
@@ -82,7 +83,7 @@ def answer(found: Examined) -> Diagnosis:
     effects = named_effects(decision, chosen, after_file) if named else ()
     conflicts = conflicting(base.fit)
     rows = (*found.rows, *found.search.far)
-    tried = tuple(Tried("+".join(r.ids) or "baseline", r.heldout, r.log_evidence) for r in rows)
+    tried = tuple(Tried("+".join(r.ids) or "baseline", r.heldout, r.log_evidence, r.name) for r in rows)
     shown = training if math.isnan(heldout.before) else heldout
     slow = _wandering(found.search.problem, chosen)
     if named:
@@ -106,7 +107,7 @@ def answer(found: Examined) -> Diagnosis:
         metric=METRIC,
         training=training,
         heldout=heldout,
-        next_experiment=_next(decision),
+        next_experiment=next_recording(found.search.problem, found.rows, decision, decision.verdict == UNDETERMINED),
         before=before_file,
         after=after_file,
         summary=summary,
@@ -313,13 +314,6 @@ def located(problem: Problem, fit: Fit) -> tuple[Located, ...]:
         )
         found.append(Located(recording, channel, (time[0], time[1]), (band[0], band[1]), "", part, words))
     return tuple(found)
-
-
-def _next(decision: Decision) -> str:
-    if not decision.ties or decision.chosen is None:
-        return ""
-    names = ", ".join((*decision.chosen.ids, *decision.ties))
-    return f"Record the same at half and at twice the amplitude, and at another speed: {names} part in how they scale"
 
 
 def _colour(decision: Decision, base: Row) -> tuple[str, ...]:

@@ -11,7 +11,7 @@ from ssmr_ident.diagnose.evidence import Overlay
 from ssmr_ident.report.chart import Chart, Line
 from ssmr_ident.report.curves import busiest_part
 from ssmr_ident.report.figures_diagnosis import CYCLES, readable
-from ssmr_ident.report.numbers import number, unit
+from ssmr_ident.report.numbers import interval, number, unit
 
 SHOWN_OVERLAYS = 6
 """As many as a reader looks at; diagnosis.yaml holds the rest in numbers."""
@@ -46,13 +46,20 @@ def _overlay(o: Overlay, diagnosis: Diagnosis, index: int) -> Chart:
     matter = o.measured - (o.before if after else o.measured.mean())
     part = o.time[busiest_part(o.measured, matter, CYCLES)]
     return Chart(
-        title=f"{o.recording}, {o.channel.replace('_', ' ')}: {'never fitted' if o.heldout else 'fitted'}",
+        title=f"{o.recording}, {o.channel.replace('_', ' ')}{_stretch(o, diagnosis)}: "
+        f"{'never fitted' if o.heldout else 'fitted'}",
         alt=f"{o.recording}, {o.channel}: recorded and simulated over time; error {error}, noise alone {floor}.",
         name=f"overlay-{index}",
         x=o.time, x_label="time", x_unit="s", y_label=o.channel.replace("_", " "), y_unit=unit(o.unit),
         lines=tuple(lines), rest=True,
         shown=(float(part[0]), float(part[-1])) if len(part) < len(o.time) else None,
     )  # fmt: skip
+
+
+def _stretch(o: Overlay, diagnosis: Diagnosis) -> str:
+    """Its times, where a recording is shown in several stretches."""
+    alike = [one for one in diagnosis.evidence.overlays if (one.recording, one.channel) == (o.recording, o.channel)]
+    return f", {interval(float(o.time[0]), float(o.time[-1]), 's')}" if len(alike) > 1 else ""
 
 
 def _across_recordings(overlays: Sequence[Overlay]) -> list[Overlay]:

@@ -7,26 +7,17 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from ssmr_ident.core.atomic import make_folder, write_text
-from ssmr_ident.diagnose.diagnosis import MISSING, NOTHING, UNIT, Diagnosis, NamedEffect
-from ssmr_ident.physics.effects import CATALOGUE
+from ssmr_ident.diagnose.diagnosis import MISSING, NOTHING, UNDETERMINED, UNIT, Diagnosis, NamedEffect
 from ssmr_ident.report.diagnosis_charts import after_name, overlay_charts
-from ssmr_ident.report.diagnosis_sections import needed, quantity, sections, turning
+from ssmr_ident.report.diagnosis_sections import quantity, sections, turning
+from ssmr_ident.report.field_words import UNLISTED, effect_words, place_words
+from ssmr_ident.report.field_words import sentence as said
 from ssmr_ident.report.figures_diagnosis import readable
 from ssmr_ident.report.html import Bar, Fact, Page, Verdict, file_hashes, render_page, write_page
 from ssmr_ident.report.mathml import symbol, typeset
 from ssmr_ident.report.numbers import alike, interval, measured, number, share
 
 FIGURES = "figures"
-
-FORMULAS = {
-    "sine": "a pendulum's sine",
-    "two slopes": "two slopes, as of stops",
-    "cubic and two slopes": "cubic, and two slopes as of stops",
-    "tanh": "Coulomb",
-    "slider": "Coulomb, with an elastic slider",
-    "Dahl": "Coulomb, with pre-sliding after Dahl",
-}
-"""What the formulas of an effect are called in the field, where that is not how the search calls them."""
 
 NEAR = 1.6
 """Times the noise floor up to which an answer leaves nothing to look for."""
@@ -89,10 +80,10 @@ def diagnosis_page(
 
 def verdict(diagnosis: Diagnosis) -> Verdict:
     """What stands first."""
-    names = " and ".join(_name(effect) for effect in diagnosis.effects)
+    names = " and ".join(effect_words(effect) for effect in diagnosis.effects)
     if diagnosis.verdict == MISSING:
         label, tone = f"Missing: {names}", "found"
-        sentence = " ".join(_sentence(effect) for effect in diagnosis.effects)
+        sentence = " ".join(said(effect, diagnosis.before) for effect in diagnosis.effects)
     elif diagnosis.verdict == NOTHING:
         label, tone = "Nothing is missing", "clear"
         sentence = "What the model leaves over on recordings that it has not seen is noise."
@@ -110,24 +101,12 @@ def verdict(diagnosis: Diagnosis) -> Verdict:
     return Verdict(label, tone, sentence, facts, law, charts[0] if charts else None)
 
 
-def _name(effect: NamedEffect) -> str:
-    name = "a force that no listed law makes" if effect.id == "unlisted" else readable(effect.id)
-    return f"{name} ({FORMULAS.get(effect.form, effect.form)})" if effect.form and effect.id != "unlisted" else name
-
-
-def _sentence(effect: NamedEffect) -> str:
-    """What it does, without the numbers that stand beside the law."""
-    known = CATALOGUE.get(effect.id)
-    plain = f"{known.sentence.rstrip('.')}." if known else ""
-    return plain if plain and effect.sentence.startswith(plain[:-1]) else effect.sentence
-
-
 def _law(effect: NamedEffect, turns: bool) -> str:
     """The formula, and what was measured of it; three values at most, the table below holds all."""
     turns = turns and effect.kind != "sensor_chain"
     values = [
         f"<span>{symbol(quantity(effect.id, name), turns)} = {measured(float(e.value), e.std, e.unit)}</span>"
-        for name, e in needed(effect).items()
+        for name, e in effect.acting.items()
         if isinstance(e.value, int | float) and e.std is not None
     ]
     return f'{typeset(effect.equation, turns)} &ensp;<span class="values">{", ".join(values[:3])}</span>'
@@ -150,7 +129,8 @@ def _better(diagnosis: Diagnosis) -> Fact:
     count = len(quality.recordings)
     on = f"{count} recording{'s' if count > 1 else ''} never fitted" if count else "recordings never fitted"
     label = f"Error on {on}" if held else "Error on the recordings that were fitted"
-    note = f"95 % of the gain: {interval(*quality.improvement, unit)}" if after and quality.improvement else ""
+    better = interval(*quality.improvement) if after and quality.improvement else ""
+    note = f"lower by {better} {'points' if unit == '%' else unit} (95 % interval)" if better else ""
     return Fact(label, f"{texts[0]} → {texts[1]} {unit}" if after else f"{texts[0]} {unit}", note, bars)
 
 
@@ -158,18 +138,13 @@ def _where(diagnosis: Diagnosis) -> Fact:
     if diagnosis.verdict == NOTHING:
         return Fact("Where", "Nowhere", "no recording, channel, time or band stands out of the noise")
     place = diagnosis.located[0] if diagnosis.located else None
-    elements = dict.fromkeys(readable(e.element) for e in diagnosis.effects if e.element)
-    elements = elements or dict.fromkeys(readable(k.element) for k in diagnosis.kinds[:1])
-    seen = ""
-    if place is not None:
-        ends = interval(*place.time_s, "s") if all(map(math.isfinite, place.time_s)) else ""
-        seen = f"{number(100 * place.share, 2)} % of the misfit: {place.channel} of {place.recording}, {ends}".rstrip(
-            ", "
-        )
+    acting = [e.element for e in diagnosis.effects if e.element] or [k.element for k in diagnosis.kinds[:1]]
+    elements = dict.fromkeys(place_words(element, diagnosis.after) for element in acting)
     if place is None:
         spread = "the misfit is spread over recordings and channels"
         return Fact("Where", _parts(elements), "") if elements else Fact("Where", "Not told", spread)
-    most, seen = f"{number(100 * place.share, 2)} % of the misfit", f"{place.channel} of {place.recording}"
+    most = f"{number(100 * place.share, 2)} % of the misfit"
+    seen = f"{place.channel.replace('_', ' ')} of {place.recording}"
     when = place.region or (interval(*place.time_s, "s") if all(map(math.isfinite, place.time_s)) else "")
     after = f", {when}" if when else ""
     if elements:
@@ -178,7 +153,8 @@ def _where(diagnosis: Diagnosis) -> Fact:
 
 
 def _parts(elements: Iterable[str]) -> str:
-    return f"The {' and the '.join(elements)}"
+    named = " and the ".join(elements)
+    return f"The {named}"
 
 
 def _sure(diagnosis: Diagnosis) -> Fact:
@@ -186,13 +162,17 @@ def _sure(diagnosis: Diagnosis) -> Fact:
     among = f"among {tried} explanation{'s' if tried > 1 else ''} tried" if tried else ""
     ties = [readable(id) for e in diagnosis.effects for id in e.indistinguishable_from]
     if diagnosis.verdict == NOTHING:
-        return Fact("How sure", f"{tried} tried", "explanations, of which none earns its place")
+        return Fact("How sure", f"None of {tried}", "explanations tried is borne out by the recordings")
     if diagnosis.verdict != MISSING:
         candidates = list(dict.fromkeys([*(readable(e.id) for e in diagnosis.effects), *ties]))
         if not candidates:
             return Fact("How sure", "No name", f"{among}, none is certain" if among else "none is certain")
         return Fact("How sure", f"{len(candidates)} candidates", ", ".join(candidates))
     least = min(diagnosis.effects, key=lambda e: e.confidence)
+    if least.id == UNLISTED:
+        gained = max((t.log_evidence for t in diagnosis.tried), default=0.0)
+        something = share(1.0 / (1.0 + math.exp(-min(max(gained, 0.0), 700.0))))
+        return Fact("How sure", something, "that something is missing; no listed law is its name")
     return Fact("How sure", share(least.confidence), f"fits as well: {', '.join(ties)}" if ties else among)
 
 
@@ -201,8 +181,10 @@ def _next(diagnosis: Diagnosis) -> Fact:
     if diagnosis.next_experiment:
         return Fact("Record next", "One more recording", diagnosis.next_experiment)
     quality = diagnosis.training if math.isnan(diagnosis.heldout.before) else diagnosis.heldout
+    if diagnosis.verdict == UNDETERMINED:
+        return Fact("Record next", "See below", "what limits this answer stands at the end of the page")
     left = quality.after if diagnosis.verdict == MISSING else quality.before
-    if diagnosis.verdict == NOTHING or (diagnosis.verdict == MISSING and left <= NEAR * quality.noise_floor):
+    if left <= NEAR * quality.noise_floor:
         return Fact("Record next", "Nothing more", "for motions of this size the model is complete: use after.yaml")
-    over = f"{number(left / quality.noise_floor, 2)} times the noise is left; " if quality.noise_floor > 0 else ""
-    return Fact("Record next", "Other amplitudes", f"{over}record a third and three times as much motion")
+    over = f"{number(left / quality.noise_floor, 2)} times the noise is left" if quality.noise_floor > 0 else ""
+    return Fact("Record next", "Nothing more", f"the name is settled; {over}, for its formula is not quite the world's")

@@ -15,6 +15,7 @@ from ssmr_ident.physics.effects import CATALOGUE
 from ssmr_ident.physics.network import layout_of
 from ssmr_ident.report.diagnosis_charts import after_name, curve_charts, overlay_charts
 from ssmr_ident.report.diagnosis_places import places
+from ssmr_ident.report.field_words import explanation_words, kind_words, place_words
 from ssmr_ident.report.figures_diagnosis import evidence_text, readable
 from ssmr_ident.report.html import Cell, Formula, Number, Picture, Section, Table, drawing
 from ssmr_ident.report.mathml import symbol
@@ -46,7 +47,7 @@ def _network(diagnosis: Diagnosis) -> Section:
         return Section("")
     marked = tuple(e.element for e in diagnosis.effects)
     new = tuple(name for name in diagnosis.after.between if name not in diagnosis.before.between)
-    named = " and ".join((*marked, *new))
+    named = " and ".join(place_words(name, diagnosis.after) for name in dict.fromkeys((*marked, *new)))
     caption = f"The network; {named} in colour." if named else "The network."
     drawn = network_figure(layout_of(diagnosis.after), (*marked, *new))
     item = drawing(drawn, f"Bodies and springs. {caption}", "network")
@@ -69,15 +70,6 @@ def quantity(effect: str, name: str) -> str:
     return name.removesuffix(unit_ending(units.get(name, "1")))
 
 
-def needed(effect: NamedEffect) -> dict[str, Estimate]:
-    """Its parameters without terms set to zero, and without what the recordings were not asked for."""
-
-    def silent(estimate: Estimate) -> bool:
-        return estimate.std is None and (estimate.fixed or estimate.value == 0)
-
-    return {name: e for name, e in effect.parameters.items() if not silent(e)}
-
-
 def _effects(diagnosis: Diagnosis) -> Section:
     rows: list[tuple[Cell, ...]] = []
     several = len(diagnosis.effects) > 1
@@ -85,7 +77,7 @@ def _effects(diagnosis: Diagnosis) -> Section:
         known = CATALOGUE.get(effect.id)
         meanings = {named: p.meaning for p in known.parameters for named in both_names(p.name, p.unit)} if known else {}
         turns = turning(diagnosis) and effect.kind != "sensor_chain"
-        for name, estimate in needed(effect).items():
+        for name, estimate in effect.acting.items():
             first: tuple[Cell, ...] = (readable(effect.id),) if several else ()
             named = Formula(symbol(quantity(effect.id, name), turns))
             rows.append((*first, named, *_estimated(estimate), meanings.get(name) or NONE))
@@ -93,7 +85,7 @@ def _effects(diagnosis: Diagnosis) -> Section:
     title = "What was added" if diagnosis.verdict == MISSING else "What it could be"
     text = [] if diagnosis.verdict == MISSING else [_sentence(effect) for effect in diagnosis.effects]
     caption = ""
-    if any(estimate.std is None for effect in diagnosis.effects for estimate in needed(effect).values()):
+    if any(estimate.std is None for effect in diagnosis.effects for estimate in effect.acting.values()):
         caption = "No interval stands where the fit leaves structure behind, so that one would promise too much."
     tables = (Table(caption, header, tuple(rows)),) if rows else ()
     return Section(title, tuple(text), tables, charts=curve_charts(diagnosis))
@@ -176,7 +168,8 @@ def _which(diagnosis: Diagnosis) -> Section:
     distances = alike([t.heldout_metric for t in ranked])
     largest = max((t.log_evidence for t in ranked if math.isfinite(t.log_evidence)), default=0.0)
     rows = tuple(
-        (readable(t.id), Number(evidence_text(t.log_evidence), t.log_evidence, _part(t.log_evidence, largest)),
+        (explanation_words(t.name, t.id),
+         Number(evidence_text(t.log_evidence), t.log_evidence, _part(t.log_evidence, largest)),
          Number(text, t.heldout_metric))
         for t, text in zip(ranked, distances, strict=True)
     )  # fmt: skip
@@ -188,7 +181,7 @@ def _which(diagnosis: Diagnosis) -> Section:
     if len(ranked) < len(tried):
         caption += f" The {len(tried) - len(ranked)} least likely stand in diagnosis.yaml."
     kinds = tuple(
-        (readable(k.kind), readable(k.element), Number(number(100 * k.share), k.share, k.share))
+        (kind_words(k.kind), place_words(k.element, diagnosis.after), Number(number(100 * k.share), k.share, k.share))
         for k in diagnosis.kinds
     )
     tables = (

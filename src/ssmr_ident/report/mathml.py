@@ -15,7 +15,16 @@ _GREEK = {
 }  # fmt: skip
 _UPRIGHT = {"exp", "min", "max", "sign", "sin", "cos", "tanh"}
 _WORDS = re.compile(r"\s+(with)\s+")
-_TEXT = re.compile(r"\b(of|for|drawn|follows|slides|rides|a pendulum's)\b")
+_TEXT = re.compile(r"\b(of|for|drawn|follows|slides|rides)\b")
+SYMBOLS = {
+    "knee_share": "a", "knee": "s_k", "k3_share": "b", "sine_share": "p", "kinetic_share": "r", "exponent": "n",
+    "stribeck_velocity": "v_s", "rounding": "v_r", "yield": "y", "gap": "g", "element_stiffness": "k",
+    "bandwidth": "f_b", "delay": "tau", "f_mast": "f_m", "damping_ratio": "zeta", "height_above_com": "h",
+    "rider_share": "m_r", "rider": "f_r", "rider_ratio": "zeta_r", "eccentricity": "e", "place": "s_0",
+    "zero_drift": "z", "gain_drift": "g",
+}  # fmt: skip
+"""What laws call parameters whose names in files are words."""
+
 _TURNED = {"F": "M", "s": "θ", "x": "θ", "v": "ω"}
 """What a formula of a straight motion calls a moment, an angle and a turning speed."""
 _LOWERED = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹", "0123456789")
@@ -82,7 +91,7 @@ def _clause(text: str, turning: bool) -> str:
 
 
 def _named(name: str, primes: str, turning: bool) -> str:
-    base, _, below = name.partition("_")
+    base, _, below = SYMBOLS.get(name, name).partition("_")
     if turning:
         base = _TURNED.get(base, base)
     letter, digits = re.fullmatch(r"(.*?)(\d*)", base).groups()  # type: ignore[union-attr]

@@ -36,7 +36,7 @@ def pendulum(s, stiffness, share):
 
 EFFECT = Effect(
     id="nonlinear_stiffness",
-    sentence="The tires (or the rig's spring) stiffen or soften as they are pressed.",
+    sentence="A spring (the rig's, or the tires) stiffens or softens with deflection.",
     equation=r"F = K s + k_3 s^3 + a K\,\mathrm{sign}(s)\,\max(|s| - s_k, 0) + b K s^3"
     r" + p K (\sin s - s)",
     source="Thesis section 3.3; Kovacic and Brennan, The Duffing Equation, Wiley 2011",

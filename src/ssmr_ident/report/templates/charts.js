@@ -81,7 +81,7 @@
     panel(high - low, spec.lines.map((l) => line(l.role, l.label)), [x, ...courses], `${spec.yLabel}${unit(spec.yUnit)}`, !spec.rest);
     if (spec.rest) {
       const rest = courses.slice(1).map((c) => c.map((v, k) => (v === null || courses[0][k] === null ? null : courses[0][k] - v)));
-      panel(low, spec.lines.slice(1).map((l) => line(l.role, l.label)), [x, ...rest], "left over", true);
+      panel(low, spec.lines.slice(1).map((l) => line(l.role, l.label)), [x, ...rest], `residual${unit(spec.yUnit)}`, true);
     }
     const zoom = ([a, b]) => panels[0].setScale("x", { min: Math.max(a, whole[0]), max: Math.min(b, whole[1]) });
     const span = () => [panels[0].scales.x.min, panels[0].scales.x.max];
