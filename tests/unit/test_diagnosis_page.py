@@ -155,7 +155,7 @@ def test_a_kind_without_law_and_curve_has_no_formula() -> None:
 def test_a_force_of_any_shape_is_drawn_with_its_band() -> None:
     (chart,) = next(s for s in page_of(undetermined).sections if s.title == "What it could be").charts
     assert (chart.x_label, chart.x_unit, chart.y_unit, chart.band) == ("displacement", "m", "N", True)
-    assert chart.lines[2].y - chart.lines[1].y == pytest.approx(2 * 1.96 * np.array([0.0, 0.1]))
+    assert chart.lines[-1].y - chart.lines[-2].y == pytest.approx(2 * 1.96 * np.array([0.0, 0.1]))
 
 
 def test_where_the_name_is_settled_what_is_left_is_said() -> None:

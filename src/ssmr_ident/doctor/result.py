@@ -21,6 +21,7 @@ from ssmr_ident.doctor.decide import MISSING, NOTHING, UNDETERMINED, Decision
 from ssmr_ident.doctor.fitted import Search
 from ssmr_ident.doctor.further_body import mode_parameters, riders, shapes_told, with_further_bodies
 from ssmr_ident.doctor.held import held_fit
+from ssmr_ident.doctor.law_curve import law_curve
 from ssmr_ident.doctor.left import beyond, wandering
 from ssmr_ident.doctor.next_recording import next_recording
 from ssmr_ident.doctor.rules import OVER_NOISE, UNEVEN
@@ -80,7 +81,7 @@ def answer(found: Examined) -> Diagnosis:
     named = decision.verdict == MISSING
     before_file = exported(base.fit, found.known)
     after_file = exported(chosen.fit, found.known) if named else before_file
-    effects = named_effects(decision, chosen, after_file) if named else ()
+    effects = named_effects(decision, chosen, after_file, found.search.problem) if named else ()
     conflicts = conflicting(base.fit)
     rows = (*found.rows, *found.search.far)
     tried = tuple(Tried("+".join(r.ids) or "baseline", r.heldout, r.log_evidence, r.name) for r in rows)
@@ -211,7 +212,7 @@ def baseline_covariance(fit: Fit, known: ParameterSet) -> Array:
     return covariance
 
 
-def named_effects(decision: Decision, chosen: Row, after: ParameterSet) -> tuple[NamedEffect, ...]:
+def named_effects(decision: Decision, chosen: Row, after: ParameterSet, problem: Problem) -> tuple[NamedEffect, ...]:
     assert chosen.fit is not None
     found = []
     for member in chosen.fit.node.members:
@@ -231,7 +232,7 @@ def named_effects(decision: Decision, chosen: Row, after: ParameterSet) -> tuple
             NamedEffect(
                 effect, sentence, text, values | _riding_mass(values, after), min(decision.confidence, 1.0),
                 decision.ties, member.form,
-                kind=member.kind, element=element_of(member), curve=drawn,
+                kind=member.kind, element=element_of(member), curve=drawn or law_curve(problem, chosen.fit, member),
             )
         )  # fmt: skip
     return tuple({e.id: e for e in reversed(found)}.values())[::-1]

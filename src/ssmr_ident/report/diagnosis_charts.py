@@ -10,7 +10,8 @@ from ssmr_ident.diagnose.diagnosis import MISSING, NOTHING, UNIT, Diagnosis, Nam
 from ssmr_ident.diagnose.evidence import Overlay
 from ssmr_ident.report.chart import Chart, Line
 from ssmr_ident.report.curves import busiest_part
-from ssmr_ident.report.figures_diagnosis import CYCLES, readable
+from ssmr_ident.report.field_words import place_words
+from ssmr_ident.report.figures_diagnosis import CYCLES
 from ssmr_ident.report.numbers import interval, number, unit
 
 SHOWN_OVERLAYS = 6
@@ -73,26 +74,39 @@ def _across_recordings(overlays: Sequence[Overlay]) -> list[Overlay]:
 
 
 def curve_charts(diagnosis: Diagnosis) -> tuple[Chart, ...]:
-    """A force over what it depends on, with its 95 % band, of each effect whose shape was fitted."""
-    return tuple(_curve(e, k) for k, e in enumerate(diagnosis.effects, 1) if e.curve)
+    """A force over what it depends on, with its 95 % band, of each effect that has one."""
+    return tuple(_curve(e, diagnosis, k) for k, e in enumerate(diagnosis.effects, 1) if e.curve)
 
 
-def _curve(effect: NamedEffect, index: int) -> Chart:
+def _curve(effect: NamedEffect, diagnosis: Diagnosis, index: int) -> Chart:
     curve = effect.curve or {}
     variable, _, of = str(curve["variable"]).partition(" [")
     points, force, std = (np.asarray(curve[key], float) for key in ("points", "force", "std"))
     turning = variable in ("angle", "turning speed")
+    what, place = "Moment" if turning else "Force", place_words(effect.element, diagnosis.after)
+    straight = _straight(effect, variable, diagnosis)
     return Chart(
-        title=f"The {'moment' if turning else 'force'} that was found: {readable(effect.kind)} at the {effect.element}",
-        alt=f"{'Moment' if turning else 'Force'} over {variable}, {number(force.min())} to {number(force.max())}.",
+        title=f"{what} over {variable}: the {place}",
+        alt=f"{what} over {variable}, {number(force.min())} to {number(force.max())}.",
         name=f"curve-{index}",
         x=points, x_label=variable, x_unit=unit(of.rstrip("]")),
-        y_label="moment" if turning else "force", y_unit="N m" if turning else "N",
+        y_label=what.lower(), y_unit="N m" if turning else "N",
         lines=(
+            *((Line("model before", straight * points, "before"),) if straight is not None else ()),
             Line("found", force, "after"),
             Line("2.5 %", force - 1.96 * std, "limit"),
             Line("97.5 %", force + 1.96 * std, "limit"),
         ),
         band=True,
-        caption="Shaded: the 95 % band.",
+        caption="As far as the recordings went. Shaded: the 95 % band.",
     )  # fmt: skip
+
+
+def _straight(effect: NamedEffect, variable: str, diagnosis: Diagnosis) -> float | None:
+    """What the baseline has in place of the curve: stiffness over a deflection, damping over a speed."""
+    key = {
+        "displacement": "stiffness_N_m", "angle": "stiffness_N_m_rad", "velocity": "damping_N_s_m",
+        "turning speed": "damping_N_m_s_rad",
+    }.get(variable, "")  # fmt: skip
+    path = f"springs.{effect.element}.{key}" if diagnosis.before.between else key
+    return diagnosis.before.number(path) if path in diagnosis.before else None
