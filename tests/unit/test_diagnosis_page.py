@@ -19,13 +19,16 @@ from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.diagnose.diagnosis import Conflict, Diagnosis, PredictionQuality, Tried
 from ssmr_ident.diagnose.evidence import Evidence, ForceSurface, SpeedMap
 from ssmr_ident.physics.effects import CATALOGUE
+from ssmr_ident.report import style
 from ssmr_ident.report.chart import packed
 from ssmr_ident.report.curves import busiest_part, thinned
 from ssmr_ident.report.diagnosis_page import diagnosis_page, render_report, write_report
 from ssmr_ident.report.diagnosis_sections import scalar
 from ssmr_ident.report.field_words import effect_words, explanation_words, place_words, sentence
 from ssmr_ident.report.html import Number, Page, Table
+from ssmr_ident.report.robot_figure import ACTS, NAMES, parts_of
 from ssmr_ident.report.svg import inline
+from ssmr_ident.session import read_parameters
 
 pytestmark = pytest.mark.slow
 
@@ -184,6 +187,16 @@ def test_a_spring_stiffens_or_softens_and_a_rig_has_no_tires() -> None:
     assert sentence(softer, rig) == "The spring softens with deflection."
     assert sentence(hardening().effects[0], tires) == "The tires stiffen with deflection."
     assert effect_words(softer) == "nonlinear stiffness (cubic)"
+
+
+def test_a_robot_is_drawn_with_what_the_answer_is_about_in_colour() -> None:
+    robot = read_parameters("p3at-extended")
+    page = diagnosis_page(replace(hardening(), before=robot, after=robot), "")
+    (figure,) = next(s for s in page.sections if s.title == "The robot").figures
+    assert "tires in colour" in figure.caption
+    assert style.ORANGE.lower() in figure.drawings[0].svg.lower()
+    assert parts_of(("sensor_delay", "free_play", "free_play")) == ("sensor", "tire")
+    assert all(ACTS[e.id] in NAMES for e in CATALOGUE.values() if e.robot and e.id != "unlisted")
 
 
 def test_explanations_of_a_network_say_where_they_are() -> None:

@@ -159,7 +159,7 @@ def _parts(elements: Iterable[str]) -> str:
 
 def _sure(diagnosis: Diagnosis) -> Fact:
     tried = sum(t.id != "baseline" for t in diagnosis.tried)
-    among = f"among {tried} explanation{'s' if tried > 1 else ''} tried" if tried else ""
+    among = f"among {tried} explanations tried" if tried > 1 else "against nothing missing" if tried else ""
     ties = [readable(id) for e in diagnosis.effects for id in e.indistinguishable_from]
     if diagnosis.verdict == NOTHING:
         return Fact("How sure", f"None of {tried}", "explanations tried is borne out by the recordings")

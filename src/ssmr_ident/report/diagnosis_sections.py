@@ -13,15 +13,17 @@ from ssmr_ident.core.rotary import both_names, unit_ending
 from ssmr_ident.diagnose.diagnosis import MISSING, NOTHING, UNIT, Conflict, Diagnosis, NamedEffect
 from ssmr_ident.physics.effects import CATALOGUE
 from ssmr_ident.physics.network import layout_of
+from ssmr_ident.physics.robot import robot_from_parameters
 from ssmr_ident.report.diagnosis_charts import after_name, curve_charts, overlay_charts
 from ssmr_ident.report.diagnosis_places import places
-from ssmr_ident.report.field_words import explanation_words, kind_words, place_words
+from ssmr_ident.report.field_words import explanation_words, is_rig, kind_words, place_words
 from ssmr_ident.report.figures_diagnosis import evidence_text, readable
 from ssmr_ident.report.html import Cell, Formula, Number, Picture, Section, Table, drawing
 from ssmr_ident.report.mathml import symbol
 from ssmr_ident.report.network_figure import network_figure
 from ssmr_ident.report.numbers import NONE, alike, interval, measured, number, share
 from ssmr_ident.report.numbers import unit as printed
+from ssmr_ident.report.robot_figure import NAMES, parts_of, robot_figure
 
 SHOWN_TRIED = 15
 """As many explanations as a reader looks at."""
@@ -31,6 +33,7 @@ def sections(diagnosis: Diagnosis) -> tuple[Section, ...]:
     """All sections that have something to say, in reading order."""
     made = (
         _network(diagnosis),
+        _robot(diagnosis),
         _proof(diagnosis),
         _effects(diagnosis),
         _where(diagnosis),
@@ -52,6 +55,17 @@ def _network(diagnosis: Diagnosis) -> Section:
     drawn = network_figure(layout_of(diagnosis.after), (*marked, *new))
     item = drawing(drawn, f"Bodies and springs. {caption}", "network")
     return Section("The network", figures=(Picture((item,), caption),))
+
+
+def _robot(diagnosis: Diagnosis) -> Section:
+    """A robot of which the file says where its contacts are, with the part that the answer is about in colour."""
+    marked = parts_of(tuple(part for e in diagnosis.effects for part in e.id.split("+")))
+    if is_rig(diagnosis.before) or "contact_points_m" not in diagnosis.before or not marked:
+        return Section("")
+    names = " and ".join(NAMES[part] for part in marked)
+    caption = f"The robot to scale; {names} in colour, a cross at the centre of mass, a square at the accelerometer."
+    drawn = robot_figure(robot_from_parameters(diagnosis.after), marked)
+    return Section("The robot", figures=(Picture((drawing(drawn, caption, "robot"),), caption),))
 
 
 def turning(diagnosis: Diagnosis) -> bool:

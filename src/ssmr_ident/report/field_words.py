@@ -139,6 +139,8 @@ def place_words(element: str, parameters: ParameterSet) -> str:
         return f"spring {element}"
     if any(key.startswith(f"bodies.{element}.") for key in parameters):
         return f"body {element}"
+    if element == "tire":
+        return "tires"
     sensor, _, channel = element.partition(".")
     if sensor == "sensor" and channel:
         return f"sensor of {'the ' if channel == channel.lower() and len(channel) > 2 else ''}{readable(channel)}"
