@@ -100,3 +100,28 @@ def test_nothing_changed_is_said_so() -> None:
     assert page.verdict is not None
     assert (page.verdict.label, page.verdict.tone) == ("Nothing has changed", "clear")
     assert "within its uncertainty" in render_page(page)
+
+
+def test_what_both_diagnoses_found_of_an_effect_is_drawn_side_by_side() -> None:
+    first = {"variable": "velocity [m/s]", "points": [-1.0, 0.0, 1.0], "force": [-2.0, 0.0, 2.0], "std": [0.1] * 3}
+    second = first | {"points": [-0.5, 0.0, 0.5], "force": [-3.0, 0.0, 3.0]}
+    sides = [
+        Side(
+            name,
+            rig(3200.0),
+            "missing_physics",
+            ("dry_friction",),
+            "nrmse_percent",
+            (9.0, 3.0, 2.0),
+            {"dry_friction": c},
+        )
+        for name, c in (("before", first), ("after", second))
+    ]
+    verdict = changes_page(changes(*sides), "", ()).verdict
+    assert verdict is not None
+    assert verdict.chart is not None
+    one, other = verdict.chart.lines
+    assert (one.label, other.label, verdict.chart.x_label, verdict.chart.y_unit) == ("before", "after", "velocity", "N")
+    np.testing.assert_allclose(verdict.chart.x, [-1.0, -0.5, 0.0, 0.5, 1.0])
+    np.testing.assert_allclose(one.y, [-2.0, -1.0, 0.0, 1.0, 2.0])
+    np.testing.assert_allclose(other.y, [np.nan, -3.0, 0.0, 3.0, np.nan])

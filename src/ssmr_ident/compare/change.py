@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -72,7 +72,8 @@ class Change:
 class Side:
     """One of the two: its name, its parameters, and what a diagnosis said, where there is one.
 
-    ``error`` is that on recordings never fitted: before, after, noise floor, in ``metric``.
+    ``error`` is that on recordings never fitted: before, after, noise floor, in ``metric``; ``curves`` are those of
+    the effects that have one, by their ids, as diagnosis.yaml has them.
     """
 
     name: str
@@ -81,6 +82,7 @@ class Side:
     effects: tuple[str, ...] = ()
     metric: str = ""
     error: tuple[float, float, float] | None = None
+    curves: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

@@ -3,8 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
 
 from ssmr_ident.compare.change import CHANCE, Change, Changes, Side
+from ssmr_ident.report.chart import Chart, Line
 from ssmr_ident.report.comparison_page import UNITS
 from ssmr_ident.report.figures_diagnosis import readable
 from ssmr_ident.report.html import Bar, Cell, Fact, Number, Page, Section, Table, Verdict
@@ -41,21 +46,47 @@ def changes_page(found: Changes, command: str, files: tuple[tuple[str, str], ...
         f"against. By chance alone even one would be called changed in {100 * CHANCE:.0f} of 100 such comparisons."
     )
     facts = (*_largest(some), *(_error(side) for side in both if side.error))
-    verdict = Verdict(label[0].upper() + label[1:], "found" if some or told else "clear", sentence, facts)
+    charts = tuple(chart for id in found.first.curves if (chart := _curves(id, *both)) is not None)
+    tone, chart = "found" if some or told else "clear", charts[0] if charts else None
+    verdict = Verdict(label[0].upper() + label[1:], tone, sentence, facts, (), chart)
     header = ("parameter", "first", "second", "unit", "change", "change [%]", "p")
     rows = tuple(_row(c) for c in found.changes)
     caption = (
         "Value ± standard deviation; p: probability of such a difference without a change. Changed ones stand first. "
         "Both sides are taken as independent: two fits of one recording are not."
     )
-    section = Section("Parameter by parameter", tables=(Table(caption, header, rows),))
+    section = Section("Parameter by parameter", tables=(Table(caption, header, rows),), charts=charts[1:])
     return Page(f"{found.first.name} against {found.second.name}", (), (section,), command, files, verdict=verdict)
+
+
+def _curves(id: str, first: Side, second: Side) -> Chart | None:
+    """What both diagnoses found of one effect, over what it depends on; None where they do not both say."""
+    one, other = first.curves.get(id), second.curves.get(id)
+    if one is None or other is None or one["variable"] != other["variable"]:
+        return None
+    variable, _, of = str(one["variable"]).partition(" [")
+    x = np.unique(np.concatenate([np.asarray(c["points"], float) for c in (one, other)]))
+    turning = variable in ("angle", "turning speed")
+    what = "moment" if turning else "force"
+
+    def over(curve: Mapping[str, Any]) -> np.ndarray:
+        points = np.asarray(curve["points"], float)
+        return np.interp(x, points, np.asarray(curve["force"], float), left=np.nan, right=np.nan)
+
+    return Chart(
+        title=f"{readable(id).capitalize()}: {what} over {variable}",
+        alt=f"{readable(id)}: {what} over {variable}, of {first.name} and of {second.name}.",
+        name=f"curves-{id}", x=x, x_label=variable, x_unit=printed(of.rstrip("]")),
+        y_label=what, y_unit="N m" if turning else "N",
+        lines=(Line(first.name, over(one), "before"), Line(second.name, over(other), "after")),
+        caption="Each as far as its recordings went.",
+    )  # fmt: skip
 
 
 def _largest(some: tuple[Change, ...]) -> list[Fact]:
     return [
         Fact(c.parameter, _percent(c) + (" %" if c.relative == c.relative else f" {printed(c.unit)}"),
-             f"{number(c.first or 0.0)} → {number(c.second or 0.0)} {printed(c.unit)}")
+             f"{' → '.join(alike([c.first or 0.0, c.second or 0.0]))} {printed(c.unit)}")
         for c in some[:SHOWN]
     ]  # fmt: skip
 

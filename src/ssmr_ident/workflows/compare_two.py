@@ -7,6 +7,8 @@ import io
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from ssmr_ident.compare.change import Changes, Side, changes
 from ssmr_ident.core.atomic import make_folder, write_text
 from ssmr_ident.core.errors import InputError
@@ -63,10 +65,14 @@ def _side(path: Path) -> tuple[Side, list[Path]]:
         error = tuple(quality[key] for key in ("before", "after", "noise_floor"))
         effects = tuple(str(effect["id"]) for effect in told["effects"])
         verdict, metric = str(told["verdict"]), str(told["fit"]["metric"])
-    except (KeyError, TypeError):
+        curves = {str(effect["id"]): effect["curve"] for effect in told["effects"] if effect.get("curve")}
+        for curve in curves.values():
+            np.column_stack([np.asarray(curve[key], dtype=float) for key in ("points", "force", "std")])
+            str(curve["variable"])
+    except (KeyError, TypeError, ValueError, AttributeError):
         raise InputError(place.file, "is no diagnosis of ident diagnose", "Write it anew") from None
     known = None if None in error else (float(error[0]), float(error[1]), float(error[2]))
-    return Side(str(path), read_parameters(after), verdict, effects, metric, known), [answer, after]
+    return Side(str(path), read_parameters(after), verdict, effects, metric, known, curves), [answer, after]
 
 
 def _write_table(found: Changes, path: Path) -> None:

@@ -54,7 +54,7 @@
       values: (_, splits) => splits.map((v) => (v === null ? "" : String(Number(v.toPrecision(10))).replace("-", "−"))), side,
     });
     const line = (role, label) => ({
-      label, stroke: () => colour(role), width: role === "recorded" ? 3 : role === "limit" ? 0.5 : 1.4, points: { show: false }, spanGaps: false,
+      label, stroke: () => colour(role), width: role === "recorded" ? 3 : role === "limit" ? 0.5 : 1.4, points: { show: false }, spanGaps: false, pxAlign: 0,
     });
     const largest = courses.flat().reduce((most, v) => (v === null ? most : Math.max(most, Math.abs(v))), 0);
     const room = largest < 0.02 || largest >= 1e4 ? 74 : 50; // for the digits of its ticks, alike in both panels
