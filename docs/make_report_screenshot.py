@@ -12,6 +12,7 @@ import sys
 import tempfile
 from pathlib import Path
 
+from pictures import first_screen, keep
 from playwright.sync_api import sync_playwright
 
 IMAGE = Path(__file__).resolve().parent / "images" / "report.png"
@@ -27,6 +28,7 @@ def photograph(page: Path) -> None:
         tab.wait_for_function("document.querySelector('figure.hero').chart !== undefined")
         tab.screenshot(path=IMAGE)
         browser.close()
+    keep(IMAGE, "python docs/make_report_screenshot.py", first_screen(page.read_text(encoding="utf-8")))
     print(f"written to {IMAGE}")
 
 

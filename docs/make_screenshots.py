@@ -7,6 +7,7 @@ real one: a command runs in a pseudo-terminal, a terminal emulator keeps its scr
 from __future__ import annotations
 
 import html
+import json
 import os
 import pty
 import shutil
@@ -24,17 +25,22 @@ import nbformat
 import pyte
 from nbclient import NotebookClient
 from nbconvert import HTMLExporter
+from pictures import keep
 from playwright.sync_api import sync_playwright
 
 ROOT = Path(__file__).resolve().parents[1]
 IMAGES = ROOT / "docs" / "images"
 WIDTH = 104
+SHOWN = slice(2, 6)
+"""Cells of the notebook."""
+MAKES = {"terminal-progress": "progress", "terminal-new": "answer", "notebook": "notebook"}
+"""The word behind the command that makes each picture."""
 COLOURS = {"default": "#e6e6e6", "red": "#ff7b72", "green": "#7ee787", "brown": "#e3b341", "blue": "#79c0ff",
            "magenta": "#ff9bce", "cyan": "#76e3ea", "white": "#ffffff", "black": "#8b949e"}  # fmt: skip
 
 
-def frames(command: list[str], rows: int) -> Iterator[pyte.Screen]:
-    """The screen of a terminal in which ``ident …`` runs, after every piece of output."""
+def frames(command: list[str], rows: int, place: Path = ROOT) -> Iterator[pyte.Screen]:
+    """The screen of a terminal in which ``ident …`` runs, after every piece of output; nobody answers its questions."""
     screen = pyte.Screen(WIDTH, rows)
     stream = pyte.ByteStream(screen)
     master, slave = pty.openpty()
@@ -42,7 +48,7 @@ def frames(command: list[str], rows: int) -> Iterator[pyte.Screen]:
     environment = {key: value for key, value in os.environ.items() if key != "NO_COLOR"} | {"TERM": "xterm-256color"}
     with subprocess.Popen(
         [sys.executable, "-m", "ssmr_ident", *command],
-        cwd=ROOT, env=environment, stdin=slave, stdout=slave, stderr=slave,
+        cwd=place, env=environment, stdin=subprocess.DEVNULL, stdout=slave, stderr=slave,
     ) as process:  # fmt: skip
         os.close(slave)
         try:
@@ -84,8 +90,10 @@ def _cell(cell: Any) -> str:
     return f'<span style="color:{colour}{weight}">{html.escape(cell.data)}</span>'
 
 
-def photograph(browser: Any, page: str, name: str, width: int = 1000, height: int = 200, selector: str = "pre") -> None:
-    """Write docs/images/NAME.png."""
+def photograph(
+    browser: Any, page: str, name: str, shows: str, width: int = 1000, height: int = 200, selector: str = "pre"
+) -> None:
+    """Write docs/images/NAME.png, and into it what it shows."""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "page.html"
         file.write_text(page, encoding="utf-8")
@@ -97,6 +105,7 @@ def photograph(browser: Any, page: str, name: str, width: int = 1000, height: in
         else:
             tab.screenshot(path=target)
         tab.close()
+    keep(target, f"python docs/make_screenshots.py {MAKES[name]}", shows)
     print(f"written to {target}")
 
 
@@ -107,9 +116,10 @@ def progress(browser: Any) -> None:
         for screen in frames(command, 14):
             if any("simulation against" in line for line in screen.display) and "━━" in screen.display[2]:
                 last = page_of(screen, ["demo", "--campaign", "data", "-o", "out"])
+                stages = "\n".join(line.split("━")[0].strip() for line in screen.display if "━" in line)
                 if sum("simulation against" in line for line in screen.display) >= 2:
                     break
-        photograph(browser, last, "terminal-progress")
+        photograph(browser, last, "terminal-progress", stages)
 
 
 def answer(browser: Any) -> None:
@@ -120,15 +130,15 @@ def answer(browser: Any) -> None:
         raw = ROOT / "data" / "raw"
         for log in ("free_response/roll-1.xlsx", "free_response/pitch-1.xlsx", "pulls/concrete-lateral-rope-1.txt"):
             shutil.copy(raw / log, folder)
-        *_, screen = frames(["new", str(folder), "--robot", "p3at-extended"], 20)
-        page = page_of(screen, ["new", "my-logs", "--robot", "p3at-extended"])
-        photograph(browser, _joined(page, place), "terminal-new")
+        command = ["new", "my-logs", "--robot", "p3at-extended"]
+        *_, screen = frames(command, 20, Path(place))
+        photograph(browser, page_of(screen, command), "terminal-new", "\n".join(screen.display).rstrip())
 
 
-def _joined(page: str, place: str) -> str:
-    """The folder's temporary place is taken out of the screen, letter by letter coloured as it is."""
-    letters = "".join(f'<span style="color:#e6e6e6">{html.escape(letter)}</span>' for letter in f"{place}/")
-    return page.replace(letters, "")
+def source_of(path: Path) -> str:
+    """What is typed in the cells of a notebook that are shown."""
+    cells = json.loads(path.read_text(encoding="utf-8"))["cells"][SHOWN]
+    return "\n".join("".join(cell["source"]) for cell in cells)
 
 
 def notebook(browser: Any) -> None:
@@ -136,9 +146,9 @@ def notebook(browser: Any) -> None:
     path = ROOT / "notebooks" / "01_first_look.ipynb"
     book = nbformat.read(path, as_version=4)
     NotebookClient(book, timeout=300, resources={"metadata": {"path": str(path.parent)}}).execute()
-    book.cells = book.cells[2:6]
+    book.cells = book.cells[SHOWN]
     page, _ = HTMLExporter(template_name="lab").from_notebook_node(book)
-    photograph(browser, page, "notebook", 900, 900, "")
+    photograph(browser, page, "notebook", source_of(path), 900, 900, "")
 
 
 def main() -> None:

@@ -17,6 +17,7 @@ from ssmr_ident.signals.filters import FREE_RESPONSE_LOW_PASS_HZ, SWIVEL_LOW_PAS
 
 RATE = 1000.0
 BANDWIDTH_HZ = 80.0
+COMMAND = "python -m thesis2012.bode"
 FOLDER = Path(__file__).resolve().parents[2] / "docs" / "theory"
 
 
@@ -54,4 +55,4 @@ def figure() -> Figure:
 
 
 if __name__ == "__main__":
-    print(f"written to {style.save(figure(), FOLDER / 'bode')}")
+    print(f"written to {style.save(figure(), FOLDER / 'bode', command=COMMAND)}")

@@ -83,7 +83,7 @@ def figure(robot: Robot) -> None:
     label = "$a_y$ [(m/s²)²/Hz]"
     panels.append(Panel("swivel, 30°/s wanted, (6.4), Table 5.1", "frequency [Hz]", label, tuple(densities), True))
     drawn = effect_figure("Swivelling", "About which point the simulated robot turns, and why.", panels)
-    style.save(drawn, FOLDER / "turning")
+    style.save(drawn, FOLDER / "turning", command="python -m thesis2012.page")
 
 
 def _mean_friction(robot: Robot, speed: float) -> float:

@@ -10,6 +10,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from documentation import pictures
 from typed_command import typed
 
 from ssmr_ident.workflows.demo.hidden import RELEASED_MM
@@ -54,6 +55,8 @@ def test_the_demo_prints_what_the_readme_shows_and_begins_anew_the_second_time(t
     assert told.returncode == 0, told.stderr
     shown_in(wanted.replace("█", ""), told.stdout.replace("█", ""))
     assert "ident new FOLDER" in told.stdout
+    page = (tmp_path / "out" / "demo-diagnosis" / "report.html").read_text(encoding="utf-8")
+    shown_in(pictures.kept(PAGE.parents[1] / "images" / "report.png")["Shows"], pictures.first_screen(page))
     again = typed("demo", "--seed", "2", "--hide", "quadratic_damping:d2_N_s2_m2=40", cwd=tmp_path)
     assert "found   quadratic_damping" in again.stdout
     assert len(list((tmp_path / "out" / "demo-rig").glob("*.csv"))) == len(RELEASED_MM)

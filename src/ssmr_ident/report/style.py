@@ -139,7 +139,7 @@ def panel_letter(axes: Axes, letter: str) -> None:
     axes.set_title(letter, loc="left", fontweight="bold", fontsize=8)
 
 
-def save(figure: Figure, stem: Path, format: str = "png") -> Path:
+def save(figure: Figure, stem: Path, format: str = "png", command: str = "") -> Path:
     """Write a figure; the same figure gives the same bytes.
 
     Parameters
@@ -148,6 +148,8 @@ def save(figure: Figure, stem: Path, format: str = "png") -> Path:
     stem : Path
         Without suffix.
     format : {"png", "svg", "pdf"}
+    command : str
+        By which it was made; kept in a PNG.
 
     Returns
     -------
@@ -155,12 +157,16 @@ def save(figure: Figure, stem: Path, format: str = "png") -> Path:
     """
     path = stem.with_name(f"{stem.name}.{format}")
     make_folder(path.parent)
-    return write_bytes(path, drawn(figure, format))
+    return write_bytes(path, drawn(figure, format, command))
 
 
-def drawn(figure: Figure, format: str = "png") -> bytes:
+def drawn(figure: Figure, format: str = "png", command: str = "") -> bytes:
     """A figure as the bytes of a file."""
-    undated: Any = {"png": {}, "svg": {"Date": None}, "pdf": {"CreationDate": None}}[format]
+    undated: Any = {
+        "png": {"Command": command} if command else {},
+        "svg": {"Date": None},
+        "pdf": {"CreationDate": None},
+    }[format]
     buffer = io.BytesIO()
     with mpl.rc_context(STYLE):
         figure.savefig(buffer, format=format, metadata=undated)
