@@ -38,7 +38,7 @@ def test_what_leads_already_needs_less_and_what_is_far_behind_hardly_counts() ->
 def test_the_mildest_of_the_good_ones_and_words_without_one() -> None:
     assert best_of(np.array([0.99, 0.97]), np.array([4.0, 2.0])) == 1
     told = advice("Let it go as in a.csv", ("play", "friction", "a loop"), 0.2)
-    assert told.startswith("No recording within what this rig has shown")
+    assert told.startswith("No recording within what was shown to be possible")
     assert told.endswith("with a probability of 20 %: let it go as in a.csv")
 
 

@@ -23,6 +23,10 @@ UNLIKELY = 0.5
 """Chance of deciding below which it is said that no recording of this rig is likely to."""
 
 
+NONE_LIKELY = "No recording"
+"""With which advice begins where that is so."""
+
+
 def chance_of_deciding(evidence: Array, apart: Array) -> float:
     """Probability that one of the explanations leads by ``DECIDED`` after the recording, if one of them is right.
 
@@ -69,8 +73,8 @@ def advice(words: str, names: tuple[str, ...], chance: float) -> str:
     if chance < UNLIKELY:
         least = "less than 1" if chance < 0.01 else f"{100.0 * chance:.0f}"
         return (
-            f"No recording within what this rig has shown is likely to decide between {between}, which predict alike "
-            f"there. The best, with a probability of {least} %: {words[0].lower()}{words[1:]}"
+            f"{NONE_LIKELY} within what was shown to be possible is likely to decide between {between}. The best, with "
+            f"a probability of {least} %: {words[0].lower()}{words[1:]}"
         )
     most = "more than 99" if chance > 0.99 else f"{100.0 * chance:.0f}"
     return f"{words}: decides between {between} with a probability of {most} %"

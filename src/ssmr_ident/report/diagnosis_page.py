@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from ssmr_ident.core.atomic import make_folder, write_text
+from ssmr_ident.diagnose.deciding import NONE_LIKELY
 from ssmr_ident.diagnose.diagnosis import MISSING, NOTHING, UNDETERMINED, UNIT, Diagnosis, NamedEffect
 from ssmr_ident.report.diagnosis_charts import after_name, overlay_charts
 from ssmr_ident.report.diagnosis_sections import quantity, sections, turning
@@ -179,7 +180,8 @@ def _sure(diagnosis: Diagnosis) -> Fact:
 def _next(diagnosis: Diagnosis) -> Fact:
     """The advice of the diagnosis; where it has none, whether anything is left to look for."""
     if diagnosis.next_experiment:
-        return Fact("Record next", "One more recording", diagnosis.next_experiment)
+        hopeless = diagnosis.next_experiment.startswith(NONE_LIKELY)
+        return Fact("Record next", "Nothing decides" if hopeless else "One recording", diagnosis.next_experiment)
     quality = diagnosis.training if math.isnan(diagnosis.heldout.before) else diagnosis.heldout
     if diagnosis.verdict == UNDETERMINED:
         return Fact("Record next", "See below", "what limits this answer stands at the end of the page")

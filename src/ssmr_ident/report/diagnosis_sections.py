@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -24,6 +25,9 @@ from ssmr_ident.report.network_figure import network_figure
 from ssmr_ident.report.numbers import NONE, alike, interval, measured, number, share
 from ssmr_ident.report.numbers import unit as printed
 from ssmr_ident.report.robot_figure import NAMES, parts_of, robot_figure
+
+_BY_ITS_SYMBOL = re.compile(r"^\w+: ")
+"""Which stands before the meaning in the catalogue, and on the page beside it."""
 
 SHOWN_TRIED = 15
 """As many explanations as a reader looks at."""
@@ -89,7 +93,11 @@ def _effects(diagnosis: Diagnosis) -> Section:
     several = len(diagnosis.effects) > 1
     for effect in diagnosis.effects:
         known = CATALOGUE.get(effect.id)
-        meanings = {named: p.meaning for p in known.parameters for named in both_names(p.name, p.unit)} if known else {}
+        meanings = (
+            {named: _BY_ITS_SYMBOL.sub("", p.meaning) for p in known.parameters for named in both_names(p.name, p.unit)}
+            if known
+            else {}
+        )
         turns = turning(diagnosis) and effect.kind != "sensor_chain"
         for name, estimate in effect.acting.items():
             first: tuple[Cell, ...] = (readable(effect.id),) if several else ()

@@ -46,7 +46,9 @@ EFFECT = Effect(
         Parameter("F_c_N", "N", 1.0, 0.0, 1e6, "friction of one tire and axis, or of the rig", off=0.0),
         Parameter("element_stiffness_N_m", "N/m", 3e5, 1e-3, 1e13, "elastic travel before it slides"),
         Parameter("slider", "1", 0.0, 0.0, 1.0, "1: a spring in series with a slider, 0: Dahl's law"),
-        Parameter("rounding_m_s", "m/s", 0.0, 0.0, 10.0, "v_r: not 0: no elastic travel, F = F_c tanh(v/v_r)"),
+        Parameter(
+            "rounding_m_s", "m/s", 0.0, 0.0, 10.0, "v_r: speed by which it has its full size; 0 with an elastic travel"
+        ),
     ),
     experiments=("free_response", "forced"),
     acts={Site.ELEMENT: force, Site.STATE: advance},

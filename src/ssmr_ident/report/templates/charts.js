@@ -48,7 +48,12 @@
       places.forEach((place, c) => { place.textContent = k === null ? "" : shown(courses[c][k]); });
     };
 
+    const room_of = (low, high) => { // for the digits of a tick at the finest step of about ten
+      const step = (high - low) / 10, places = Math.max(0, -Math.floor(Math.log10(step)) + 1);
+      return Math.max(50, 14 + 6.5 * (String(Math.trunc(Math.max(Math.abs(low), Math.abs(high)))).length + places + 1));
+    };
     const axis = (side, label, size) => ({
+      space: side === 2 ? (u, index, low, high) => room_of(low, high) : 30,
       stroke: () => colour("ink"), grid: { stroke: () => colour("line"), width: 1 }, ticks: { stroke: () => colour("line") },
       label, labelSize: 16, labelFont: "12px system-ui, sans-serif", font: "11px system-ui, sans-serif", size, labelGap: 0, gap: 3,
       values: (_, splits) => splits.map((v) => (v === null ? "" : String(Number(v.toPrecision(10))).replace("-", "−"))), side,
