@@ -201,8 +201,8 @@ def _located(base: Fitted, noise: Sequence[float]) -> tuple[Located, ...]:
 def _next(best: Fitted, effects: Sequence[NamedEffect]) -> str:
     if any(e.indistinguishable_from for e in effects):
         return (
-            "Pull the same way twice, and once back: friction of the surface comes again at the same place, a drift of "
-            "the load cell goes on with time; stand still for a while before and after"
+            "Pull it back over the same way at the same speed, and stand still as long before and after: friction of "
+            "the surface comes again at the same place, a drift of the load cell goes on with time"
         )
     return ""
 

@@ -26,7 +26,7 @@ from ssmr_ident.report.numbers import NONE, alike, interval, measured, number, s
 from ssmr_ident.report.numbers import unit as printed
 from ssmr_ident.report.robot_figure import NAMES, parts_of, robot_figure
 
-_BY_ITS_SYMBOL = re.compile(r"^\w+: ")
+_BY_ITS_SYMBOL = re.compile(r"^[A-Za-z]\w*: ")
 """Which stands before the meaning in the catalogue, and on the page beside it."""
 
 SHOWN_TRIED = 15

@@ -22,13 +22,15 @@ def next_run(outcome: Outcome, named: tuple[str, ...]) -> str:
     if len(named) == 1 or len(rivals) < 2:
         if named or outcome.calibrated:
             return ""
-        return "Record the same speeds once more without the puzzling condition, as role: calibration"
+        return "Record one of the speeds without the puzzling condition, as role: calibration"
     robot = robot_from_parameters(outcome.bench.parameters)
     model = next((c for c in outcome.targets if c.settling > 0.0), None)
     if model is None:
-        return "Record steady turns of 20 s at three or more speeds, and the same without the puzzling condition"
-    best, where = 0.0, SPEEDS_DEG_S[0]
-    for speed in SPEEDS_DEG_S:
+        return "Record a steady turn of 20 s without the puzzling condition, as role: calibration"
+    best, where = 0.0, 0.0
+    shown = np.rad2deg([abs(c.turning) for c in outcome.targets])
+    speeds = [s for s in SPEEDS_DEG_S if shown.min() <= s <= shown.max()] or [float(shown.max())]
+    for speed in speeds:
         turning = float(np.deg2rad(speed))
         c = replace(model, rates=np.atleast_2d(wheel_rates(robot, 0.0, turning)), turning=turning)
         logs = [_logs(outcome, c, one.anchor.values, one.effects) for one in rivals[:2]]
@@ -41,7 +43,7 @@ def next_run(outcome: Outcome, named: tuple[str, ...]) -> str:
         return ""
     return (
         f"Swivel for 20 s at {where:g} deg/s: {rivals[0].id} and {rivals[1].id} differ there by {best:.1f} dB "
-        "in the simulated spectra, more than at any other speed up to 80 deg/s"
+        "in the simulated spectra, more than at any other speed between those recorded"
     )
 
 
