@@ -102,7 +102,7 @@ def _explanations(rows: Sequence[Row], decision: Decision, undetermined: bool) -
     """Rows that are left, the chosen one first: its ties by their best fits; without a name, the likeliest few."""
     fitted = [row for row in rows if row.fit is not None and math.isfinite(row.log_evidence)]
     if undetermined:
-        own = list({row.ids: row for row in reversed(fitted) if not row.generic}.values())
+        own = list({row.ids: row for row in reversed(fitted) if not row.generic and len(row.ids) < 2}.values())
         return sorted(own, key=lambda row: -row.log_evidence)[:LEFT]
     if decision.chosen is None or not decision.ties:
         return []
