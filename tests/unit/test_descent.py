@@ -70,6 +70,19 @@ def test_a_step_of_nuisances_alone_corrects_their_slopes_alone() -> None:
     assert new.own @ (after.nuisances[0] - before.nuisances[0]) == pytest.approx(done, abs=1e-9 * np.abs(done).max())
 
 
+def test_differences_of_what_the_recordings_know_far_better_than_its_scale_are_small() -> None:
+    """A step of a hundredth of the scale turns the swing by half a radian; the next slopes know that."""
+    wide = replace(MODEL, physics=tuple(replace(u, prior_std=30.0) for u in MODEL.physics))
+    begun = _curved(np.zeros(2), 0.0)
+    first = differentiate(evaluate(begun.trials, wide, np.zeros(2), begun.nuisances))
+    second = differentiate(replace(first, exact=False))
+    times = np.arange(COUNT) / RATE
+    turned = -0.1 * 30.0 * 20.0 * times * np.exp(-2.0 * times) * np.sin(20.0 * times) / 0.1
+    off = [np.linalg.norm(fit.slopes[0].shared[:, 0] - turned) / np.linalg.norm(turned) for fit in (first, second)]
+    assert off[0] > 0.1
+    assert off[1] < 0.02
+
+
 def test_a_point_is_split_once_and_every_point_by_itself() -> None:
     here = MODEL.split(np.array([0.3, -0.2]))
     assert MODEL.split(np.array([0.3, -0.2])) is here

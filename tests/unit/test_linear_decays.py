@@ -11,7 +11,7 @@ from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.recording import Channel, Provenance, Recording
 from ssmr_ident.diagnose.setup import unknowns_of
 from ssmr_ident.doctor.decays.linear import fit_linear, system
-from ssmr_ident.doctor.decays.recordings import Decay, decay_of, segmented, thinned
+from ssmr_ident.doctor.decays.recordings import Decay, decay_of, thinned
 from ssmr_ident.doctor.decays.run import WEIGHED, alone, diagnose, diagnose_certain
 from ssmr_ident.doctor.table import Row
 from ssmr_ident.experiments import Scenario
@@ -119,16 +119,6 @@ def test_a_mast_that_no_robot_carries_is_no_fit(swaying) -> None:
 
 
 @pytest.mark.compiles
-def test_stretches_simulate_what_the_whole_does(swaying) -> None:
-    """A stretch begun at a state as long after it as a decay's release is before its first block."""
-    decay = swaying[0][0].coarse()
-    first = segmented(decay, 0.3, 0.6)[0].trial
-    values, effects = swaying[1].split(np.zeros(len(swaying[1].unknowns)))
-    nuisance = decay.trial.begin(values, effects)
-    whole = decay.trial.runs([(values, effects, nuisance)])[: len(first.times)]
-    np.testing.assert_allclose(first.runs([(values, effects, nuisance)]), whole, rtol=1e-9, atol=1e-12)
-
-
 def test_what_is_no_free_response_of_a_robot_is_refused() -> None:
     campaign = released({}, seconds=0.5)
     pulled = Measurement(Entry("pull.csv", "pull"), campaign.measurements[0].recording)

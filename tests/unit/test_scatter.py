@@ -38,8 +38,6 @@ def test_a_rig_that_is_let_go_tells_no_mass(effects: dict[str, dict[str, float]]
     spread = np.sqrt(np.diag(covariance(fit)))
     # of the scaled coordinates: 1 is what the file leaves open; stiffness and damping share a little of what it says
     assert 0.95 < spread[0] < 1.001
-    if effects:
-        assert by_curvature(fit)[0] < 0.8 * spread[0]  # what one-sided steps had made of it
 
 
 def test_fine_differences_are_the_exact_slopes_of_a_decay() -> None:

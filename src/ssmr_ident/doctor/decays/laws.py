@@ -1,66 +1,92 @@
-"""Laws by the simulator: begun on stretches that each have a start of their own, led on to whole recordings."""
+"""Laws by the simulator: all that a model leaves of the recordings counts as noise at first, then ever less.
+
+As the variance of what counts as noise falls, a law takes its part before the robot can leave what is known of it to
+follow what no robot does (continuation in the noise's variance: Rose 1998, deterministic annealing).
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import replace
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ssmr_ident.doctor.decays.found import Found
+from ssmr_ident.doctor.decays.found import Found, cost_of
 from ssmr_ident.doctor.decays.linear import LinearFit, fit_linear
 from ssmr_ident.doctor.decays.members import Member
-from ssmr_ident.doctor.decays.recordings import Decay, segmented
+from ssmr_ident.doctor.decays.recordings import Decay, thinned
 from ssmr_ident.identify.fitting.coordinates import Model
-from ssmr_ident.identify.fitting.descent import descend
+from ssmr_ident.identify.fitting.descent import ahead, descend
 from ssmr_ident.identify.fitting.joint import JointFit, evaluate
 from ssmr_ident.identify.trials.decay import SCALES, STATES
 from ssmr_ident.physics.extended import BODY
 
 Array = np.ndarray
+Tried = tuple[Member, JointFit]
 
-STRETCH_S, FIRST_S, STRETCHES_S = 0.35, 0.7, 1.4
-"""Length of the stretches that laws are fitted to, and of the first part that they are cut from: at their first steps,
-and later."""
+BEGINS_S = 0.35, 1.4
+"""Length of the first part of a recording by which its state at the release is found; and of a longer one."""
 
-BEGUN, LED, FURTHER, LAST = 2, 2, 4, 3
-"""Steps of every start, of what goes on (by what is louder than noise, and by all), of what is begun
-near an optimum, and on whole recordings."""
+SCREENED_S = 0.7, 1.4
+"""Length of the first part that laws are fitted to under the first variance of what counts as noise, and later."""
+
+STEPS, FURTHER, LAST = 2, 4, 3
+"""Steps under each variance of what counts as noise, of what is begun near an optimum, and of states alone."""
+
+SECANTS = 1
+"""Steps with corrected slopes after each of the first ones: more of them cost a third more and lead no farther."""
+
+TO_THE_END, ROUNDS = 10, 4
+"""Steps of the best law, and how often an undamped one leads it on, at the most."""
 
 STATES_FIRST = 8
 """Steps of the states at the release alone, where closed form and simulator have other ones."""
 
 TRUSTED = 0.1
-"""Share of what the model without a law leaves, in squares, that counts as noise after the law's first steps,
-where all of that does. In sizes of noise alone a robot leaves what is known of it before a law has taken its part."""
+"""Factor from one variance of what counts as noise to the next."""
 
 FAR = 3.0
-"""Standard deviations of what is known that a baseline may have moved before laws are begun from what is known."""
+"""Standard deviations of what is known that a baseline may have moved before laws are begun from what is known, too."""
 
 
-def loudest(decays: Sequence[Decay]) -> list[Decay]:
-    """The loudest decay of each kind of motion."""
-    kinds: dict[str, Decay] = {}
-    for d in sorted(decays, key=lambda d: float(np.ptp(d.trial.target))):
-        kinds[d.trial.kind] = d
-    return list(kinds.values())
+@dataclass(frozen=True, eq=False)
+class Start:
+    """Where laws begin beside a model.
+
+    Parameters
+    ----------
+    point : (p,) float
+    nuisances : tuple of (k,) float
+    """
+
+    point: Array
+    nuisances: tuple[Array, ...]
 
 
-def stretches_of(decays: Sequence[Decay], seconds: float) -> list[Decay]:
-    """Stretches of the first part of the loudest decays."""
-    return [s for d in loudest(decays) for s in segmented(d, STRETCH_S, seconds)]
+def loudest(decays: Sequence[Decay]) -> list[int]:
+    """Which is the loudest decay of each kind of motion."""
+    kinds: dict[str, int] = {}
+    for index in sorted(range(len(decays)), key=lambda i: float(np.ptp(decays[i].trial.target))):
+        kinds[decays[index].trial.kind] = index
+    return sorted(kinds.values())
 
 
-def begun_at(begins: Sequence[Decay], first: Found, way: Member, left: float) -> JointFit | None:
-    """A law at the begin of recordings, from where the baseline is, or where that has moved far from what is known;
-    ``left`` is the mean square that this leaves, in that of white noise."""
-    own = first.model.as_known(first.point) if left_known(first) else first.point
-    states = linear_states(begins, first.model, own)
-    if states is None:
-        return None
-    fit = evaluate([s.trial for s in begins], way.model, np.concatenate([own, way.own]), states)
-    fit = descend(fit, BEGUN, plain=True, temper=max(left, 1.0)) if np.isfinite(fit.rss) else fit
-    return fit if np.isfinite(fit.rss) else None
+def starts(decays: Sequence[Decay], which: Sequence[int], first: Found, follows: bool) -> list[Start]:
+    """From a fit, and from what is known of the robot where that fit does not follow the recordings or has left it."""
+    assert first.fit is not None
+    fit = first.fit
+    found = [Start(fit.point, tuple(fit.nuisances[index] for index in which))]
+    if not follows or left_known(fit):
+        known = released([decays[index] for index in which], fit.model, fit.model.as_known(fit.point))
+        found += [Start(known.point, known.nuisances)] if np.isfinite(known.rss) else []
+    return found
+
+
+def variances(fit: JointFit) -> list[float]:
+    """What counts as noise, in variances of the noise: all that a fit leaves, a tenth of it and so on, at last 1."""
+    left = max(fit.rss / fit.size, 1.0)
+    return [max(left * TRUSTED**k, 1.0) for k in range(math.ceil(math.log(left) / -math.log(TRUSTED)) + 1)]
 
 
 def left_known(fit: Found | JointFit) -> bool:
@@ -68,17 +94,64 @@ def left_known(fit: Found | JointFit) -> bool:
     return bool(np.abs(fit.point[: len(fit.model.physics)]).max() > FAR)
 
 
-def led_on(stretches: Sequence[Decay], fit: JointFit, left: float) -> JointFit:
-    """A law on more stretches, by what is louder than a share of what is ``left`` without it."""
-    states = linear_states(stretches, fit.model, fit.point) or [np.zeros(len(STATES)) for _ in stretches]
-    begun = evaluate([s.trial for s in stretches], fit.model, fit.point, states)
-    led = descend(begun, 1, shared=False, plain=True)
-    return descend(led, LED, plain=True, temper=max(TRUSTED * left, 1.0))
+def begun_at(start: Start, decays: Sequence[Decay], way: Member) -> JointFit:
+    """A law beside a model, before its first step, on the first part of recordings."""
+    trials = [d.trial.until(SCREENED_S[0]) for d in decays]
+    return evaluate(trials, way.model, np.concatenate([start.point, way.own]), start.nuisances)
 
 
-def joined_up(fit: JointFit) -> JointFit:
-    """A law that was led on by what is louder than noise, by all of it."""
-    return descend(fit, LED, plain=True)
+def _led(fit: JointFit, variance: float) -> JointFit:
+    return descend(fit, STEPS, plain=True, temper=variance, secants=SECANTS)
+
+
+def cooled(
+    tried: Sequence[Tried], decays: Sequence[Decay], fewer: Callable[[Sequence[Tried], int], list[Tried]]
+) -> list[Tried]:
+    """Laws led from all that each leaves as noise to the noise alone; on the way ``fewer`` and fewer go on."""
+    trials = [d.trial.until(SCREENED_S[1]) for d in decays]
+    running = [(member, fit, variances(fit)) for member, fit in tried if np.isfinite(fit.rss)]
+    for rung in range(max((len(v) for _, _, v in running), default=0)):
+        if rung == 1:
+            running = [(m, evaluate(trials, f.model, f.point, f.nuisances), v) for m, f, v in running]
+        led = [(m, _led(f, v[min(rung, len(v) - 1)]), v) for m, f, v in running]
+        kept = fewer([(m, f) for m, f, _ in led if np.isfinite(f.rss)], rung)
+        running = [one for one in led if any(one[1] is fit for _, fit in kept)]
+    return [(m, f) for m, f, _ in running]
+
+
+def on_whole(decays: Sequence[Decay], fit: JointFit, near: Sequence[Array]) -> JointFit:
+    """A law that was fitted to some recordings, on all of them: from states of their own, or from those ``near``."""
+    trials = [d.trial for d in decays]
+    by_near = descend(evaluate(trials, fit.model, fit.point, near), LAST, shared=False, plain=True)
+    begun = min((by_near, released(decays, fit.model, fit.point)), key=cost_of)
+    if not np.isfinite(begun.rss):
+        return begun
+    for variance in variances(begun):
+        begun = _led(begun, variance)
+    return begun
+
+
+def to_the_end(fit: JointFit) -> JointFit:
+    """A fit's optimum, along a valley's floor too: damped steps, and undamped ones as long as those lead on."""
+    for _ in range(ROUNDS):
+        found = descend(fit, TO_THE_END, plain=True)
+        onward = descend(ahead(found), FURTHER, plain=True)
+        better = min((found, onward), key=cost_of)
+        if not cost_of(better) < cost_of(fit) - 1.0:
+            return better
+        fit = better
+    return fit
+
+
+def released(decays: Sequence[Decay], model: Model, point: Array) -> JointFit:
+    """A model at a point, its states at the release found over longer and longer beginnings."""
+    trials = [d.trial for d in decays]
+    states = linear_states([thinned(d, BEGINS_S[0], 1) for d in decays], model, point)
+    states = states or [np.zeros(len(STATES)) for _ in trials]
+    for seconds in BEGINS_S:
+        short = evaluate([t.until(seconds) for t in trials], model, point, states)
+        states = list(descend(short, LAST, shared=False, plain=True).nuisances)
+    return evaluate(trials, model, point, states)
 
 
 def linear_states(decays: Sequence[Decay], model: Model, point: Array) -> list[Array] | None:
@@ -107,21 +180,3 @@ def exact(decays: Sequence[Decay], fit: LinearFit, steps: int) -> JointFit:
     if "viscoelastic_relaxation" in fit.model.held:
         begun = descend(begun, STATES_FIRST, shared=False, plain=True)
     return descend(begun, steps, plain=True)
-
-
-def on_whole(decays: Sequence[Decay], fit: JointFit, near: JointFit | None = None) -> JointFit:
-    """A law that was fitted to stretches, on whole recordings.
-
-    Their states are found over longer and longer beginnings, or are those of a fit without the law that is ``near``.
-    """
-    trials = [d.trial for d in decays]
-    if near is not None:
-        point = np.concatenate([near.point, fit.point[len(near.point) :]])
-        begun = evaluate(trials, fit.model, point, near.nuisances)
-        return descend(descend(begun, 1, shared=False, plain=True), LAST, plain=True)
-    states = linear_states([segmented(d, STRETCH_S, STRETCH_S)[0] for d in decays], fit.model, fit.point)
-    states = states or [np.zeros(len(STATES)) for _ in trials]
-    for seconds in (STRETCH_S, STRETCHES_S):
-        short = evaluate([t.until(seconds) for t in trials], fit.model, fit.point, states)
-        states = list(descend(short, LAST, shared=False, plain=True).nuisances)
-    return descend(evaluate(trials, fit.model, fit.point, states), LAST, plain=True)

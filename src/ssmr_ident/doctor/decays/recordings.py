@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,10 +10,8 @@ from ssmr_ident.identify.body.builder import RobotBuilder
 from ssmr_ident.identify.body.free_decays import blocks_of
 from ssmr_ident.identify.body.response import sensor_gains
 from ssmr_ident.identify.trials import Trial
-from ssmr_ident.identify.trials.decay import AXES, ROUGH_STEP, SCALES, STATES
-from ssmr_ident.identify.trials.trial import Asked
+from ssmr_ident.identify.trials.decay import AXES, STATES
 from ssmr_ident.simulate.body import AWAY, MOVING
-from ssmr_ident.simulate.many import Release, simulate_many
 
 Array = np.ndarray
 
@@ -114,49 +111,3 @@ def thinned(decay: Decay, seconds: float, every: int) -> Decay:
     trial = replace(trial, times=trial.times[kept], target=trial.target[kept], basis=trial.basis[kept], drift=drift,
                     counts=counts, shorten=None)  # fmt: skip
     return replace(decay, trial=trial, step=decay.step * every)
-
-
-def segmented(decay: Decay, seconds: float, longest: float) -> list[Decay]:
-    """Stretches of a decay that begin each with a state of its own: over a few periods no oscillation is taken for its
-    neighbour.
-
-    Parameters
-    ----------
-    decay : Decay
-    seconds : float
-        Of a stretch.
-    longest : float [s]
-        What comes later is left out.
-    """
-    trial, width = decay.trial, max(16, round(seconds / decay.step))
-    count = max(1, min(len(trial.times), round(longest / decay.step)) // width)
-    skip = round((decay.first - (decay.block - 1) / 2 * decay.log_step) / decay.log_step)
-    found = []
-    for index in range(count):
-        kept = slice(index * width, (index + 1) * width)
-        own = replace(
-            trial, name=f"{trial.name}#{index}", times=trial.times[kept], target=trial.target[kept],
-            basis=trial.basis[kept], drift=None if trial.drift is None else trial.drift[kept],
-            counts=None if trial.counts is None else trial.counts[kept], shorten=None,
-            many=_released(decay, skip, width),
-        )  # fmt: skip
-        found.append(replace(decay, trial=own))
-    return found
-
-
-def _released(decay: Decay, skip: int, width: int) -> Callable[[Sequence[Asked]], Array]:
-    """A stretch simulated from a state as long before its first block as a decay's release is."""
-    length, names = skip + width * decay.block, [AXES[axis] for axis in decay.axes]
-
-    def many(asked: Sequence[Asked]) -> Array:
-        releases, gains = [], []
-        for values, effects, nuisance in asked:
-            robot, gain = decay.builder.read(values)
-            state = nuisance * SCALES
-            releases.append(Release(robot, effects, state[OFFSETS], state[VELOCITIES]))
-            gains.append(gain[list(decay.axes)])
-        found = simulate_many(releases, length * decay.log_step, 1.0 / decay.log_step, ROUGH_STEP, names)
-        blocks = found[:, skip:length].reshape(len(asked), width, decay.block, -1).mean(axis=2)
-        return blocks * np.array(gains)[:, None, :]
-
-    return many

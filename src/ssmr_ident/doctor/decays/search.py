@@ -13,19 +13,17 @@ from ssmr_ident.diagnose.formulas import other_formulas
 from ssmr_ident.diagnose.scan import promising, scan
 from ssmr_ident.doctor.decays.found import Found, Search, cost_of
 from ssmr_ident.doctor.decays.laws import (
-    BEGUN,
-    FIRST_S,
     FURTHER,
     LAST,
-    STRETCHES_S,
     TRUSTED,
+    Tried,
     begun_at,
+    cooled,
     exact,
-    joined_up,
-    led_on,
-    left_known,
+    loudest,
     on_whole,
-    stretches_of,
+    starts,
+    to_the_end,
 )
 from ssmr_ident.doctor.decays.linear import LinearFit, fit_linear
 from ssmr_ident.doctor.decays.members import GEOMETRY, KINDS, Member, any_static, members
@@ -45,9 +43,6 @@ THIN_S, EVERY = 1.5, 2
 TRIED, CLOSER, FULL = 3, 6, 12
 """Steps of every start of a linear member, of the chosen ones, and of the best on whole recordings."""
 
-TO_THE_END = 10
-"""Steps of the best law, at the most."""
-
 CHOSEN, LAST_ONES = 3, 2
 """Starts of a linear member that go on, and of these to whole recordings."""
 
@@ -55,10 +50,10 @@ OFFERED = 2
 """Models, the best ones, that are offered to those below them."""
 
 FIELD, LAWS = 5, 3
-"""Effects with laws that go on after their first steps, and of these to whole recordings; in two formulas at most."""
+"""Effects with laws that go on after their first steps, and later, to all recordings too; in two formulas at most."""
 
-HOPELESS, FAR_OFF = 30.0, 3.0
-"""Factors on the least cost, on stretches, beyond which a law does not go on."""
+FAR_OFF = 3.0
+"""Factor on the least cost beyond which a law does not go on to all recordings."""
 
 SECOND_OVER = 1.25
 """RMS of whitened residuals of the best from which a second effect is looked for."""
@@ -234,29 +229,21 @@ def _linear_beside(search: Search, first: Found, say: Progress) -> Found:
 def _laws_beside(search: Search, first: Found, say: Progress) -> None:
     """Laws beside a fit."""
     assert first.fit is not None
-    follows = search.over(first) < NEAR
-    near = first.fit if follows or (first.members and not left_known(first.fit)) else None
     laws = _promising(search, first, [m for m in _members_beside(search, first) if not m.linear])
     laws += [any_static(first.fit)] if laws and not first.members else []
-    begins, stretches = (stretches_of(search.decays, seconds) for seconds in (FIRST_S, STRETCHES_S))
-    left = search.over(first) ** 2
-    tried: list[tuple[Member, JointFit]] = []
-    for index, way in enumerate(laws):
-        say("laws at the begin", index, len(laws))
-        fit = begun_at(begins, first, way, left)
-        tried += [(way, fit)] if fit is not None else []
-    least = min([_cost_on(begins, search.best), *(cost_of(f) for _, f in tried)])
-    ahead = []
-    for index, (member, fit) in enumerate(field := _field(tried, FIELD, HOPELESS * least)):
-        say("laws on stretches", index, len(field))
-        ahead += [(member, led_on(stretches, fit, left))]
-    least = min(cost_of(f) for _, f in ahead) if ahead else math.inf
-    ahead = [(member, joined_up(fit)) for member, fit in _field(ahead, LAWS, FAR_OFF * least)]
-    ahead += [pair for member, fit in ahead if member.generic for pair in _parts(member, fit, laws)]
-    least = min([_cost_on(stretches, search.best), *(cost_of(f) for _, f in ahead)])
-    for index, (member, fit) in enumerate(going := _field(ahead, LAWS, FAR_OFF * least)):
+    which = loudest(search.decays)
+    loud, ended = [search.decays[index] for index in which], list[Tried]()
+    for start in starts(search.decays, which, first, search.over(first) < NEAR):
+        tried = []
+        for index, way in enumerate(laws):
+            say("laws at the begin", index, len(laws))
+            tried.append((way, begun_at(start, loud, way)))
+        ended += cooled(tried, loud, _fewer)
+    ended += [pair for member, fit in ended if member.generic for pair in _parts(member, fit, laws)]
+    least = min((cost_of(f) for _, f in ended), default=math.inf)
+    for index, (member, fit) in enumerate(going := _field(ended, LAWS, FAR_OFF * least)):
         say("laws on whole recordings", index, len(going))
-        search.add(Found((*first.members, member), None, on_whole(search.decays, fit, near)))
+        search.add(Found((*first.members, member), None, on_whole(search.decays, fit, first.fit.nuisances)))
 
 
 def _promising(search: Search, first: Found, laws: list[Member]) -> list[Member]:
@@ -297,25 +284,23 @@ def _linear(search: Search, first: Found, ways: Sequence[Member]) -> Found | Non
     return Found((*first.members, way), fit, None)
 
 
-def _field(tried: Sequence[tuple[Member, JointFit]], effects: int, most: float) -> list[tuple[Member, JointFit]]:
-    """Of every effect the two best formulas, each once, up to a cost; of all the first effects, and what takes any
+def _fewer(tried: Sequence[Tried], rung: int) -> list[Tried]:
+    """Which laws go on after each variance of what counts as noise."""
+    least = min((cost_of(f) for _, f in tried), default=math.inf)
+    return _field(tried, LAWS, FAR_OFF * least) if rung else _field(tried, len(KINDS))
+
+
+def _field(tried: Sequence[Tried], effects: int, most: float = math.inf) -> list[Tried]:
+    """Of every effect the two best formulas or starts, up to a cost; of all the first effects, and what takes any
     shape."""
-    best: dict[tuple[str, str], tuple[Member, JointFit]] = {}
-    for member, fit in sorted(tried, key=lambda pair: cost_of(pair[1])):
-        best.setdefault((member.id, member.form), (member, fit))
-    names = list(dict.fromkeys(m.id for m, _ in best.values() if not m.generic))[:effects]
-    found: list[tuple[Member, JointFit]] = []
-    for member, fit in best.values():
-        fits = member.id in names and sum(m.id == member.id for m, _ in found) < 2 and cost_of(fit) < most
-        if member.generic or fits:
+    ranked = sorted(tried, key=lambda pair: cost_of(pair[1]))
+    names = list(dict.fromkeys(m.id for m, _ in ranked if not m.generic))[:effects]
+    found: list[Tried] = []
+    for member, fit in ranked:
+        fits = member.generic or (member.id in names and cost_of(fit) < most)
+        if fits and sum(m.id == member.id and m.generic == member.generic for m, _ in found) < 2:
             found.append((member, fit))
     return found
-
-
-def _cost_on(stretches: Sequence[Decay], found: Found) -> float:
-    """What a linear model comes to on stretches."""
-    fit = fit_linear(stretches, found.model, found.point, BEGUN) if found.linear is not None else None
-    return math.inf if fit is None else fit.cost
 
 
 def _simulated(search: Search, found: Found) -> Found:
@@ -328,19 +313,11 @@ def _simulated(search: Search, found: Found) -> Found:
 
 
 def _settled(search: Search, say: Progress, found: Found | None = None) -> None:
-    """A law to its end, the best model's if none is given, and once more from what is known of the robot where that has
-    been left."""
+    """A law to its end, the best model's if none is given."""
     best = found or search.best
-    if best.fit is None or not best.members or search.over(best) < FORMULA_OVER:
-        return
-    say("the best law to its end", 0, 1)
-    fit = descend(best.fit, TO_THE_END, plain=True)
-    if left_known(fit):
-        home = replace(fit, point=fit.model.as_known(fit.point))
-        led = led_on(stretches_of(search.decays, STRETCHES_S), home, search.over(search.baseline) ** 2)
-        other = on_whole(search.decays, joined_up(led))
-        fit = min((fit, descend(other, FURTHER, plain=True)), key=cost_of)
-    search.add(replace(best, fit=fit))
+    if best.fit is not None and best.members:
+        say("the best law to its end", 0, 1)
+        search.add(replace(best, fit=to_the_end(best.fit)))
 
 
 def _other_formulas(search: Search, say: Progress) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 
 from ssmr_ident.core.simd import WIDTH
 from ssmr_ident.identify.fitting.curvature import Curvature
-from ssmr_ident.identify.fitting.joint import JointFit, Slopes, differentiate, evaluate_all, over
+from ssmr_ident.identify.fitting.joint import JointFit, Slopes, differentiate, evaluate, evaluate_all, over
 
 Array = np.ndarray
 
@@ -84,6 +84,7 @@ def descend(
     shared: bool = True,
     plain: bool = False,
     temper: float = 1.0,
+    secants: int = SECANTS,
 ) -> JointFit:
     """Damped Gauss-Newton.
 
@@ -102,6 +103,8 @@ def descend(
     temper : float
         Variance of what counts as noise in plain squares, in that of the recordings' white noise: what is known of the
         parameters then holds until a model begins to follow what moves.
+    secants : int
+        Steps with corrected slopes after each with exact ones.
     """
     rung = 0
     for _ in range(iterations):
@@ -109,7 +112,7 @@ def descend(
         counted = fit.counted
         enough = max(settled, SLOW * float(counted.sum()))
         first = True
-        for _ in range(1 + SECANTS):
+        for _ in range(1 + secants):
             after, rung = best_step(fit, counted, rung, shared, plain, temper)
             gain = _cost(fit, counted, plain, temper) - _cost(after, counted, plain, temper)
             if gain < enough:
@@ -120,6 +123,15 @@ def descend(
         if first:
             break
     return fit
+
+
+def ahead(fit: JointFit) -> JointFit:
+    """Where an undamped step in plain squares leads, lower or not: damping keeps a fit from moving along what the
+    recordings hardly tell."""
+    fit = differentiate(fit)
+    move, own = Curvature.of(fit, np.ones(len(fit.trials))).step(0.0)
+    nuisances = [n + o for n, o in zip(fit.nuisances, own, strict=True)]
+    return evaluate(fit.trials, fit.model, fit.point + move, nuisances)
 
 
 def slides(fit: JointFit) -> bool:

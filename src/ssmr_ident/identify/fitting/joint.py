@@ -27,6 +27,11 @@ T = TypeVar("T")
 Place = tuple[Array, Sequence[Array]]
 """A point, (p,), and the nuisances of every trial."""
 
+MOVED = 0.3
+"""By how much of the noise's size, over all samples, a difference may move the simulation, as slopes that are there
+already have it: a coordinate of which the recordings know far more than its scale has bent by then. Of recordings that
+ask for coarse steps it says nothing."""
+
 NUISANCE_STEP = 1e-4
 """Of differences in a nuisance, in units of its scale."""
 
@@ -219,7 +224,11 @@ def differentiate(fit: JointFit, shared: bool = True) -> JointFit:
     names = [unknown.name for unknown in model.unknowns] if shared else []
     here = model.split(point)
     # robots are asked for by their values: one that has been split once is built once for all trials
-    moved = {coarse: _moved(model, point, here, coarse) for coarse in {trial.coarse for trial in fit.trials} if shared}
+    most = MOVED / np.maximum(np.sqrt(sum(np.sum(s.shared**2, axis=0) for s in fit.slopes)), 1e-300)
+    asked_for = {trial.coarse for trial in fit.trials} if shared else set()
+    moved = {
+        c: _moved(model, point, here, np.minimum(c * model.steps(), most if c == 1.0 else np.inf)) for c in asked_for
+    }
 
     def one(index: int) -> Slopes:
         trial, nuisance = fit.trials[index], fit.nuisances[index]
@@ -248,12 +257,12 @@ def differentiate(fit: JointFit, shared: bool = True) -> JointFit:
     return replace(fit, slopes=tuple(over(fit.trials, one)), exact=shared)
 
 
-def _moved(model: Model, point: Array, here: Split, coarse: float) -> list[tuple[float, Split]]:
+def _moved(model: Model, point: Array, here: Split, sizes: Array) -> list[tuple[float, Split]]:
     """Each coordinate's step, and what the model is after it."""
     found = []
-    for column, size in enumerate(model.steps()):
+    for column, size in enumerate(sizes):
         # towards the prior, so that a bound is not stepped over
-        step = float(coarse * (size if point[column] <= 0 else -size))
+        step = float(size if point[column] <= 0 else -size)
         found.append((step, model.with_one(here, column, float(point[column] + step))))
     return found
 

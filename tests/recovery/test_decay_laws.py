@@ -1,0 +1,24 @@
+"""Laws of a robot's decays end where they leave noise, on robots of another plant."""
+
+from __future__ import annotations
+
+import pytest
+from bank.decays import draw_decays
+
+from ssmr_ident.doctor.decays import run, search
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [910002, 910003, 910005])
+def test_hardening_is_fitted_down_to_the_noise(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """From a baseline that leaves three to eight times the noise."""
+    members = search.members
+    monkeypatch.setattr(search, "members", lambda fit: [m for m in members(fit) if m.id == "nonlinear_stiffness"])
+    drawn = draw_decays("one", seed, "nonlinear_stiffness", None, True)
+    setup, decays = run._prepared(drawn.campaign, drawn.campaign.parameters)
+    found = search._begun(decays, setup.model, lambda *_: None)
+    assert found is not None
+    assert found.over(found.baseline) > 2.9
+    search._laws_beside(found, found.baseline, lambda *_: None)
+    search._settled(found, lambda *_: None)
+    assert found.over(min(found.found, key=lambda f: f.cost)) < 1.2
