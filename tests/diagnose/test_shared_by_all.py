@@ -70,6 +70,8 @@ def test_what_may_be_beside_it_is_said_and_is_what_the_next_recording_has_to_tel
     (note,) = _open(outcome)
     assert "flexible mast, quadratic damping, sensor bandwidth, wheel lift" in note
     assert "80 units" in note
-    first, others = _apart(outcome)
+    outcome.found |= {e.id: 180.0 - k for k, e in enumerate((*OTHERS, TURNED))}
+    first, others, evidence = _apart(outcome)
     assert first is PAIR.fit
     assert others == [e.fit for e in (*OTHERS, TURNED)]
+    assert evidence == [180.4, *(180.0 - k for k in range(len(others)))]

@@ -101,15 +101,11 @@ def _full(
     return np.linalg.lstsq(stacked, right)[0], np.linalg.inv(stacked.T @ stacked)
 
 
-def test_one_step_with_nuisances_eliminated_is_the_full_least_squares_solution(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    # secants would go on to the weights of what is left
-    monkeypatch.setattr("ssmr_ident.identify.fitting.descent.SECANTS", 0)
+def test_one_step_with_nuisances_eliminated_is_the_full_least_squares_solution() -> None:
     fit, *blocks = _linear()
     expected, covariance = _full(fit, *blocks, fit.weights)
-    # one iteration: Gauss-Newton is exact for what is linear
-    found = descend(fit, 1)
+    # one iteration: Gauss-Newton is exact for what is linear; secants would go on to the weights of what is left
+    found = descend(fit, 1, secants=0)
     solution = np.concatenate([found.point, *found.nuisances])
     assert solution == pytest.approx(expected, rel=1e-6, abs=1e-8)
     curvature, _ = Curvature.of(differentiate(fit), fit.weights).normal_equations()

@@ -183,12 +183,13 @@ def hidden_by_jolts(
 def _apart(outcome: Outcome) -> tuple[JointFit, list[JointFit], list[float]]:
     """What the next recording has to tell apart, with its evidence: the answer and its rivals, or what may be beside
     it; the nearest suspects where there is no answer."""
-    ranked = sorted(outcome.tried, key=lambda e: -outcome.found[e.id])
-    left = [*(e for e in ranked if e is not outcome.baseline), outcome.baseline]
     if outcome.beside:
         left = list(outcome.beside)
     elif outcome.chosen is not outcome.baseline:
         left = [outcome.chosen, *outcome.rivals]
+    else:
+        ranked = sorted(outcome.tried, key=lambda e: -outcome.found[e.id])
+        left = [*(e for e in ranked if e is not outcome.baseline), outcome.baseline]
     return left[0].fit, [e.fit for e in left[1:]], [float(outcome.found[e.id]) for e in left]
 
 
