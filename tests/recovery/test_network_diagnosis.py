@@ -51,9 +51,10 @@ def test_a_spring_that_hardens_is_told_from_the_other(tmp_path: Path) -> None:
 
 
 def test_a_body_that_the_file_has_not(tmp_path: Path) -> None:
-    """A third mass on the second, without a sensor."""
+    """A third mass on the second, without a sensor, and weighed together with it."""
     longer = Chain((*CHAIN.masses, 0.3), (*CHAIN.stiffness, 1.2e4), (*CHAIN.damping, 1.5))
-    found = diagnose(load(session(tmp_path, longer, CHAIN, 2)))
+    weighed = replace(CHAIN, masses=(CHAIN.masses[0], CHAIN.masses[1] + 0.3))
+    found = diagnose(load(session(tmp_path, longer, weighed, 2)))
     (effect,) = found.effects
     assert (effect.id, effect.kind, effect.element) == ("flexible_mast", "extra_motion", "m2")
     hz = np.sqrt(1.2e4 / 0.3) / (2.0 * np.pi)
