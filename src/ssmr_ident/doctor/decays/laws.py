@@ -24,6 +24,7 @@ from ssmr_ident.physics.extended import BODY
 
 Array = np.ndarray
 Tried = tuple[Member, JointFit]
+Progress = Callable[[str, int, int], None]
 
 BEGINS_S = 0.35, 1.4
 """Length of the first part of a recording by which its state at the release is found; and of a longer one."""
@@ -105,7 +106,10 @@ def _led(fit: JointFit, variance: float) -> JointFit:
 
 
 def cooled(
-    tried: Sequence[Tried], decays: Sequence[Decay], fewer: Callable[[Sequence[Tried], int], list[Tried]]
+    tried: Sequence[Tried],
+    decays: Sequence[Decay],
+    fewer: Callable[[Sequence[Tried], int], list[Tried]],
+    say: Progress,
 ) -> list[Tried]:
     """Laws led from all that each leaves as noise to the noise alone; on the way ``fewer`` and fewer go on."""
     trials = [d.trial.until(SCREENED_S[1]) for d in decays]
@@ -113,7 +117,10 @@ def cooled(
     for rung in range(max((len(v) for _, _, v in running), default=0)):
         if rung == 1:
             running = [(m, evaluate(trials, f.model, f.point, f.nuisances), v) for m, f, v in running]
-        led = [(m, _led(f, v[min(rung, len(v) - 1)]), v) for m, f, v in running]
+        led = []
+        for index, (member, fit, own) in enumerate(running):
+            say("laws from loose to exact", index, len(running))
+            led.append((member, _led(fit, own[min(rung, len(own) - 1)]), own))
         kept = fewer([(m, f) for m, f, _ in led if np.isfinite(f.rss)], rung)
         running = [one for one in led if any(one[1] is fit for _, fit in kept)]
     return [(m, f) for m, f, _ in running]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -16,6 +16,7 @@ from ssmr_ident.doctor.decays.laws import (
     FURTHER,
     LAST,
     TRUSTED,
+    Progress,
     Tried,
     begun_at,
     cooled,
@@ -35,7 +36,6 @@ from ssmr_ident.identify.fitting.joint import JointFit, differentiate, evaluate
 from ssmr_ident.physics.effects import CATALOGUE
 
 Array = np.ndarray
-Progress = Callable[[str, int, int], None]
 
 THIN_S, EVERY = 1.5, 2
 """Of a decay, what starts of linear members are chosen on: its first part, every so many blocks."""
@@ -49,8 +49,9 @@ CHOSEN, LAST_ONES = 3, 2
 OFFERED = 2
 """Models, the best ones, that are offered to those below them."""
 
-FIELD, LAWS = 5, 3
-"""Effects with laws that go on after their first steps, and later, to all recordings too; in two formulas at most."""
+LAWS = 3
+"""Effects with laws that go on after the second variance of what counts as noise, and to all recordings; two fits
+each."""
 
 FAR_OFF = 3.0
 """Factor on the least cost beyond which a law does not go on to all recordings."""
@@ -234,11 +235,8 @@ def _laws_beside(search: Search, first: Found, say: Progress) -> None:
     which = loudest(search.decays)
     loud, ended = [search.decays[index] for index in which], list[Tried]()
     for start in starts(search.decays, which, first, search.over(first) < NEAR):
-        tried = []
-        for index, way in enumerate(laws):
-            say("laws at the begin", index, len(laws))
-            tried.append((way, begun_at(start, loud, way)))
-        ended += cooled(tried, loud, _fewer)
+        tried = [(way, begun_at(start, loud, way)) for way in laws]
+        ended += cooled(tried, loud, _fewer, say)
     ended += [pair for member, fit in ended if member.generic for pair in _parts(member, fit, laws)]
     least = min((cost_of(f) for _, f in ended), default=math.inf)
     for index, (member, fit) in enumerate(going := _field(ended, LAWS, FAR_OFF * least)):
