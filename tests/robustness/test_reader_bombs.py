@@ -116,8 +116,14 @@ def test_a_place_longer_than_any_is_far_away(workbook: Path, place: bytes) -> No
 
 
 def test_a_place_in_what_is_no_xml_is_not_laid_out(workbook: Path) -> None:
-    row = b'<row r="41">\0<c r="ABCDE104857629"><v>1</v></c></row></sheetData>'
+    row = b'<row r="41">&<c r="ABCDE104857629"><v>1</v></c></row></sheetData>'
     refused(repack(workbook, SHEET, lambda data: data.replace(b"</sheetData>", row)), "is damaged")
+
+
+def test_control_characters_of_an_instrument_are_read_over(workbook: Path) -> None:
+    words = b"<sheetData><!-- run\x0b1\x00 -->"
+    (recording,) = read(repack(workbook, SHEET, lambda data: data.replace(b"<sheetData>", words, 1)))
+    assert len(recording.time) == 40
 
 
 @pytest.mark.parametrize("share", [0.3, 0.5, 0.9])

@@ -36,7 +36,8 @@ STEPS, FURTHER, LAST = 2, 4, 3
 """Steps under each variance of what counts as noise, of what is begun near an optimum, and of states alone."""
 
 SECANTS = 1
-"""Steps with corrected slopes after each of the first ones: more of them cost a third more and lead no farther."""
+"""Steps with corrected slopes after each of the first ones: with three, 24 drawn robots took a third longer and named
+the same laws."""
 
 TO_THE_END, ROUNDS = 10, 4
 """Steps of the best law, and how often an undamped one leads it on, at the most."""

@@ -16,6 +16,7 @@ from ssmr_ident.readers.xlsx.sheet_corner import corner_of
 
 MAX_UNPACKED = 150 * 2**20  # bytes of XML; three axes of 20 s at 1 kHz are 4 MB
 _ROW = re.compile(rb'<row r="(\d{1,9})"')
+_CONTROLS = bytes(b if b >= 32 or b in b"\t\n\r" else 32 for b in range(256))  # no XML has others; some instruments do
 _FAR = 10_000  # rows that may be blank between two others
 _FAR_APART = 4  # times as many rows as there are before them
 MAX_CELLS = 6_000_000  # cells of a sheet from A1 to its last corner; a parser holds about 50 bytes for each
@@ -69,6 +70,7 @@ def checked(source: Source) -> io.BytesIO:
                 _require_shared_strings(source, names)
             if "/worksheets/" in member.filename or b"<sheetData" in data[:65536]:
                 data = _without_strays(source, member.filename, data)
+                data = data.translate(_CONTROLS)
                 data = data[: _checked_corner(source, member.filename, data)]
             if member.filename not in seen:
                 seen.add(member.filename)
