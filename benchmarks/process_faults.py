@@ -198,10 +198,13 @@ def limited(ground: Ground, verb: str, name: str, number: int, most: int, allowe
     return Row(f"{name}, {verb}", "; ".join([words, *broken]), wrong or bool(broken))
 
 
-def setting(ground: Ground, what: str, verb: str, **env: str) -> Row:
-    """Another environment, in which the run must work."""
+def setting(ground: Ground, what: str, verb: str, **env: str | None) -> Row:
+    """Another environment, in which the run must work; None stands for a variable that is not there."""
     place = ground.place()
-    return Row(f"{what}, {verb}", *told(ground.run([*ground.call(verb, place), "-q"], env), (0,)))
+    without = [word for key, value in env.items() if value is None for word in ("-u", key)]
+    kept = {key: value for key, value in env.items() if value is not None}
+    call = ["env", *without, *ground.call(verb, place), "-q"]
+    return Row(f"{what}, {verb}", *told(ground.run(call, kept), (0,)))
 
 
 def stream(ground: Ground, what: str, verb: str, ending: str, allowed: tuple[int, ...]) -> Row:
@@ -275,6 +278,7 @@ def faults(ground: Ground, moments: int) -> Iterator[tuple[str, Callable[[], Row
     for verb in ("fit", "simulate"):
         nowhere = str(ground.root / "nowhere" / "at" / "all")
         yield f"home {verb}", lambda v=verb: setting(ground, "no HOME that can be", v, HOME="/dev/null/home")
+        yield f"home {verb}", lambda v=verb: setting(ground, "no HOME", v, HOME=None)
         yield f"home {verb}", lambda v=verb: setting(ground, "HOME empty", v, HOME="")
         caches = dict.fromkeys(("NUMBA_CACHE_DIR", "MPLCONFIGDIR", "XDG_CACHE_HOME", "XDG_CONFIG_HOME"), "/dev/null/c")
         yield f"cache {verb}", lambda v=verb, c=caches: setting(ground, "no folder for caches", v, **c)
@@ -286,6 +290,7 @@ def faults(ground: Ground, moments: int) -> Iterator[tuple[str, Callable[[], Row
         yield f"stream {verb}", lambda v=verb: stream(ground, "all streams closed", v, "<&- >&- 2>&-", (0,))
         yield f"stream {verb}", lambda v=verb: stream(ground, "full disk behind standard output", v, ">/dev/full", (1,))
         yield f"stream {verb}", lambda v=verb: stream(ground, "read no further", v, "| head -c 1", (0, 1, 141))
+    for verb in ("fit", "simulate", "spectrum", "diagnose", "batch", "sweep"):
         yield f"two {verb}", lambda v=verb: together(ground, v)
     for what, name in NAMES.items():
         yield "name", lambda w=what, n=name: named(ground, f"folder with {w}", n, "fit")

@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 from driven_session import LOG, written
 
-from ssmr_ident.core.errors import InputError
+from ssmr_ident.core.errors import InputError, SimulationError
 from ssmr_ident.experiments.campaign import load
+from ssmr_ident.workflows.compare import compare_session
 from ssmr_ident.workflows.diagnose import diagnose
 
 pytestmark = pytest.mark.slow
@@ -30,6 +31,8 @@ LOGS = {
     "noise": _log(*WHITE),
     "large numbers": _log(*(1e12 * WHITE)),
     "small numbers": _log(*(1e-12 * WHITE)),
+    "the largest numbers": _log(*(1e98 * WHITE)),
+    "the smallest numbers": _log(*(1e-98 * WHITE)),
     "no force": _log(0.0 * TIME, WHITE[1]),
     "one number": _log(0.0 * TIME + 1.0, 0.0 * TIME + 9.81),
     "one spike": _log(SPIKE, SPIKE),
@@ -42,3 +45,10 @@ def test_no_experiment(tmp_path: Path, log: str) -> None:
     written(tmp_path, log=LOGS[log])
     with suppress(InputError):
         assert diagnose(load(tmp_path), budget=5.0).verdict in ("nothing_missing", "missing_physics", "undetermined")
+
+
+def test_a_model_that_answers_with_no_number_is_told_of(tmp_path: Path) -> None:
+    """A cubic spring that logs of a million million newtons throw out of the numbers."""
+    folder = written(tmp_path, log=LOGS["large numbers"])
+    with pytest.raises(SimulationError, match=r"what the model says of log\.csv left the finite numbers"):
+        compare_session(folder)

@@ -64,6 +64,30 @@ main()
     assert (done.returncode, done.stderr) == (130, "ident: stopped; what was being written is not there\n")
 
 
+def test_a_run_that_is_done_does_not_wait_for_the_interpreter_to_take_itself_apart() -> None:
+    code = """
+import atexit, sys
+from ssmr_ident.__main__ import main
+import ssmr_ident.cli
+
+class Kept:
+    def __del__(self):
+        print("taken apart")
+
+kept = Kept()
+
+def run():
+    atexit.register(print, "let go")
+    print("done")
+    sys.exit(3)
+
+ssmr_ident.cli.main = run
+main()
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False)
+    assert (done.returncode, done.stdout, done.stderr) == (3, "done\nlet go\n", "")
+
+
 @pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM])
 def test_a_loop_that_hears_nothing_ends_all_the_same(tmp_path: Path, how: signal.Signals) -> None:
     half = tmp_path / "half"

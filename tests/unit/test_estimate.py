@@ -155,6 +155,15 @@ def test_a_shape_of_one_variable_moves_the_rig_beside_a_law(variable: str) -> No
         assert np.abs(differences - slopes).max() < 3e-3 * np.abs(differences).max()
 
 
+@pytest.mark.parametrize("times", [2.0**-300, 2.0**300])
+def test_a_path_is_the_same_in_any_unit_of_length(times: float) -> None:
+    own = driven(2e5, 0.05, seconds=1.0)
+    p = problem(own)
+    other = replace(own, y=own.y * times, white=own.white * times)
+    path = smoothed(other, p.frequency, p.size * times)
+    assert path / times == pytest.approx(smoothed(own, p.frequency, p.size), rel=1e-12, abs=0.0)
+
+
 def test_elimination_is_dense_algebra() -> None:
     random = np.random.default_rng(5)
     count, n, m = 5, 2, 3

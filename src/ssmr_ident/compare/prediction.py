@@ -9,6 +9,7 @@ import numpy as np
 from ssmr_ident.compare import block, network, turning
 from ssmr_ident.compare.outcome import Prediction
 from ssmr_ident.compare.recorded import follow, predicted
+from ssmr_ident.core.errors import SimulationError
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.experiments.campaign import Campaign, Measurement
 from ssmr_ident.identify.fitting.coordinates import Model
@@ -38,6 +39,8 @@ def predict(campaign: Campaign, measurement: Measurement, parameters: ParameterS
     ------
     InputError
         The model and the experiment do not go together, or a parameter is missing.
+    SimulationError
+        The model's answer is no number.
     """
     experiment, baseline = measurement.experiment, campaign.session.baseline
     if not experiment.repeats and baseline in experiment.baselines:
@@ -49,6 +52,12 @@ def predict(campaign: Campaign, measurement: Measurement, parameters: ParameterS
     trial = trial_of(baseline, measurement, parameters)
     model = Model((), (), effect_values(parameters))
     fit = follow([trial], model, np.zeros(0))
+    if not np.isfinite(fit.rss):
+        effects = ", ".join(model.held) or "none"
+        raise SimulationError(
+            f"what the model says of {measurement.name} left the finite numbers, with effects {effects}. "
+            "Compare the size of what was measured with that of the parameters"
+        )
     found = predicted(trial, *model.split(fit.point), fit.nuisances[0])
     if baseline not in BANDED:
         return found

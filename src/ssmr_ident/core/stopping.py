@@ -25,6 +25,8 @@ STOPPED = "ident: stopped; what was being written is not there"
 
 
 _ASKED: list[int] = []
+_DONE: list[int] = []
+"""The status with which a run has ended by itself."""
 
 
 def asked() -> int:
@@ -36,16 +38,21 @@ def asked() -> int:
 def stoppable() -> Iterator[None]:
     """Turn SIGINT and SIGTERM into ``KeyboardInterrupt``, and into an end where nobody hears it.
 
-    Afterwards either ends the process at once, until its last threads have ended. The tenth of a second in which the
-    interpreter then takes itself apart hears none: all is done, and it would die of the signal and say nothing.
+    Afterwards either ends the process at once, until its last threads have ended and all is let go that asked to be.
+    The process ends there: the interpreter would take itself apart for the better part of a second, on a busy machine
+    for many, and hear no signal.
     """
     numbers = (signal.SIGINT, signal.SIGTERM)
-    atexit.register(_heard_by, signal.SIG_IGN, numbers)
+    atexit.register(_leave, numbers)  # the first to be registered is the last to be called
     sys.unraisablehook = _unraisable
     _heard_by(_stop, numbers)
     woken, written = _watched(numbers) if os.name == "posix" else (-1, -1)
     try:
         yield
+    except SystemExit as end:
+        if end.code is None or isinstance(end.code, int):  # words would have to be printed first
+            _DONE.append(end.code or 0)
+        raise
     finally:
         _heard_by(_end, numbers)
         if woken != -1:
@@ -73,6 +80,15 @@ def _stop(number: int, frame: FrameType | None) -> None:
 
 def _end(number: int, frame: FrameType | None) -> None:
     end_now(number)
+
+
+def _leave(numbers: tuple[int, ...]) -> None:
+    _heard_by(signal.SIG_IGN, numbers)
+    if _DONE:
+        for stream in (sys.stdout, sys.stderr):
+            with suppress(AttributeError, OSError, ValueError):  # none there, full, or closed
+                stream.flush()
+        os._exit(_DONE[-1])
 
 
 def _unraisable(told: sys.UnraisableHookArgs) -> None:

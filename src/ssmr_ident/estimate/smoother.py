@@ -19,6 +19,8 @@ Array = np.ndarray
 SWING = 3.0
 """How far a path may go, in the size that the motion has at its frequency: what keeps a doubly integrated
 acceleration from drifting away."""
+SPREAD = 2.0
+"""Of its acceleration, in the same."""
 
 
 def smoothed(piece: Piece, frequency: float, size: float) -> Array:
@@ -33,24 +35,27 @@ def smoothed(piece: Piece, frequency: float, size: float) -> Array:
         RMS deflection.
     """
     turning = 2.0 * math.pi * frequency
-    alpha, step = turning, piece.step * piece.every
-    spread = 2.0 * size * turning**2
-    a = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, -alpha]])
+    units = size * turning ** np.arange(3.0)  # the motion's own, in which no step depends on how large it is
+    angle = turning * piece.step * piece.every
+    a = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, -1.0]])
     block = np.zeros((6, 6))
-    block[:3, :3], block[:3, 3:], block[3:, 3:] = -a, np.diag([0.0, 0.0, 2.0 * alpha * spread**2]), a.T
-    e = expm(block * step)
+    block[:3, :3], block[:3, 3:], block[3:, 3:] = -a, np.diag([0.0, 0.0, 2.0 * SPREAD**2]), a.T
+    e = expm(block * angle)
     transition = np.ascontiguousarray(e[3:, 3:].T)
     noise = transition @ e[:3, 3:]
     y = piece.y.copy()
     if piece.based:
         own = piece.drive[:: piece.every][: len(y)]
         y[:, piece.orders == 2] -= own[:, None]
-    white = np.maximum(piece.white, 1e-3 * piece.y.std(axis=0))
-    variance = np.where(piece.counts, white**2, 1e6 * np.maximum(piece.y.var(axis=0), white**2))
+    y /= units[piece.orders]
+    size_of = piece.y.std(axis=0) / units[piece.orders]
+    white = np.maximum(piece.white / units[piece.orders], 1e-3 * size_of)
+    variance = np.where(piece.counts, white**2, 1e6 * np.maximum(size_of**2, white**2))
     free = 0 not in piece.orders
-    swing = (SWING * size) ** 2 * max(1.0, piece.rate / turning) if free else math.inf
-    return _smooth(y, piece.orders.astype(np.int64), variance, transition, 0.5 * (noise + noise.T),
-                   np.array([10.0 * size, 10.0 * size * turning, spread]) ** 2, swing)  # fmt: skip
+    swing = SWING**2 * max(1.0, piece.rate / turning) if free else math.inf
+    begin = np.array([10.0, 10.0, SPREAD]) ** 2
+    noise = 0.5 * (noise + noise.T)
+    return units * _smooth(y, piece.orders.astype(np.int64), variance, transition, noise, begin, swing)
 
 
 @kernel
