@@ -8,7 +8,7 @@ import numpy as np
 
 from ssmr_ident.core.parameter import Estimate
 from ssmr_ident.core.recording import Channel, Provenance, Recording
-from ssmr_ident.diagnose.sliding import KEY
+from ssmr_ident.doctor.robots.run import SLIDES
 from ssmr_ident.experiments import Scenario
 from ssmr_ident.experiments.campaign import Campaign, Measurement
 from ssmr_ident.physics.robot import robot_from_parameters
@@ -29,7 +29,7 @@ def pulled(cone: bool, plan: tuple[tuple[float, tuple[int, ...]], ...] = PULLS, 
     points = np.asarray(known["contact_points_m"].value, dtype=float) + np.array([-0.009, 0.004, 0.0])
     true = known.updated({"contact_points_m": Estimate(points, None, "m")})
     if cone:
-        true = true.updated({KEY: Estimate(0.3, None, "m/s")})
+        true = true.updated({SLIDES: Estimate(0.3, None, "m/s")})
     robot = robot_from_parameters(true)
     made = []
     for number, (speed, wheels) in enumerate(plan):

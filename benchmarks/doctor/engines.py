@@ -10,7 +10,8 @@ from ssmr_ident.experiments.campaign import Campaign
 
 ENGINES = {
     "diagnose": "ssmr_ident.workflows.diagnose:diagnose",  # what `ident diagnose` runs
-    "decays": "ssmr_ident.doctor.decays.run:diagnose",  # free responses of a robot, beside the first doctor
+    "robots": "ssmr_ident.doctor.robots.run:diagnose",  # what has been logged of a robot, by the simulator alone
+    "decays": "ssmr_ident.doctor.decays.run:diagnose",  # free responses of a robot
 }
 
 

@@ -3,6 +3,7 @@ fewer. It is the session's own and no engine's, so it is worked out once and kep
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -12,16 +13,12 @@ from scoring import Row, append
 from doctor.sources import drawn_by
 from doctor.unseen import KEPT, UNNAMED, known_evidence
 from ssmr_ident.compare.recorded import follow
-from ssmr_ident.diagnose.baseline import LAST, alike_in, best_baseline, prepared
-from ssmr_ident.diagnose.explain import with_suspect, without
-from ssmr_ident.diagnose.followed import explained
-from ssmr_ident.diagnose.polish import polish
-from ssmr_ident.diagnose.scan import Suspect
-from ssmr_ident.diagnose.sliding import with_law_of_sliding
-from ssmr_ident.diagnose.weigh import Explanation, surplus
-from ssmr_ident.identify.fitting.descent import descend
+from ssmr_ident.diagnose.arranged import arranged
+from ssmr_ident.doctor.robots.calibrated import baseline_of
+from ssmr_ident.doctor.robots.cooled import to_the_end
+from ssmr_ident.doctor.robots.found import cost_of
+from ssmr_ident.doctor.robots.run import under_laws_of_sliding
 from ssmr_ident.identify.fitting.joint import JointFit, evaluate
-from ssmr_ident.identify.trials import Trial
 
 
 def look(rows: Sequence[Row]) -> None:
@@ -35,39 +32,32 @@ def look(rows: Sequence[Row]) -> None:
 def true_evidence(drawn: BankSession) -> dict[str, float] | None:
     """Log evidence of each true effect beside the others, all at their best; None where the catalogue has no values.
 
-    The fit with the effects begins where they and the plant really are, and where the baseline ended with the effects
-    as they are beside it; the better of both counts. What is without one of them begins where that ended, the baseline
-    also where it ended by itself: an effect that has only shown the way to a better fit has shown nothing.
+    The fit with the effects begins where they and the plant really are, and where the baseline ended; what is without
+    one of them begins where that ended, and the baseline where it ended by itself: an effect that has only shown the
+    way to a better fit has shown nothing.
     """
     truth, known = drawn.truth, drawn.campaign.parameters
     if not truth.effects or not all(truth.effects.values()):
         return None
-    setup, known = with_law_of_sliding(drawn.campaign, known, None)
-    fit, lengths = setup.begun or best_baseline(setup.fitted, setup, known)
-    kept = tuple(prepared(follow(alike_in(setup.kept, fit.trials), fit.model, fit.point)))
-    baseline = explained(kept, fit)
-    begun = fit
+    laws = under_laws_of_sliding(arranged(drawn.campaign), known)
+    base = min((baseline_of(setup.fitted, setup.model) for setup, _ in laws), key=cost_of)
+    model, own = base.model, np.zeros(0)
     for effect_id, values in truth.effects.items():
-        model, point = with_suspect(begun, Suspect(effect_id, dict(values), {}, {}, 0.0))
-        begun = evaluate(fit.trials, model, point, fit.nuisances)
-    true = begun.point.copy()
-    for k, unknown in enumerate(begun.model.physics):
-        true[k] = unknown.scaled(truth.parameters[unknown.name]) if unknown.name in truth.parameters else 0.0
-    whole = _best([begun, follow(fit.trials, begun.model, true)], kept, lengths, baseline)
+        model, more = model.with_effect(effect_id, values, {name: abs(value) for name, value in values.items()})
+        own = np.concatenate([own, more])
+    true = [u.scaled(truth.parameters[u.name]) if u.name in truth.parameters else 0.0 for u in model.physics]
+    starts = [follow(base.trials, model, np.concatenate([np.array(true), own])),
+              evaluate(base.trials, model, np.concatenate([base.point, own]), base.nuisances)]  # fmt: skip
+    whole = min((to_the_end(start) for start in starts if np.isfinite(start.rss)), key=cost_of, default=None)
     if whole is None:
         return None
-    found = {}
-    for effect_id in truth.effects:
-        fewer = _best([without(whole.fit, effect_id)], kept, lengths, whole)
-        before = [e for e in (fewer, baseline if len(truth.effects) == 1 else None) if e is not None]
-        found[effect_id] = min((surplus(whole, one) for one in before), default=float("inf"))
-    return found
+    return {name: _evidence(whole, name, base) for name in truth.effects}
 
 
-def _best(
-    starts: Sequence[JointFit], kept: Sequence[Trial], lengths: tuple[float, ...], near: Explanation
-) -> Explanation | None:
-    """The best that a model comes to from some starts; None where it makes no robot."""
-    ends = [polish(descend(start, LAST), lengths) for start in starts if np.isfinite(start.rss)]
-    found = [one for one in (explained(kept, end, near.kept) for end in ends) if np.all(np.isfinite(one.kept.parts))]
-    return max(found, key=lambda one: surplus(one, near), default=None)
+def _evidence(whole: JointFit, effect: str, base: JointFit) -> float:
+    """Log evidence of one effect, by what all of them leave."""
+    model, keep = whole.model.without_effect(effect)
+    fewer = to_the_end(evaluate(whole.trials, model, whole.point[keep], whole.nuisances))
+    least = min(cost_of(fewer), cost_of(base) if not model.ids else math.inf)
+    temper = max(whole.rss / whole.size, 1.0) * whole.size / whole.independent
+    return 0.5 * (least - cost_of(whole)) / temper - 0.5 * int((~keep).sum()) * math.log(whole.size / temper)

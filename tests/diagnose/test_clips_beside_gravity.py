@@ -7,9 +7,9 @@ import pytest
 from bank import draw
 from bank.truth import BankSession
 
-from ssmr_ident.diagnose.baseline import fit_baseline
 from ssmr_ident.diagnose.setup import set_up
 from ssmr_ident.diagnose.sizes import sizes_of
+from ssmr_ident.doctor.robots.calibrated import baseline_of
 from ssmr_ident.physics.effects import CATALOGUE
 from ssmr_ident.workflows.diagnose import diagnose
 
@@ -26,7 +26,7 @@ def drawn() -> BankSession:
 def test_probes_clip_the_motion_and_leave_gravity(drawn: BankSession) -> None:
     known = drawn.campaign.parameters
     setup = set_up(drawn.campaign, known)
-    sizes = sizes_of(fit_baseline(setup.fitted, setup, known))
+    sizes = sizes_of(baseline_of(setup.fitted, setup.model))
     assert sizes["weight"] == pytest.approx(9.81, rel=0.05)
     ranges = [
         p.value(sizes)
@@ -49,6 +49,6 @@ def test_a_sensor_that_clips_beside_gravity_is_named(drawn: BankSession) -> None
 def test_pulls_have_no_gravity_to_read() -> None:
     pulled = draw("block", "none", 3)
     setup = set_up(pulled.campaign, pulled.campaign.parameters)
-    sizes = sizes_of(fit_baseline(setup.fitted, setup, pulled.campaign.parameters))
+    sizes = sizes_of(baseline_of(setup.fitted, setup.model))
     assert np.isnan(sizes["weight"])
     assert np.isnan(sizes["beyond_weight"])

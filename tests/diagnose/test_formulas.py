@@ -4,13 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-import small_rigs
-from scipy.integrate import solve_ivp
-from small_rigs import RATE, RIG, Run, campaign, fitted, prepared
+from small_rigs import Run, campaign, fitted, prepared
 
 from ssmr_ident.core.parameter import Estimate
 from ssmr_ident.diagnose.formulas import other_formulas
-from ssmr_ident.diagnose.polish import loud, turned
 from ssmr_ident.diagnose.words import law
 from ssmr_ident.identify.fitting.descent import descend
 from ssmr_ident.identify.fitting.joint import JointFit, evaluate
@@ -35,48 +32,6 @@ def test_what_both_formulas_fit_stays(dahl: JointFit) -> None:
     assert slider == pytest.approx({**own, "slider": 1.0})
     assert without["F_c_N"] == pytest.approx(own["F_c_N"])
     assert without["rounding_m_s"] > 0.0
-
-
-def test_the_formula_that_acts_is_found(dahl: JointFit) -> None:
-    assert loud(dahl)
-    found = turned(dahl, (np.inf,))
-    assert found.cost(found.counted) < dahl.cost(found.counted) - 1000.0
-    assert not loud(found)
-    effect = found.model.split(found.point)[1]["dry_friction"]
-    assert effect["F_c_N"] == pytest.approx(TRUE["F_c_N"], rel=0.03)
-    assert effect["rounding_m_s"] == pytest.approx(TRUE["rounding_m_s"], rel=0.1)
-    assert turned(found, (np.inf,)) is found
-
-
-def test_a_spring_that_softens_as_a_tanh_is_bent_twice(monkeypatch: pytest.MonkeyPatch) -> None:
-    reach = 3e-3
-
-    def let_go(_: object, force: np.ndarray, *__: object, **___: object) -> np.ndarray:
-        def slope(_: float, y: np.ndarray) -> list[float]:
-            spring = RIG.stiffness * reach * np.tanh(y[0] / reach)
-            return [y[1], -(RIG.damping * y[1] + spring) / RIG.mass]
-
-        times = np.arange(len(force)) / RATE
-        return solve_ivp(slope, (0.0, times[-1]), [releases.pop(0), 0.0], t_eval=times, rtol=1e-9, atol=1e-12).y.T
-
-    monkeypatch.setattr(small_rigs, "simulate_rig", let_go)
-    releases = [4e-3, 5e-3, 6e-3]
-    runs = [Run(release=release) for release in releases]
-    base = fitted(prepared(campaign({}, runs, seed=12, noise=5e-6), noise=5e-6))
-    model, begin = base.model.with_effect("nonlinear_stiffness", {"k3_N_m3": -1e8}, {})
-    cubic = descend(evaluate(base.trials, model, np.concatenate([base.point, begin]), base.nuisances), 12)
-    assert loud(cubic)
-    found = turned(cubic, (np.inf,))
-    assert found.model.ids == ("nonlinear_stiffness",)
-    assert {c.parameter.name for c in found.model.free} == {"k3_N_m3", "knee_share", "knee_m"}
-    assert found.rss / cubic.rss < 0.2
-    values = found.model.split(found.point)[1]["nonlinear_stiffness"]
-    at = np.linspace(0.0, 4e-3, 50)  # as far as all of them go
-    stiffness = found.model.split(found.point)[0].get("stiffness_N_m", RIG.stiffness)
-    knee = values["knee_share"] * stiffness * np.maximum(at - values["knee_m"], 0.0)
-    assert stiffness * at + values["k3_N_m3"] * at**3 + knee == pytest.approx(
-        RIG.stiffness * reach * np.tanh(at / reach), abs=0.02 * RIG.stiffness * reach
-    )
 
 
 def test_a_rig_has_one_axis_and_no_proportion() -> None:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from made_pulls import made_pulls
 
-from ssmr_ident.diagnose.baseline import alike_in, best_baseline
+from ssmr_ident.doctor.robots.calibrated import baseline_of
 from ssmr_ident.identify.fitting.joint import evaluate
 
 pytestmark = pytest.mark.slow
@@ -18,25 +18,22 @@ PULLS = (("lateral", 1.0, 6e-3), ("lateral", 0.5, 6e-3), ("longitudinal", 2.0, 3
 
 
 def test_pulls_sideways_tell_how_uneven_a_robot_is_that_is_pulled_lengthwise() -> None:
-    setup, known = made_pulls(PULLS, {}, 3, ASIDE)
-    base, _ = best_baseline(setup.fitted, setup, known)
+    setup, _ = made_pulls(PULLS, {}, 3, ASIDE)
+    base = baseline_of(setup.fitted, setup.model)
     left = {t.kind: p / t.size for t, p in zip(base.trials, base.parts, strict=True)}
     even = evaluate(setup.fitted, base.model, base.point, base.nuisances)
     without = {t.kind: p / t.size for t, p in zip(even.trials, even.parts, strict=True)}
     assert base.model.split(base.point)[0]["contact_shift_y_m"] == pytest.approx(ASIDE, abs=0.003)
     assert without["longitudinal"] > 4.0
     assert max(left.values()) < 1.5
-    assert all(trial.uneven is None for trial in alike_in(setup.kept, base.trials))
 
 
 def test_a_robot_that_is_alike_left_and_right_stays_so() -> None:
-    setup, known = made_pulls(PULLS, {}, 3)
-    base, _ = best_baseline(setup.fitted, setup, known)
+    setup, _ = made_pulls(PULLS, {}, 3)
+    base = baseline_of(setup.fitted, setup.model)
     left = base.parts / [t.size for t in base.trials]
     assert base.model.split(base.point)[0]["contact_shift_y_m"] == pytest.approx(0.0, abs=0.002)
     assert np.max(left) < 1.5
-    assert any(trial.uneven is not None for trial in base.trials)
-    assert alike_in(setup.kept, base.trials) == list(setup.kept)
 
 
 def test_of_a_lone_pull_only_the_fitted_part_counts_whichever_robot_it_is_of() -> None:

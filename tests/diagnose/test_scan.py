@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from small_rigs import Run, campaign, fitted, prepared
 
-from ssmr_ident.diagnose.scan import Suspect, both_ways, scan
+from ssmr_ident.diagnose.scan import scan
 from ssmr_ident.identify.fitting.descent import descend
 from ssmr_ident.identify.fitting.joint import JointFit, evaluate
 from ssmr_ident.physics.effects import CATALOGUE
@@ -35,11 +35,3 @@ def _gain(left: JointFit) -> float:
     model, begin = left.model.with_effect("viscoelastic_relaxation", BRANCH, {})
     fit = descend(evaluate(left.trials, model, np.concatenate([left.point, begin]), left.nuisances), 12)
     return left.cost(left.counted) - fit.cost(left.counted)
-
-
-def test_what_may_change_sign_is_tried_the_other_way_too() -> None:
-    suspect = Suspect("nonlinear_stiffness", {"k3_N_m3": -4e6}, {}, {"k3_N_m3": 1e7}, 17.0, ("k3_N_m3",))
-    _, back = both_ways(suspect)
-    assert back.at["k3_N_m3"] > 0.0
-    friction = Suspect("dry_friction", {"F_c_N": 3.0}, {}, {}, 17.0)
-    assert both_ways(friction) == [friction]

@@ -8,10 +8,10 @@ from bank import FAMILIES, draw, mixed
 from bank.decays import draw_decays
 from bank.scaled import Scale
 
-from ssmr_ident.diagnose.baseline import fit_baseline
 from ssmr_ident.diagnose.scan import candidates, probes, scan
 from ssmr_ident.diagnose.setup import set_up
 from ssmr_ident.diagnose.sizes import limits_of, sizes_of
+from ssmr_ident.doctor.robots.calibrated import baseline_of
 from ssmr_ident.identify.fitting.joint import JointFit, differentiate, evaluate
 from ssmr_ident.physics.effects import CATALOGUE
 
@@ -27,7 +27,7 @@ def bent() -> JointFit:
     drawn = mixed(SEED, tuple(FAMILIES))
     assert drawn.truth.effects["nonlinear_stiffness"]["k3_N_m3"] == pytest.approx(K3, rel=1e-3)
     setup = set_up(drawn.campaign, drawn.campaign.parameters)
-    return differentiate(fit_baseline(setup.fitted, setup, drawn.campaign.parameters))
+    return differentiate(baseline_of(setup.fitted, setup.model))
 
 
 def test_motions_are_as_large_as_the_states_they_begin_in_and_not_as_their_noise_is_quick(bent: JointFit) -> None:

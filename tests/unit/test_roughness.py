@@ -10,9 +10,11 @@ import pytest
 from bank import draw
 
 from ssmr_ident.diagnose import exported
-from ssmr_ident.diagnose.baseline import best_baseline
-from ssmr_ident.diagnose.sliding import with_law_of_sliding
-from ssmr_ident.identify.fitting.joint import Slopes, evaluate
+from ssmr_ident.diagnose.arranged import arranged
+from ssmr_ident.doctor.robots.calibrated import baseline_of
+from ssmr_ident.doctor.robots.found import cost_of
+from ssmr_ident.doctor.robots.run import under_laws_of_sliding
+from ssmr_ident.identify.fitting.joint import Slopes, differentiate, evaluate
 from ssmr_ident.identify.fitting.roughness import scatter_of
 from ssmr_ident.identify.fitting.scatter import covariance
 
@@ -64,8 +66,9 @@ def test_a_rough_cost_widens_the_scatter_by_the_depth_of_its_hollows(wave: float
 @pytest.mark.slow
 def test_estimates_from_pulls_lie_within_what_is_said_of_them() -> None:
     drawn = draw("pulls", "none", 5512)
-    setup, known = with_law_of_sliding(drawn.campaign, drawn.campaign.parameters, None)
-    fit, _ = setup.begun or best_baseline(setup.fitted, setup, known)
+    laws = under_laws_of_sliding(arranged(drawn.campaign), drawn.campaign.parameters)
+    fits = [baseline_of(setup.fitted, setup.model) for setup, _ in laws]
+    fit = differentiate(min(fits, key=cost_of))
     truth = drawn.truth.parameters
     places = np.array([(k, u.scaled(truth[u.name])) for k, u in enumerate(fit.model.physics) if u.name in truth])
     own, off = places[:, 0].astype(int), fit.point[places[:, 0].astype(int)] - places[:, 1]

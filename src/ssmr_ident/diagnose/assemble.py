@@ -11,7 +11,6 @@ import numpy as np
 from ssmr_ident.compare.outcome import Prediction
 from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.core.threads import side_by_side
-from ssmr_ident.diagnose.accept import left_over
 from ssmr_ident.diagnose.diagnosis import (
     MISSING,
     NOTHING,
@@ -24,13 +23,13 @@ from ssmr_ident.diagnose.diagnosis import (
 )
 from ssmr_ident.diagnose.discriminate import next_experiment
 from ssmr_ident.diagnose.drift import drifts
-from ssmr_ident.diagnose.engine import Outcome
 from ssmr_ident.diagnose.evidence import Evidence
 from ssmr_ident.diagnose.exported import exported
 from ssmr_ident.diagnose.followed import on_all
+from ssmr_ident.diagnose.in_part import in_part, left_over
 from ssmr_ident.diagnose.locate import located
+from ssmr_ident.diagnose.outcome import Outcome
 from ssmr_ident.diagnose.residual_map import residual_maps
-from ssmr_ident.diagnose.rivals import MOST_RIVALS, in_part
 from ssmr_ident.diagnose.surface import surfaces
 from ssmr_ident.diagnose.weigh import Explanation, shares
 from ssmr_ident.diagnose.within import REACH, measure_of
@@ -101,7 +100,7 @@ def assembled(outcome: Outcome, parameters: ParameterSet, seed: int) -> Diagnosi
     alone = ""
     settled = without_jolts(base.fit, before_fit), without_jolts(base.kept, before_kept)
     if named:
-        verdict = MISSING if len(outcome.rivals) <= MOST_RIVALS else UNDETERMINED
+        verdict = MISSING
         ended = without_jolts(best.fit, after_fit), without_jolts(best.kept, after_kept)
         jolts = hidden_by_jolts((training, heldout), settled, ended)
     else:
@@ -120,11 +119,10 @@ def assembled(outcome: Outcome, parameters: ParameterSet, seed: int) -> Diagnosi
         if verdict == NOTHING and left > UNEXPLAINED:
             doubts = (COLOURED.format(left, most),)
     tried = _tried(outcome)
-    scanned = len(outcome.searches[0].suspects) if outcome.searches else 0
     if verdict == MISSING:
         summary = missing(effects, heldout, METRIC, conflicts)
     elif verdict == NOTHING:
-        summary = nothing(heldout, METRIC, scanned)
+        summary = nothing(heldout, METRIC, outcome.looked_at)
     else:
         names = [e.id for e in (best, *outcome.rivals)] if named else [t.id for t in tried if t.id != "baseline"]
         summary = undetermined(heldout, METRIC, names, alone)
@@ -164,7 +162,6 @@ def assembled(outcome: Outcome, parameters: ParameterSet, seed: int) -> Diagnosi
             *doubts,
             *_elsewhere(free, base, conflicts),
             *_notes(best, free, heldout),
-            *_open(outcome),
         ),
         evidence=evidence,
     )
@@ -181,11 +178,9 @@ def hidden_by_jolts(
 
 
 def _apart(outcome: Outcome) -> tuple[JointFit, list[JointFit], list[float]]:
-    """What the next recording has to tell apart, with its evidence: the answer and its rivals, or what may be beside
-    it; the nearest suspects where there is no answer."""
-    if outcome.beside:
-        left = list(outcome.beside)
-    elif outcome.chosen is not outcome.baseline:
+    """What the next recording has to tell apart, with its evidence: the answer and its rivals; the nearest where
+    there is no answer."""
+    if outcome.chosen is not outcome.baseline:
         left = [outcome.chosen, *outcome.rivals]
     else:
         ranked = sorted(outcome.tried, key=lambda e: -outcome.found[e.id])
@@ -246,20 +241,6 @@ def _elsewhere(free: Explanation, within: Explanation, conflicts: tuple[Conflict
         f"the baseline shown is the best within {REACH:.0f} standard deviations of all that is known; as another "
         f"robot{off} it leaves {left:.3g} % on recordings never fitted: what is known of the robot gives the name, not "
         "the recordings alone",
-    )
-
-
-def _open(outcome: Outcome) -> tuple[str, ...]:
-    """What may be beside an effect that is certain, where that is open."""
-    if not outcome.beside:
-        return ()
-    own = set(outcome.chosen.fit.model.ids)
-    others = dict.fromkeys(name for e in outcome.beside for name in e.fit.model.ids if name not in own)
-    gain = outcome.found[outcome.beside[0].id] - outcome.found[outcome.chosen.id]
-    return (
-        f"{readable(outcome.chosen.id)} does not leave noise alone, and these recordings do not tell what is beside it "
-        f"(or how its law differs from the world's): with any of {', '.join(map(readable, others))} the fit is better "
-        f"by about {gain:.0f} units of log evidence",
     )
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -20,7 +20,7 @@ from ssmr_ident.diagnose.sizes import sizes_of
 from ssmr_ident.diagnose.weigh import CERTAIN
 from ssmr_ident.identify.fitting.coordinates import Model
 from ssmr_ident.identify.fitting.joint import JointFit, over
-from ssmr_ident.physics.effect import Effect, Site, Sized
+from ssmr_ident.physics.effect import Effect, Sized
 from ssmr_ident.physics.effects import CATALOGUE
 
 Array = np.ndarray
@@ -40,9 +40,6 @@ AS_LIKELY = 2.0 * CERTAIN
 
 PLACES = 3
 """Most probes that go on of those that differ in a frequency alone: a straight line tells these apart."""
-
-BACK = -0.3
-"""Share of an effect that is tried the other way."""
 
 BURST_SHARE = 0.1
 """Share of an effect that is tried where a simulation with all of it bursts."""
@@ -99,17 +96,6 @@ def variants(group: Sequence[Suspect]) -> list[Suspect]:
     return list(found.values())
 
 
-def both_ways(suspect: Suspect) -> list[Suspect]:
-    """A suspect, and where it may change sign also some of it the other way.
-
-    Far from the optimum the straight line has the sign of what the baseline has made of the effect.
-    """
-    signed = [name for name in suspect.sizes if name in suspect.grown]
-    if not signed:
-        return [suspect]
-    return [suspect, replace(suspect, at={**suspect.at, **{name: BACK * suspect.at[name] for name in signed}})]
-
-
 def candidates(fit: JointFit, baseline: str) -> tuple[Effect, ...]:
     """Effects that can be seen in the session's experiments, and that its model does not have yet."""
     return tuple(
@@ -144,32 +130,6 @@ def scan(fit: JointFit, effects: Sequence[Effect], small: bool = False) -> list[
             found.setdefault(suspect.effect, []).append(suspect)
     groups = [_few_places(CATALOGUE[name], sorted(some, key=lambda s: -s.gain)) for name, some in found.items()]
     return sorted(groups, key=lambda group: -group[0].gain)
-
-
-def out_of_reach(fit: JointFit, effects: Sequence[Effect], groups: Sequence[Sequence[Suspect]]) -> list[list[Suspect]]:
-    """Probes of what changes motions beyond some value alone, and nothing at all where a fit has ended.
-
-    A baseline that is bent round wheels that lift is one from which they do not, and a scan about it has no word for
-    them.
-
-    Parameters
-    ----------
-    fit : JointFit
-    effects : sequence of Effect
-    groups : sequence of sequence of Suspect
-        What a scan about the fit has found.
-    """
-    seen = {group[0].effect for group in groups}
-    hidden = [effect for effect in effects if moves_beyond(effect) and effect.id not in seen]
-    found: dict[str, list[Suspect]] = {}
-    for effect, at, held in probes(fit, hidden):
-        found.setdefault(effect.id, []).append(Suspect(effect.id, at, held, {}, 0.0))
-    return list(found.values())
-
-
-def moves_beyond(effect: Effect) -> bool:
-    """Whether an effect changes motions or a sensor's pace, and that only beyond some value."""
-    return effect.sudden and Site.OUTPUT not in effect.acts
 
 
 def probes(fit: JointFit, effects: Sequence[Effect]) -> list[tuple[Effect, dict[str, float], dict[str, float]]]:

@@ -13,7 +13,6 @@ from ssmr_ident.experiments import EXPERIMENTS
 from ssmr_ident.experiments.campaign import Campaign, Measurement
 from ssmr_ident.identify.body.builder import GAINS
 from ssmr_ident.identify.fitting.coordinates import Model
-from ssmr_ident.identify.fitting.joint import JointFit
 from ssmr_ident.identify.posterior.objective import Unknown
 from ssmr_ident.identify.robot.unknowns import robot_unknowns
 from ssmr_ident.identify.trials import Trial, trial_of
@@ -51,8 +50,6 @@ class Setup:
     notes : tuple of str
     calibration : tuple of Trial
         Made without the puzzling condition: what they tell of the baseline is known before the targets are looked at.
-    begun : (JointFit, tuple of float) or None
-        The baseline at its best and its horizons, where the law of sliding was chosen by fitting it.
     """
 
     campaign: Campaign
@@ -63,7 +60,6 @@ class Setup:
     kept_by_us: bool
     notes: tuple[str, ...] = ()
     calibration: tuple[Trial, ...] = ()
-    begun: tuple[JointFit, tuple[float, ...]] | None = None
 
     @property
     def decoupled(self) -> bool:

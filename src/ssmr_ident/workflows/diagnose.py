@@ -16,6 +16,10 @@ from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.diagnosis import Diagnosis, NamedEffect
 from ssmr_ident.doctor.blocks import BLOCK, diagnose_block
+from ssmr_ident.doctor.decays.decoupled import diagnose as diagnose_decoupled
+from ssmr_ident.doctor.decays.run import diagnose as diagnose_decays
+from ssmr_ident.doctor.decays.run import takes as of_decays
+from ssmr_ident.doctor.robots.run import diagnose as diagnose_robot
 from ssmr_ident.doctor.run import diagnose as diagnose_rig
 from ssmr_ident.experiments.campaign import Campaign, load
 from ssmr_ident.experiments.experiment import RIGS
@@ -102,19 +106,10 @@ def _diagnosed(
         from ssmr_ident.diagnose.turning import diagnose_turning
 
         return diagnose_turning(campaign, known, seed, progress)
-    from ssmr_ident.doctor.decays.run import diagnose_certain, of_free_responses
-
-    if of_free_responses(campaign):
-        found = diagnose_certain(campaign, known, seed, progress)
-        if found is not None:
-            return found
-    from ssmr_ident.diagnose.arranged import arranged
-    from ssmr_ident.diagnose.assemble import assembled
-    from ssmr_ident.diagnose.engine import examine
-    from ssmr_ident.diagnose.sliding import with_law_of_sliding
-
-    setup, known = with_law_of_sliding(arranged(campaign), known, progress)
-    return assembled(examine(setup, known, progress), known, seed)
+    if campaign.session.baseline == "decoupled":
+        return diagnose_decoupled(campaign, known, seed, progress)
+    search = diagnose_decays if of_decays(campaign, known) else diagnose_robot
+    return search(campaign, known, seed, progress)
 
 
 def diagnose_session(

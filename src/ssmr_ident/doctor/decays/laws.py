@@ -6,25 +6,23 @@ follow what no robot does (continuation in the noise's variance: Rose 1998, dete
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ssmr_ident.doctor.decays.found import Found, cost_of
 from ssmr_ident.doctor.decays.linear import LinearFit, fit_linear
-from ssmr_ident.doctor.decays.members import Member
 from ssmr_ident.doctor.decays.recordings import Decay, thinned
+from ssmr_ident.doctor.robots.cooled import led, variances
+from ssmr_ident.doctor.robots.found import Found, cost_of
+from ssmr_ident.doctor.robots.members import Member
 from ssmr_ident.identify.fitting.coordinates import Model
-from ssmr_ident.identify.fitting.descent import ahead, descend
+from ssmr_ident.identify.fitting.descent import descend
 from ssmr_ident.identify.fitting.joint import JointFit, evaluate
 from ssmr_ident.identify.trials.decay import SCALES, STATES
 from ssmr_ident.physics.extended import BODY
 
 Array = np.ndarray
-Tried = tuple[Member, JointFit]
-Progress = Callable[[str, int, int], None]
 
 BEGINS_S = 0.35, 1.4
 """Length of the first part of a recording by which its state at the release is found; and of a longer one."""
@@ -32,21 +30,11 @@ BEGINS_S = 0.35, 1.4
 SCREENED_S = 0.7, 1.4
 """Length of the first part that laws are fitted to under the first variance of what counts as noise, and later."""
 
-STEPS, FURTHER, LAST = 2, 4, 3
-"""Steps under each variance of what counts as noise, of what is begun near an optimum, and of states alone."""
-
-SECANTS = 1
-"""Steps with corrected slopes after each of the first ones: with three, 24 drawn robots took a third longer and named
-the same laws."""
-
-TO_THE_END, ROUNDS = 10, 4
-"""Steps of the best law, and how often an undamped one leads it on, at the most."""
+LAST = 3
+"""Steps of states alone."""
 
 STATES_FIRST = 8
 """Steps of the states at the release alone, where closed form and simulator have other ones."""
-
-TRUSTED = 0.1
-"""Factor from one variance of what counts as noise to the next."""
 
 FAR = 3.0
 """Standard deviations of what is known that a baseline may have moved before laws are begun from what is known, too."""
@@ -85,12 +73,6 @@ def starts(decays: Sequence[Decay], which: Sequence[int], first: Found, follows:
     return found
 
 
-def variances(fit: JointFit) -> list[float]:
-    """What counts as noise, in variances of the noise: all that a fit leaves, a tenth of it and so on, at last 1."""
-    left = max(fit.rss / fit.size, 1.0)
-    return [max(left * TRUSTED**k, 1.0) for k in range(math.ceil(math.log(left) / -math.log(TRUSTED)) + 1)]
-
-
 def left_known(fit: Found | JointFit) -> bool:
     """Whether a fit has left what is known of the robot."""
     return bool(np.abs(fit.point[: len(fit.model.physics)]).max() > FAR)
@@ -102,31 +84,6 @@ def begun_at(start: Start, decays: Sequence[Decay], way: Member) -> JointFit:
     return evaluate(trials, way.model, np.concatenate([start.point, way.own]), start.nuisances)
 
 
-def _led(fit: JointFit, variance: float) -> JointFit:
-    return descend(fit, STEPS, plain=True, temper=variance, secants=SECANTS)
-
-
-def cooled(
-    tried: Sequence[Tried],
-    decays: Sequence[Decay],
-    fewer: Callable[[Sequence[Tried], int], list[Tried]],
-    say: Progress,
-) -> list[Tried]:
-    """Laws led from all that each leaves as noise to the noise alone; on the way ``fewer`` and fewer go on."""
-    trials = [d.trial.until(SCREENED_S[1]) for d in decays]
-    running = [(member, fit, variances(fit)) for member, fit in tried if np.isfinite(fit.rss)]
-    for rung in range(max((len(v) for _, _, v in running), default=0)):
-        if rung == 1:
-            running = [(m, evaluate(trials, f.model, f.point, f.nuisances), v) for m, f, v in running]
-        led = []
-        for index, (member, fit, own) in enumerate(running):
-            say("laws from loose to exact", index, len(running))
-            led.append((member, _led(fit, own[min(rung, len(own) - 1)]), own))
-        kept = fewer([(m, f) for m, f, _ in led if np.isfinite(f.rss)], rung)
-        running = [one for one in led if any(one[1] is fit for _, fit in kept)]
-    return [(m, f) for m, f, _ in running]
-
-
 def on_whole(decays: Sequence[Decay], fit: JointFit, near: Sequence[Array]) -> JointFit:
     """A law that was fitted to some recordings, on all of them: from states of their own, or from those ``near``."""
     trials = [d.trial for d in decays]
@@ -135,20 +92,8 @@ def on_whole(decays: Sequence[Decay], fit: JointFit, near: Sequence[Array]) -> J
     if not np.isfinite(begun.rss):
         return begun
     for variance in variances(begun):
-        begun = _led(begun, variance)
+        begun = led(begun, variance)
     return begun
-
-
-def to_the_end(fit: JointFit) -> JointFit:
-    """A fit's optimum, along a valley's floor too: damped steps, and undamped ones as long as those lead on."""
-    for _ in range(ROUNDS):
-        found = descend(fit, TO_THE_END, plain=True)
-        onward = descend(ahead(found), FURTHER, plain=True)
-        better = min((found, onward), key=cost_of)
-        if not cost_of(better) < cost_of(fit) - 1.0:
-            return better
-        fit = better
-    return fit
 
 
 def released(decays: Sequence[Decay], model: Model, point: Array) -> JointFit:

@@ -11,24 +11,22 @@ import numpy as np
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.diagnose.formulas import other_formulas
 from ssmr_ident.diagnose.scan import promising, scan
-from ssmr_ident.doctor.decays.found import Found, Search, cost_of
-from ssmr_ident.doctor.decays.laws import (
+from ssmr_ident.doctor.decays.laws import LAST, SCREENED_S, begun_at, exact, loudest, on_whole, starts
+from ssmr_ident.doctor.decays.linear import LinearFit, fit_linear
+from ssmr_ident.doctor.decays.recordings import Decay, thinned
+from ssmr_ident.doctor.robots.cooled import (
+    FAR_OFF,
     FURTHER,
-    LAST,
+    LAWS,
     TRUSTED,
     Progress,
     Tried,
-    begun_at,
     cooled,
-    exact,
-    loudest,
-    on_whole,
-    starts,
+    field,
     to_the_end,
 )
-from ssmr_ident.doctor.decays.linear import LinearFit, fit_linear
-from ssmr_ident.doctor.decays.members import GEOMETRY, KINDS, Member, any_static, members
-from ssmr_ident.doctor.decays.recordings import Decay, thinned
+from ssmr_ident.doctor.robots.found import Found, Search, cost_of
+from ssmr_ident.doctor.robots.members import GEOMETRY, KINDS, Member, any_static, members
 from ssmr_ident.doctor.rules import STATED
 from ssmr_ident.identify.fitting.coordinates import Model
 from ssmr_ident.identify.fitting.descent import descend
@@ -48,13 +46,6 @@ CHOSEN, LAST_ONES = 3, 2
 
 OFFERED = 2
 """Models, the best ones, that are offered to those below them."""
-
-LAWS = 3
-"""Effects with laws that go on after the second variance of what counts as noise, and to all recordings; two fits
-each."""
-
-FAR_OFF = 3.0
-"""Factor on the least cost beyond which a law does not go on to all recordings."""
 
 SECOND_OVER = 1.25
 """RMS of whitened residuals of the best from which a second effect is looked for."""
@@ -86,50 +77,56 @@ def searched(decays: Sequence[Decay], model: Model, progress: Progress | None = 
         The baseline.
     progress : callable, optional
     """
-    say = progress or (lambda stage, done, total: None)
-    search = _begun(decays, model, say)
-    if search is None:
-        raise InputError(
-            "robot file", "describes a robot that falls over on its tires", "Check stiffness, mass and height"
-        )
-    _beside(search, search.baseline, say)
+    search = begun(decays, model, progress)
+    for _ in in_turn(search, progress):
+        pass
+    completed(search, progress)
+    return search
+
+
+def in_turn(search: Search, progress: Progress | None = None) -> Iterator[None]:
+    """Effects beside a baseline, cheapest first: one linear effect, one law, two linear effects. It stops where what
+    has been fitted may be the answer, and goes on where that is not certain."""
+    say = progress or _silent
+    _linear_beside(search, search.baseline, say)
     _offered_back(search)
-    _settled(search, say)
-    _other_formulas(search, say)
-    _settled(search, say)
+    if search.over(search.best) <= NEAR and _compared(search, say):
+        yield
+    if search.over(search.best) <= SECOND_OVER:
+        return
+    if search.over(search.baseline) > NEAR:
+        _single_laws(search, say)
+        _finished(search, say)
+        yield
+    for first in _firsts(search, linear=True):
+        _linear_beside(search, first, say)
+    _offered_down(search)
+    if _compared(search, say):
+        yield
+
+
+def completed(search: Search, progress: Progress | None = None) -> None:
+    """All that has not been tried: laws, and any two effects where the best one leaves more than noise."""
+    say = progress or _silent
+    if not search.has_laws:
+        _single_laws(search, say)
     if search.best is not search.baseline and search.over(search.best) > SECOND_OVER:
         for first in _firsts(search):
             _beside(search, first, say)
         _settled(search, say)
     _finished(search, say)
-    return search
 
 
-def searched_in_turn(decays: Sequence[Decay], model: Model, progress: Progress | None = None) -> Iterator[Search]:
-    """The same, cheapest first: one linear effect, one law, two linear effects. After each of these that may be the
-    answer, what has been fitted; nothing where nothing gains on the baseline, or the robot falls over."""
-    say = progress or (lambda stage, done, total: None)
-    search = _begun(decays, model, say)
-    if search is None:
-        return
-    _linear_beside(search, search.baseline, say)
-    _offered_back(search)
-    if search.over(search.best) <= NEAR and _compared(search, say):
-        yield search
-    if search.over(search.best) <= SECOND_OVER:
-        return
-    if search.over(search.baseline) > NEAR:
-        _laws_beside(search, search.baseline, say)
-        _settled(search, say)
-        _other_formulas(search, say)
-        _settled(search, say)
-        _finished(search, say)
-        yield search
-    for first in _firsts(search, linear=True):
-        _linear_beside(search, first, say)
-    _offered_down(search)
-    if _compared(search, say):
-        yield search
+def _silent(stage: str, done: int, total: int) -> None:
+    pass
+
+
+def _single_laws(search: Search, say: Progress) -> None:
+    """Laws beside the baseline, the best of them to its end and in other formulas."""
+    _laws_beside(search, search.baseline, say)
+    _settled(search, say)
+    _other_formulas(search, say)
+    _settled(search, say)
 
 
 def _compared(search: Search, say: Progress) -> bool:
@@ -172,14 +169,23 @@ def promised_beside(search: Search, found: Found) -> float:
     return max((suspect.gain for group in scan(differentiate(found.fit), asked) for suspect in group), default=0.0)
 
 
-def _begun(decays: Sequence[Decay], model: Model, say: Progress) -> Search | None:
-    """The baseline; None where the robot as the file has it falls over."""
+def begun(decays: Sequence[Decay], model: Model, progress: Progress | None = None) -> Search:
+    """The baseline alone.
+
+    Raises
+    ------
+    InputError
+        The robot as the file has it falls over.
+    """
+    say = progress or _silent
     decays = [d.coarse() for d in decays]
     say("fitting the baseline", 0, 1)
-    begun = _annealed(decays, model)
-    if begun is None:
-        return None
-    search = Search(tuple(decays), Found((), begun, exact(decays, begun, 1)))
+    fit = _annealed(decays, model)
+    if fit is None:
+        raise InputError(
+            "robot file", "describes a robot that falls over on its tires", "Check stiffness, mass and height"
+        )
+    search = Search(Found((), fit, exact(decays, fit, 1)), decays=tuple(decays), looked_at=len(KINDS))
     say("fitting the baseline", 1, 1)
     return search
 
@@ -234,12 +240,13 @@ def _laws_beside(search: Search, first: Found, say: Progress) -> None:
     laws += [any_static(first.fit)] if laws and not first.members else []
     which = loudest(search.decays)
     loud, ended = [search.decays[index] for index in which], list[Tried]()
+    trials = [d.trial.until(SCREENED_S[1]) for d in loud]
     for start in starts(search.decays, which, first, search.over(first) < NEAR):
         tried = [(way, begun_at(start, loud, way)) for way in laws]
-        ended += cooled(tried, loud, _fewer, say)
+        ended += cooled(tried, trials, say)
     ended += [pair for member, fit in ended if member.generic for pair in _parts(member, fit, laws)]
     least = min((cost_of(f) for _, f in ended), default=math.inf)
-    for index, (member, fit) in enumerate(going := _field(ended, LAWS, FAR_OFF * least)):
+    for index, (member, fit) in enumerate(going := field(ended, LAWS, FAR_OFF * least)):
         say("laws on whole recordings", index, len(going))
         search.add(Found((*first.members, member), None, on_whole(search.decays, fit, first.fit.nuisances)))
 
@@ -280,25 +287,6 @@ def _linear(search: Search, first: Found, ways: Sequence[Member]) -> Found | Non
         return None
     way, fit = min(whole, key=lambda pair: pair[1].cost)
     return Found((*first.members, way), fit, None)
-
-
-def _fewer(tried: Sequence[Tried], rung: int) -> list[Tried]:
-    """Which laws go on after each variance of what counts as noise."""
-    least = min((cost_of(f) for _, f in tried), default=math.inf)
-    return _field(tried, LAWS, FAR_OFF * least) if rung else _field(tried, len(KINDS))
-
-
-def _field(tried: Sequence[Tried], effects: int, most: float = math.inf) -> list[Tried]:
-    """Of every effect the two best formulas or starts, up to a cost; of all the first effects, and what takes any
-    shape."""
-    ranked = sorted(tried, key=lambda pair: cost_of(pair[1]))
-    names = list(dict.fromkeys(m.id for m, _ in ranked if not m.generic))[:effects]
-    found: list[Tried] = []
-    for member, fit in ranked:
-        fits = member.generic or (member.id in names and cost_of(fit) < most)
-        if fits and sum(m.id == member.id and m.generic == member.generic for m, _ in found) < 2:
-            found.append((member, fit))
-    return found
 
 
 def _simulated(search: Search, found: Found) -> Found:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -154,8 +154,3 @@ class Model:
         keep = [True] * len(self.physics) + [c.effect != effect_id for c in self.free]
         held = {name: fixed for name, fixed in self.held.items() if name != effect_id}
         return replace(self, free=tuple(c for c in self.free if c.effect != effect_id), held=held), np.array(keep)
-
-
-def scaled_at(unknowns: Sequence[Unknown], values: Mapping[str, float]) -> Array:
-    """Coordinates of given values, 0 (the prior) where none is given."""
-    return np.array([u.scaled(values[u.name]) if u.name in values else 0.0 for u in unknowns])

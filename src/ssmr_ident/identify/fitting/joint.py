@@ -159,12 +159,6 @@ def together(fits: Sequence[JointFit]) -> JointFit:
     )  # fmt: skip
 
 
-def each_best(fits: Sequence[JointFit]) -> JointFit:
-    """Fits of the same trials at one point, each trial as it is left with least."""
-    parts = np.array([np.where(np.isfinite(f.parts), f.parts, np.inf) for f in fits])
-    return together([fits[best].only(k) for k, best in enumerate(np.argmin(parts, axis=0))])
-
-
 def evaluate(
     trials: Sequence[Trial], model: Model, point: Array, nuisances: Sequence[Array], slopes: Sequence[Slopes] = ()
 ) -> JointFit:

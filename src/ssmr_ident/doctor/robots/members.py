@@ -1,10 +1,10 @@
-"""What may stand beside a robot's baseline in decays: effects of the catalogue by kind, and where their fits begin."""
+"""What may stand beside a robot's baseline: effects of the catalogue by kind, and where their fits begin."""
 
 from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -19,6 +19,7 @@ from ssmr_ident.physics.extended import LINEAR
 Array = np.ndarray
 
 STATIC, MEMORY, EXTRA, GEOMETRY, SENSOR = "static_force", "memory", "extra_motion", "geometry", "sensor_chain"
+CHANGING, GROUND = "changing", "ground_and_grip"
 
 KINDS = {
     "nonlinear_stiffness": STATIC,
@@ -37,6 +38,19 @@ KINDS = {
     "sensor_saturation": SENSOR,
 }
 """Effects that decays show, by kind."""
+
+IN_FORCES = {
+    "cable_compliance": EXTRA,
+    "load_cell_drift": CHANGING,
+    "stribeck": STATIC,
+    "rolling_resistance": STATIC,
+    "load_sensitive_friction": GROUND,
+    "slip_coupling": GROUND,
+}
+"""Effects that force logs alone show, by kind."""
+
+BY_KIND = {**KINDS, **IN_FORCES, "translation_coupling": GEOMETRY}
+"""All effects that recordings of a robot show beside its baseline, by kind."""
 
 ANY = "any shape"
 SMOOTH = ("c_abs_v_N_s_m", "c_s2_N_m2", "c_v2_N_s2_m2", "c_sv_N_s_m2", "c_s2v_N_s_m3", "c_v3_N_s3_m3",
@@ -80,10 +94,10 @@ class Member:
         return replace(self, own=np.where(signed, 0.0, self.own))
 
 
-def members(fit: JointFit) -> list[Member]:
-    """All that may be added to a fit's model, from each of its probes."""
+def members(fit: JointFit, names: Iterable[str] = KINDS) -> list[Member]:
+    """Effects that may be added to a fit's model, from each of their probes; by default all that decays show."""
     sizes, found = sizes_of(fit), []
-    for name in (n for n in KINDS if n not in fit.model.held and n != "unlisted"):
+    for name in (n for n in names if n not in fit.model.held and n != "unlisted"):
         effect = CATALOGUE[name]
         limits = limits_of(fit, effect)
         forms: dict[frozenset[str], Member] = {}
@@ -91,11 +105,12 @@ def members(fit: JointFit) -> list[Member]:
             at = _at(probe, sizes)
             if not all(math.isfinite(value) for value in at.values()):
                 continue
+            at = {p.name: float(np.clip(at[p.name], p.lower, p.upper)) for p in effect.parameters if p.name in at}
             at |= {n: float(np.clip(at[n], *ends)) for n, ends in limits.items() if n in at}
             for held in _held(effect):
                 key = frozenset((*at, *(f"{n} = {v}" for n, v in held.items())))
                 if key not in forms:  # one prior for all probes of a formula
-                    forms[key] = _member(fit.model, name, at, held, limits)
+                    forms[key] = member_at(fit.model, name, at, held, limits)
                     found.append(forms[key])
                 else:
                     first = forms[key]
@@ -113,17 +128,18 @@ def _held(effect: Effect) -> list[dict[str, float]]:
     return [dict(zip(names, values, strict=True)) for values in itertools.product(*effect.holds.values())]
 
 
-def _member(
+def member_at(
     model: Model,
     name: str,
     at: Mapping[str, float],
     held: Mapping[str, float],
     limits: Mapping[str, tuple[float, float]],
 ) -> Member:
+    """An effect beside a model, its parameters begun at given values, others of it held at theirs."""
     new, own = model.with_effect(name, at, {n: abs(v) for n, v in at.items()}, limits)
     new = replace(new, held={**new.held, name: {**new.held[name], **held}})
     form = ", ".join([*at, *(f"{n} = {v:g}" for n, v in held.items())])
-    kind = STATIC if name == "dry_friction" and "rounding_m_s" in at else KINDS[name]
+    kind = STATIC if name == "dry_friction" and "rounding_m_s" in at else BY_KIND[name]
     return Member(name, kind, form, new, own)
 
 
@@ -144,11 +160,3 @@ def any_static(fit: JointFit) -> Member:
             model, more = model.with_effect(name, begun, {n: 0.1 * value for n, value in at.items()})
             own = np.concatenate([own, more])
     return Member("unlisted", STATIC, ANY, model, own, True)
-
-
-def without_last(model: Model, point: Array, ids: Sequence[str]) -> tuple[Model, Array]:
-    """A model and point without given effects."""
-    for name in ids:
-        model, keep = model.without_effect(name)
-        point = point[keep]
-    return model, point

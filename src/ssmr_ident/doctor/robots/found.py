@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ssmr_ident.doctor.decays.linear import LinearFit
-from ssmr_ident.doctor.decays.members import Member
 from ssmr_ident.doctor.decays.recordings import Decay
+from ssmr_ident.doctor.robots.members import Member
 from ssmr_ident.identify.fitting.coordinates import Model
 from ssmr_ident.identify.fitting.joint import JointFit
 
@@ -69,11 +69,23 @@ class Found:
 
 @dataclass(eq=False)
 class Search:
-    """What has been fitted."""
+    """What has been fitted.
 
-    decays: tuple[Decay, ...]
+    Parameters
+    ----------
+    baseline : Found
+    found : list of Found
+        With effects beside it.
+    decays : tuple of Decay
+        Where there is nothing else, and what is linear has been fitted in closed form; else empty.
+    looked_at : int
+        Effects that were tried beside the baseline, by fits or a score test.
+    """
+
     baseline: Found
     found: list[Found] = field(default_factory=list)
+    decays: tuple[Decay, ...] = ()
+    looked_at: int = 0
 
     @property
     def all(self) -> list[Found]:
@@ -90,7 +102,8 @@ class Search:
 
     @property
     def samples(self) -> int:
-        return sum(d.trial.size for d in self.decays)
+        assert self.baseline.fit is not None
+        return self.baseline.fit.size
 
     def over(self, found: Found) -> float:
         """RMS of the whitened residuals: 1 for noise alone."""

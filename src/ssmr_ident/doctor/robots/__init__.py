@@ -1,0 +1,1 @@
+"""What searches of decays and of forces share: what has been fitted, what may be added, and the answer."""

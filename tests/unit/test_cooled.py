@@ -1,0 +1,43 @@
+"""Models led from what they leave as noise to the noise: the variances in between, and what cannot be simulated."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from ssmr_ident.core.errors import InputError
+from ssmr_ident.doctor.robots import cooled
+from ssmr_ident.doctor.robots.cooled import cooled_alone, fewer, from_known, variances
+from ssmr_ident.doctor.robots.members import Member
+
+
+def fit(rss: float, size: int = 100) -> SimpleNamespace:
+    return SimpleNamespace(rss=rss, size=size, penalty=0.0)
+
+
+def member(name: str) -> Member:
+    return Member(name, "static_force", name, None, np.zeros(0))  # type: ignore[arg-type]
+
+
+def test_every_variance_is_a_tenth_of_the_last_and_the_last_is_the_noises() -> None:
+    assert variances(fit(25000.0)) == pytest.approx([250.0, 25.0, 2.5, 1.0])  # type: ignore[arg-type]
+    assert variances(fit(80.0)) == [1.0]  # type: ignore[arg-type]
+
+
+def test_two_fits_of_an_effect_go_on_and_none_that_leaves_far_more() -> None:
+    tried = [
+        (member(name), fit(left)) for name, left in (("a", 10.0), ("a", 12.0), ("a", 14.0), ("b", 90.0), ("c", 120.0))
+    ]
+    first = [(m.id, f.rss) for m, f in fewer(tried, 0, 10.0)]  # type: ignore[arg-type]
+    assert first == [("a", 10.0), ("a", 12.0), ("b", 90.0)]
+    assert [m.id for m, _ in fewer(tried, 1, 10.0)] == ["a", "a"]  # type: ignore[arg-type]
+
+
+def test_what_cannot_be_simulated_is_said_of_the_file(monkeypatch: pytest.MonkeyPatch) -> None:
+    burst = fit(np.inf)
+    assert cooled_alone(burst) is burst  # type: ignore[arg-type]
+    monkeypatch.setattr(cooled, "follow", lambda *_: SimpleNamespace(rss=np.nan, trials=()))
+    with pytest.raises(InputError, match="leaves the finite numbers"):
+        from_known([], SimpleNamespace(unknowns=()))  # type: ignore[arg-type]
