@@ -11,6 +11,7 @@ from ssmr_ident.core.errors import InputError
 from ssmr_ident.doctor.robots import cooled
 from ssmr_ident.doctor.robots.cooled import cooled_alone, fewer, from_known, variances
 from ssmr_ident.doctor.robots.members import Member
+from ssmr_ident.physics.linear import responses
 
 
 def fit(rss: float, size: int = 100) -> SimpleNamespace:
@@ -41,3 +42,8 @@ def test_what_cannot_be_simulated_is_said_of_the_file(monkeypatch: pytest.Monkey
     monkeypatch.setattr(cooled, "follow", lambda *_: SimpleNamespace(rss=np.nan, trials=()))
     with pytest.raises(InputError, match="leaves the finite numbers"):
         from_known([], SimpleNamespace(unknowns=()))  # type: ignore[arg-type]
+
+
+def test_a_motion_that_grows_beyond_all_numbers_is_not_finite_and_nothing_more() -> None:
+    grows = np.array([[0.0, 1.0], [0.0, 500.0]])
+    assert not np.all(np.isfinite(responses(grows, np.eye(2), np.linspace(0.0, 10.0, 5))))

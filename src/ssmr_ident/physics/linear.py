@@ -129,7 +129,9 @@ def responses(state_matrix: np.ndarray, rows: np.ndarray, time: np.ndarray) -> n
     Returns
     -------
     (n, c, k) float
+        Not finite where a motion grows beyond all numbers.
     """
     values, vectors = np.linalg.eig(state_matrix)
-    course = np.exp(np.outer(time, values))
-    return np.einsum("ck,nk,kj->ncj", rows @ vectors, course, np.linalg.inv(vectors), optimize=True).real
+    with np.errstate(over="ignore", invalid="ignore"):
+        course = np.exp(np.outer(time, values))
+        return np.einsum("ck,nk,kj->ncj", rows @ vectors, course, np.linalg.inv(vectors), optimize=True).real
