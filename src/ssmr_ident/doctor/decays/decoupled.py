@@ -11,6 +11,8 @@ from ssmr_ident.diagnose.arranged import arranged
 from ssmr_ident.diagnose.diagnosis import Diagnosis
 from ssmr_ident.diagnose.prepared import prepared
 from ssmr_ident.diagnose.setup import COUPLING, Setup, set_up
+from ssmr_ident.doctor.decays.recordings import decay_of
+from ssmr_ident.doctor.decays.search import begun
 from ssmr_ident.doctor.decide import decide
 from ssmr_ident.doctor.robots.answer import answered, table
 from ssmr_ident.doctor.robots.calibrated import informed
@@ -19,9 +21,9 @@ from ssmr_ident.doctor.robots.found import Found, Search
 from ssmr_ident.doctor.robots.members import BY_KIND, Member
 from ssmr_ident.experiments.campaign import Campaign
 from ssmr_ident.identify.body.builder import RobotBuilder
+from ssmr_ident.identify.fitting.coordinates import Model
 from ssmr_ident.identify.fitting.descent import descend
-from ssmr_ident.identify.fitting.joint import evaluate
-from ssmr_ident.identify.trials import Trial
+from ssmr_ident.identify.fitting.joint import JointFit, evaluate
 from ssmr_ident.identify.trials.decay import decay_trial
 
 
@@ -58,14 +60,19 @@ def _coupled(setup: Setup, known: ParameterSet) -> Found:
     uses all channels, and only the last steps the one by which the two are compared.
     """
     model = replace(setup.model, held={**setup.model.held, COUPLING: {"active": 1.0}})
-    wide = from_known(_widened(setup, known), model)
+    wide = _wide(setup, known, model)
     fit = descend(evaluate(setup.fitted, model, wide.point, wide.nuisances), 2 * FURTHER, plain=True)
     return Found((Member(COUPLING, BY_KIND[COUPLING], "active", model, np.zeros(0)),), None, fit)
 
 
-def _widened(setup: Setup, known: ParameterSet) -> list[Trial]:
-    """The recordings with all of their channels."""
+def _wide(setup: Setup, known: ParameterSet, model: Model) -> JointFit:
+    """All six degrees of freedom on all channels; in closed form where nothing but whole decays was logged."""
     builder = RobotBuilder.of(known)
     logs = {m.name: m for m in setup.campaign.measurements}
     free = [t.experiment.free and t.part is None for t in setup.fitted]
-    return [decay_trial(logs[t.name], builder) if wide else t for t, wide in zip(setup.fitted, free, strict=True)]
+    trials = [decay_trial(logs[t.name], builder) if wide else t for t, wide in zip(setup.fitted, free, strict=True)]
+    if not all(free):
+        return from_known(trials, model)
+    fit = begun([decay_of(trial, builder) for trial in trials], setup.model).baseline.fit
+    assert fit is not None
+    return fit
