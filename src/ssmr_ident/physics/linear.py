@@ -14,6 +14,9 @@ from ssmr_ident.physics.statics import loads_at, rest_pose, tilt
 
 COORDINATES = ("x", "y", "z", "roll", "pitch", "yaw")
 
+GROWN = 1e100
+"""In SI units, beyond which a response is none: its square would overflow."""
+
 
 @dataclass(frozen=True, eq=False)
 class LinearRobot:
@@ -129,9 +132,10 @@ def responses(state_matrix: np.ndarray, rows: np.ndarray, time: np.ndarray) -> n
     Returns
     -------
     (n, c, k) float
-        Not finite where a motion grows beyond all numbers.
+        NaN where a motion grows beyond ``GROWN``.
     """
     values, vectors = np.linalg.eig(state_matrix)
     with np.errstate(over="ignore", invalid="ignore"):
         course = np.exp(np.outer(time, values))
-        return np.einsum("ck,nk,kj->ncj", rows @ vectors, course, np.linalg.inv(vectors), optimize=True).real
+        found = np.einsum("ck,nk,kj->ncj", rows @ vectors, course, np.linalg.inv(vectors), optimize=True).real
+        return np.where(np.abs(found) < GROWN, found, np.nan)
