@@ -111,7 +111,7 @@ def assembled(outcome: Outcome, parameters: ParameterSet, seed: int) -> Diagnosi
         follows = grows_with_motion([*settled[0], *settled[1]]) < BY_CHANCE
         most = reddest([*settled[0], *settled[1]])
         verdict = UNDETERMINED if left > most or (left > UNEXPLAINED and follows) else NOTHING
-        # a pull may lie in a hollow of its own; one release in which wheels lift may be all that shows it
+        # a pull may be left in a local minimum of its own; one release in which wheels lift may be all that shows it
         over = np.zeros(1) if slides(base.fit) else over_any_noise([*settled[0], *settled[1]])
         if float(over.max()) > BEYOND:
             verdict, loudest = UNDETERMINED, [*base.fit.trials, *base.kept.trials][int(over.argmax())]

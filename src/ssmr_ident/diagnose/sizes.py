@@ -20,8 +20,8 @@ def sizes_of(fit: JointFit) -> dict[str, float]:
     """Natural sizes by name, SI, as ``physics.effect.Sized`` asks for them.
 
     A motion of angular frequency ω and acceleration a goes as far as a/ω². ω is the root mean square of the fitted
-    motion's slope over that of its own; of what was measured it is the noise's (bank 6264: 176 rad/s for a roll of 47,
-    and 0.07 mm for 0.9). A pull deflects the tires until its largest force.
+    motion's slope over that of its own; of what was measured it is the noise's. A pull deflects
+    the tires until its largest force.
     """
     values, _ = fit.model.split(fit.point)
     moving = any(trial.channels != ("force",) for trial in fit.trials)

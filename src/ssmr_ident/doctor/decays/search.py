@@ -1,4 +1,4 @@
-"""The search: linear members exactly, laws by stretches that begin anew, the best of both on whole recordings."""
+"""The search in free decays: linear members in closed form, laws by the simulator, the best on whole recordings."""
 
 from __future__ import annotations
 
