@@ -71,6 +71,8 @@ and of those in which nothing slides none above 0.52."""
 
 ALONE = "{} is left with {:.1f} times the most that noise of any colour reads in it"
 
+WITHDRAWN = "{} explains recordings best, and predicts some of them worse than the baseline"
+
 UNDER_JOLTS = "{}: the jolt of the tightening cable hides it; without that the error falls from {:.3g} to {:.3g} %"
 
 
@@ -116,6 +118,8 @@ def assembled(outcome: Outcome, parameters: ParameterSet, seed: int) -> Diagnosi
         if float(over.max()) > BEYOND:
             verdict, loudest = UNDETERMINED, [*base.fit.trials, *base.kept.trials][int(over.argmax())]
             alone = ALONE.format(loudest.name, float(over.max()))
+        if outcome.withdrawn:
+            verdict, alone = UNDETERMINED, WITHDRAWN.format(readable(outcome.withdrawn))
         if verdict == NOTHING and left > UNEXPLAINED:
             doubts = (COLOURED.format(left, most),)
     tried = _tried(outcome)

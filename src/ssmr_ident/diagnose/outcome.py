@@ -26,6 +26,8 @@ class Outcome:
         Log evidence by id, the baseline's being 0.
     looked_at : int
         Effects that were tried, by a fit or by a score test.
+    withdrawn : str
+        An answer that predicts recordings worse than the baseline does; empty where there is none.
     """
 
     setup: Setup
@@ -35,3 +37,4 @@ class Outcome:
     rivals: tuple[Explanation, ...]
     found: dict[str, float]
     looked_at: int
+    withdrawn: str = ""

@@ -24,7 +24,7 @@ from ssmr_ident.doctor.decays.search import (
     promised_beside,
 )
 from ssmr_ident.doctor.decide import MISSING, certain, decide
-from ssmr_ident.doctor.robots.answer import answered, table
+from ssmr_ident.doctor.robots.answer import GROWS, answered, table
 from ssmr_ident.doctor.robots.calibrated import informed
 from ssmr_ident.doctor.robots.found import Found, Search
 from ssmr_ident.doctor.robots.members import GEOMETRY
@@ -36,10 +36,6 @@ from ssmr_ident.physics.extended import BRANCH, LINEAR
 from ssmr_ident.physics.slots import effect_values
 
 Progress = Callable[[str, int, int], None]
-
-GROWS = 1.02
-"""Factor by which an error may grow that a displaced place, which the baseline has made good elsewhere, leaves as it
-was."""
 
 
 def diagnose(

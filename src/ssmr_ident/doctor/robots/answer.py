@@ -41,6 +41,10 @@ WEIGHED = (
 TEMPERED = 3
 """Steps of a fit whose noise is taken to be larger."""
 
+GROWS = 1.02
+"""Factor by which an error may grow that a displaced place, which the baseline has made good elsewhere, leaves as it
+was."""
+
 SHOWN = 2
 """Models that fit alike and are brought to the page at the most."""
 
@@ -126,7 +130,7 @@ def _tempered(search: Search, found: Found, temper: float) -> tuple[float, Array
 def outcome(setup: Setup, search: Search, rows: Sequence[tuple[Row, Found]], decision: Decision) -> Outcome:
     """The decision as the page takes it: the baseline, what is named, and what it cannot be told apart from."""
     base = _shown(setup, search.baseline)
-    tried, rivals, chosen = [base], [], base
+    tried, rivals, chosen, withdrawn = [base], [], base, ""
     if decision.verdict == MISSING and decision.chosen is not None:
         first = next(found for row, found in rows if row is decision.chosen)
         chosen = _shown(setup, first)
@@ -136,7 +140,18 @@ def outcome(setup: Setup, search: Search, rows: Sequence[tuple[Row, Found]], dec
         alike = [found for row, found in simulated if set(row.ids) - own and set(row.ids) - own <= ties]
         rivals = [_shown(setup, found) for found in alike[:SHOWN]]
         tried += [chosen, *rivals]
-    return Outcome(setup, base, tuple(tried), chosen, tuple(rivals), _evidence(rows, tried), search.looked_at)
+        if _harms(chosen, base):
+            rivals, chosen, withdrawn = [], base, chosen.id
+    return Outcome(
+        setup, base, tuple(tried), chosen, tuple(rivals), _evidence(rows, tried), search.looked_at, withdrawn
+    )
+
+
+def _harms(chosen: Explanation, base: Explanation) -> bool:
+    """Whether an answer predicts recordings, fitted or kept back, worse than the baseline, as they are compared: jolts
+    of cables by their share, teeth by their sizes."""
+    fitted, kept = chosen.fit.rss / base.fit.rss, chosen.kept.rss / base.kept.rss
+    return not (fitted < GROWS**2 and kept < GROWS**2)
 
 
 def _evidence(rows: Sequence[tuple[Row, Found]], tried: Sequence[Explanation]) -> dict[str, float]:
