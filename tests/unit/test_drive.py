@@ -93,7 +93,7 @@ def test_the_fit_has_the_simulators_motion_and_its_slopes(controller: Controller
     for k, name in enumerate([*(c.name for c in node.coordinates), "zero"]):
         if name in ("p6",):  # a gear ratio is known exactly
             continue
-        step = 1e-4
+        step = 1e-2  # where a step begins to count as near rest, motion jumps by 1e-5 of its size
         if name == "zero":
             apart = (run(point, zero=step) - run(point, zero=-step)) / (2.0 * step)
         else:

@@ -32,24 +32,30 @@ def _exact(problem: Problem, node: Node, point: Array, local: Array) -> tuple[fl
     """
     model = Compiled.of(problem, node, point, problem.pieces)
     residuals: list[Array] = []
+    spread = 0.0
     normal = np.empty((len(local), *[local.shape[1] + len(point) + 1] * 2))
     for batch in batches(problem.pieces):
-        whole = _linearised(model, batch, local)
+        whole, unsure = _linearised(model, batch, local)
         row = 0
         for k in batch:
-            columns = whole[row : row + len(problem.pieces[k].y)]
+            columns, off = (x[row : row + len(problem.pieces[k].y)] for x in (whole, unsure))
             row += len(columns)
-            columns[: problem.passed_over(problem.pieces[k])] = 0.0
+            passed = problem.passed_over(problem.pieces[k])
+            within = (off / [noise.std for noise in problem.noises[k]]) ** 2
+            columns /= np.sqrt(1.0 + within)[..., None]
+            columns[:passed] = 0.0
+            spread += float(np.log1p(within[passed:]).sum())
             residuals.append(columns[..., -1].copy())
             white = _whitened(problem, k, columns).reshape(-1, columns.shape[2])
             np.matmul(white.T, white, out=normal[k])
         if not np.isfinite(normal[: batch.stop]).all():
             return math.inf, [], normal
-    return float(normal[:, -1, -1].sum()), residuals, normal
+    return float(normal[:, -1, -1].sum()) + spread, residuals, normal
 
 
-def _linearised(model: Compiled, batch: range, local: Array) -> Array:
-    """(n, c, columns) float: slopes of what pieces leave over nuisances and coordinates, and what they leave."""
+def _linearised(model: Compiled, batch: range, local: Array) -> tuple[Array, Array]:
+    """(n, c, columns) float: slopes of what pieces leave over nuisances and coordinates, and what they leave; (n, c)
+    float: how far channels may be off where forces jump."""
     pieces, n, room = model.pieces[batch.start : batch.stop], model.node.states, local.shape[1]
     s = simulate_whole(model, batch, local)
     c, k = s.y.shape[1], nuisance_count(model.node, pieces[0])
@@ -68,7 +74,7 @@ def _linearised(model: Compiled, batch: range, local: Array) -> Array:
         whole[:, channel, k - c + channel] = course[:, 0]
     measured = np.concatenate([p.y for p in pieces])
     whole[..., -1] = gain * s.y + own[:, k - 2 * c : k - c] + course * own[:, k - c :] - measured
-    return whole
+    return whole, s.unsure
 
 
 def _whitened(problem: Problem, index: int, columns: Array) -> Array:

@@ -23,17 +23,18 @@ _unlisted, _gears = unlisted.force, load_dependent_friction.force
 TINY = 1e-6
 """Relative step of the differences that give a law's slopes; laws are scalar functions, run in double precision."""
 
-NEWTON = 4
-"""Iterations for the velocity after a kick, whose force depends on it."""
+NEWTON = 30
+"""Iterations at the most for the velocity after a kick, whose force depends on it."""
 
 NEAR = 1e-5
 """Of the largest velocity, how near the first guess is where a straight line goes the rest of the way."""
 
-GRADES = 8
-"""Halvings of a velocity toward nought, at which a force that may jump there is averaged."""
+GRADES = 5
+"""Parts of a velocity, each a quarter of the one before, in which a force that may jump at nought is averaged."""
 
-SHARP = 0.05
-"""Of a force's change while the motion turns, what slopes do not explain of a force that jumps."""
+TIMED = 1e-3
+"""Of the size of the speed, how far that of a run is off where a force jumps, at the most: a third of it at 120 steps a
+period, as a stiff solver tells for dry friction of three sizes."""
 
 BY_POSITION, BY_VELOCITY, CONSTANT, BY_INERTIA = range(4)
 """What a course over time multiplies."""
@@ -217,33 +218,109 @@ def _force(x, v, z, time, row, given, g, slopes, with_slopes):
 
 @kernel
 def _toward_rest(x, v, z, time, row, given, g, slopes, mean_slopes, with_slopes):
-    """The force's mean over the velocities from 0 to ``v``, and what ``_force`` says at ``v``; ``mean_slopes`` : those
-    of the mean, ``slopes`` those at ``v``."""
-    mean, f, fx, fv = 0.0, 0.0, 0.0, 0.0
-    for q in range(GRADES, -1, -1):  # from rest, so that what is left in ``slopes`` is that of ``v``
-        at = 2.0**-q if q < GRADES else 0.0
-        above, below = 2.0 ** (1 - q) if q else 1.0, 0.5 * at if q < GRADES - 1 else 0.0
-        weight = 0.5 * (above - below) if q < GRADES else 2.0**-GRADES
+    """The force's mean over the velocities from 0 to ``v`` and its slope over x, and what ``_force`` says at ``v``;
+    ``mean_slopes`` : those of the mean, ``slopes`` those at ``v``."""
+    mean, mean_x, f, fx, fv = 0.0, 0.0, 0.0, 0.0, 0.0
+    for q in range(2 * GRADES + 1):  # from rest, so that what is left in ``slopes`` is that of ``v``; Simpson's rule
+        at = 4.0 ** (q // 2 - GRADES)
+        weight = at if q == 0 else 0.75 * at / 6.0
+        if q % 2:  # the middle of a part
+            at, weight = 2.5 * at, 2.0 * at
+        elif q < 2 * GRADES:
+            weight += 0.5 * at
         slopes[:] = 0.0
         f, fx, fv = _force(x, v * at, z, time, row, given, g, slopes, with_slopes)
         mean += weight * f
+        mean_x += weight * fx
         if with_slopes:
             for k in range(len(slopes)):
                 mean_slopes[k] += weight * slopes[k]
-    return mean, f, fx, fv
+    return mean, mean_x, f, fx, fv
 
 
 @kernel
-def _sharp(change, by_slopes):
-    """Whether slopes do not explain a force's change while the motion turns."""
-    return abs(change - by_slopes) > SHARP * abs(change)
+def _between(next_v, v, away, low, high):
+    """The next guess of a velocity, and what brackets it: where Newton's lies outside, the middle."""
+    if away > 0.0:
+        high = v
+    else:
+        low = v
+    beyond = (next_v <= low or next_v >= high) and math.isfinite(high - low)
+    return (0.5 * (low + high) if beyond else next_v), low, high
 
 
 @kernel
-def _turned(v, v_was, moved, kick, x, z, time, row, given, g, slopes, more_slopes, mean_slopes):
-    """What a force that jumps where the motion turns does over a step beyond its mean of begin and end.
+def _nears_rest(v_was, v):
+    """Whether a step comes from rest, goes to it or passes through: only there does a force jump with speed."""
+    return abs(v - v_was) > 0.5 * max(abs(v), abs(v_was)) and v * v_was != 0.0
 
-    Velocity goes along a straight line from ``v_was`` to what is returned, so that the jump lies within the step where
+
+@kernel
+def _course(v, v_was, f, f_was, fv, fv_was, mean, mean_was, kick):
+    """Force over a step near rest, by those at both velocities and their means from rest to there.
+
+    Velocity goes along two straight lines, whose slopes differ as much as the forces on them: to rest and on; or to
+    rest, where it stays, if what holds it there takes the rest of the step. Else it goes along one.
+
+    Returns
+    -------
+    more, late : (4,) float
+        As ``_along_speed`` has them, but for x.
+    more_of, late_of : (4,) float
+        How both go with the force at begin and end, and with its mean there.
+    """
+    change = v - v_was
+    between = (v * mean - v_was * mean_was) / change
+    by_end, by_begin = (f - mean) / v, (f_was - mean_was) / v_was
+    if v * v_was < 0.0:  # share·(change + jump·(1 - share)) = -v_was, the jump as a change of velocity
+        held = mean - mean_was
+        jump = 2.0 * kick * held
+        whole = change + jump
+        root = math.sqrt(max(whole * whole + 4.0 * jump * v_was, 0.0))
+        share = min(max(-2.0 * v_was / (whole + (root if change > 0.0 else -root)), 0.0), 1.0)
+        rest, rate = 1.0 - share, change + jump * (1.0 - 2.0 * share)
+        moves = 2.0 * kick * share * rest / rate
+        before, after = share - moves * held, rest**2 + 2.0 * rest * moves * held
+        more = (
+            2.0 * (share * mean_was + rest * mean) - f_was - f,
+            2.0 * (share * held / rate + (1.0 - before) * by_end) - fv,
+            2.0 * (rest * held / rate + before * by_begin) - fv_was,
+            2.0 * moves * held**2 / kick,
+        )
+        late = (
+            held * rest**2,
+            2.0 * held * rest * share / rate + after * by_end,
+            2.0 * held * rest**2 / rate - after * by_begin,
+            2.0 * rest * moves * held**2 / kick,
+        )
+        return more, late, (-1.0, -1.0, 2.0 * before, 2.0 * (1.0 - before)), (0.0, 0.0, -after, after)
+    less = f - between
+    if abs(v) < abs(v_was) and 2.0 * kick * less / change > 1.0:
+        share = change / (2.0 * kick * less)
+        rest, after = 1.0 - share, 1.0 - share**2
+        more = (f - f_was - change / kick, fv - 1.0 / kick, 1.0 / kick - fv_was, change / kick**2)
+        late = (
+            less * rest**2,
+            after * (fv - less / change) - rest / kick,
+            after * (f_was - between) / change + rest / kick,
+            2.0 * rest * share * less / kick,
+        )
+        return more, late, (-1.0, 1.0, 0.0, 0.0), (0.0, after, after * v_was / change, -after * v / change)
+    more = (
+        2.0 * between - f_was - f,
+        2.0 * (f - between) / change - fv,
+        2.0 * (between - f_was) / change - fv_was,
+        0.0,
+    )
+    none = (0.0, 0.0, 0.0, 0.0)
+    return more, none, (-1.0, -1.0, -2.0 * v_was / change, 2.0 * v / change), none
+
+
+@kernel
+def _along_speed(v, v_was, moved, kick, x, z, time, row, given, g, slopes, more_slopes, late_slopes, mean_slopes):
+    """What a force that jumps with speed does over a step beyond its mean of begin and end.
+
+    Velocity goes from ``v_was`` to what is returned as ``_course`` has it, so that the jump lies within the step where
     it does, and not at its middle.
 
     Returns
@@ -251,45 +328,36 @@ def _turned(v, v_was, moved, kick, x, z, time, row, given, g, slopes, more_slope
     v : float [m/s]
     f, fx, fv : float
         The force there, with its slopes; those over states and parameters in ``slopes``.
-    more, by_v, by_was : float
-        Force [N] that the kick at the end has besides, its slopes over both velocities; those over parameters in
-        ``more_slopes``. All 0 where the force does not jump.
+    more, late : (5,) float
+        Force [N] that the kick at the end has besides; and that which, over the whole step, would have moved the rig as
+        what came later did beyond what came before. Each with its slopes over both velocities, the later first, over
+        the kick and over x; those over parameters in ``more_slopes`` and ``late_slopes``.
     """
-    f, fx, fv, more, by_v, by_was = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    mean_was, f_was, fv_was = 0.0, 0.0, 0.0
-    turn, last = 0, False
-    while True:  # the begin of the step, its end until that has settled, and both with slopes
-        begin = turn == 0 or turn == NEWTON + 2
-        mean_slopes[:] = 0.0
-        mean, f, fx, fv = _toward_rest(x, v_was if begin else v, z, time, row, given, g, slopes, mean_slopes, last)
-        change = v - v_was
-        share = -v_was / change
-        if begin:
-            mean_was, f_was, fv_was = mean, f, fv
-            if last:
-                for k in range(len(slopes)):
-                    more_slopes[k] = 2.0 * share * mean_slopes[k] - slopes[k]
-            turn += 1
-            continue
-        if last:
-            for k in range(len(slopes)):
-                more_slopes[k] += 2.0 * (1.0 - share) * mean_slopes[k] - slopes[k]
+    mean_was, _, f_was, _, fv_was = _toward_rest(x, v_was, z, time, row, given, g, slopes, mean_slopes, False)
+    low, high = -math.inf, math.inf
+    turn = 0
+    while True:
+        mean, _, f, _, fv = _toward_rest(x, v, z, time, row, given, g, slopes, mean_slopes, False)
+        more, late, more_of, late_of = _course(v, v_was, f, f_was, fv, fv_was, mean, mean_was, kick)
+        off = v - moved + kick * (f + more[0])
+        away = off / max(1.0 + kick * (fv + more[1]), 0.1)
+        if abs(away) <= 1e-7 * g[15] or turn == NEWTON:
             break
-        if turn == 1 and not _sharp(f - f_was, 0.5 * (fv + fv_was) * change):
-            break
-        average = share * mean_was + (1.0 - share) * mean
-        more = 2.0 * average - f_was - f
-        by_v, by_was = 2.0 * (f - average) / change - fv, 2.0 * (average - f_was) / change - fv_was
-        away = (v - moved + kick * (f + more)) / max(1.0 + kick * (fv + by_v), 0.1)
-        if abs(away) <= 1e-7 * g[15] or turn == NEWTON + 1:
-            turn, last = NEWTON + 2, True
-            continue
-        if v_was * (v - away) >= 0.0:  # it comes to rest
-            more, by_v, by_was = 0.0, 0.0, 0.0
-            break
-        v -= away
+        v, low, high = _between(v - away, v, off, low, high)
         turn += 1
-    return v, f, fx, fv, more, by_v, by_was
+    mean_slopes[:] = 0.0
+    _, mean_x_was, _, fx_was, _ = _toward_rest(x, v_was, z, time, row, given, g, slopes, mean_slopes, True)
+    for k in range(len(slopes)):
+        more_slopes[k] = more_of[0] * slopes[k] + more_of[2] * mean_slopes[k]
+        late_slopes[k] = late_of[0] * slopes[k] + late_of[2] * mean_slopes[k]
+    mean_slopes[:] = 0.0
+    _, mean_x, f, fx, _ = _toward_rest(x, v, z, time, row, given, g, slopes, mean_slopes, True)
+    for k in range(len(slopes)):
+        more_slopes[k] += more_of[1] * slopes[k] + more_of[3] * mean_slopes[k]
+        late_slopes[k] += late_of[1] * slopes[k] + late_of[3] * mean_slopes[k]
+    more_x = more_of[0] * fx_was + more_of[1] * fx + more_of[2] * mean_x_was + more_of[3] * mean_x
+    late_x = late_of[0] * fx_was + late_of[1] * fx + late_of[2] * mean_x_was + late_of[3] * mean_x
+    return v, f, fx, fv, (*more, more_x), (*late, late_x)
 
 
 @kernel
@@ -340,8 +408,8 @@ def _advance(z, tangents, change, change_slopes, step, first, by_v, g):
 
 @kernel
 def run(
-    lin, slopes_lin, rows, slopes_rows, g, beside, starts, places, times, drive, drives, motor, every, step,
-    y, dy, ends, dends,
+    lin, slopes_lin, rows, slopes_rows, g, beside, starts, places, times, drive, lines, drives, motor, every, step,
+    y, dy, ends, dends, unsure,
 ):  # fmt: skip
     """Simulate stretches of recordings that stand one behind the other.
 
@@ -367,6 +435,8 @@ def run(
     drive, drives : (m,), (e, m) float
         On the fine grid. ``drives`` are its slopes over what may change in it: 1 for its zero, which with a motor is
         that of what the motor is given.
+    lines : (m,) float
+        Corners of straight lines that move the rig as the drive does: ``drive`` is what its instruments see.
     motor : pair of (m,) float
         What a motor is given, and whether it is connected, on the fine grid; a single number each where there is none.
     every : int
@@ -377,6 +447,8 @@ def run(
         Filled. Columns are starts, parameters (linear, beside), slopes of the drive.
     ends, dends : (s, states), (s, states, columns) float
         Filled: the state at each border's end.
+    unsure : (n, channels) float
+        Filled: how far channels are off for a speed that is, where forces beside are steep.
     """
     transition, now, later, kick = lin
     d_transition, d_now, d_later, d_kick = slopes_lin
@@ -396,8 +468,9 @@ def run(
     dz = np.zeros((max(hidden, 1), columns))
     df, change = np.zeros(columns), np.zeros(columns)
     slopes, by_v = np.zeros(hidden + columns), np.zeros(STATES)
-    was, beyond = np.zeros(columns), np.zeros(columns)
-    slopes_now, more_slopes = np.zeros(hidden + columns), np.zeros(hidden + columns)
+    was, beyond, later_on = np.zeros(columns), np.zeros(columns), np.zeros(columns)
+    slopes_now = np.zeros(hidden + columns)
+    more_slopes, late_slopes = np.zeros(hidden + columns), np.zeros(hidden + columns)
     mean_slopes = np.zeros(hidden + columns)
     moved_by = np.zeros(n_lin)  # what one newton beside, as a kick before a step, has taken away at its end
     for k in range(n_lin):
@@ -413,7 +486,6 @@ def run(
             z[k] = starts[stretch, n_lin + k]
             dz[k, n_lin + k] = 1.0
         f, fx, fv, x_was, v_was = 0.0, 0.0, 0.0, 0.0, 0.0
-        f_was, fx_was, fv_was = 0.0, 0.0, 0.0
         first, after, last_row, driven_from, last = places[stretch]
         total = (after - first) * every
         for n in range(total + 1):
@@ -429,11 +501,12 @@ def run(
                 if n:  # as the last force goes on, to first order
                     f += (fx * (s[0] - x_was) + fv * (moved - kick[1] * f - v_was)) / max(1.0 + kick[1] * fv, 0.1)
                     v -= kick[1] * f
-                turn = 0
+                turn, low, high = 0, -math.inf, math.inf
                 while True:
                     slopes[:] = 0.0
                     f, fx, fv = _force(s[0], v, z, time, row, given, g, slopes, turn == 0 or turn == NEWTON)
-                    away = half * (v - moved + kick[1] * f) / max(1.0 + kick[1] * fv, 0.1)
+                    off = half * (v - moved + kick[1] * f)
+                    away = off / max(1.0 + kick[1] * fv, 0.1)
                     if turn == NEWTON:
                         break
                     flat = fv == 0.0 and v * (v - away) > 0.0  # a force of this velocity's sign alone
@@ -443,27 +516,28 @@ def run(
                         break
                     # once it has settled, a last turn takes the slopes as well
                     turn = NEWTON if abs(away) <= 1e-7 * g[15] else turn + 1
-                    v -= away
-                more, more_v = 0.0, 0.0
-                if (
-                    n
-                    and jumps
-                    and v * v_was < 0.0
-                    and _sharp(f - f_was, 0.5 * ((fv + fv_was) * (v - v_was) + (fx + fx_was) * (s[0] - x_was)))
-                ):
-                    at_v, at_f, at_fx, at_fv, more, more_v, more_was = _turned(
-                        v, v_was, moved, kick[1], s[0], z, time, row, given, g, slopes_now, more_slopes, mean_slopes
-                    )
-                    if more != 0.0:
-                        v, f, fx, fv = at_v, at_f, at_fx, at_fv
-                        slopes[:] = slopes_now
-                        for j in range(columns):
-                            beyond[j] = more_was * was[j]
-                        for p in range(columns - states):
-                            beyond[states + p] += more_slopes[hidden + p]
-                v_was, f_was, fx_was, fv_was = v, f, fx, fv
+                    v, low, high = _between(v - away, v, off, low, high)
+                more, late = (0.0, 0.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0, 0.0)
+                leaps = n > 0 and jumps and _nears_rest(v_was, v)
+                if leaps:
+                    at_v, at_f, at_fx, at_fv, more, late = _along_speed(
+                        v, v_was, moved, kick[1], s[0], z, time, row, given, g, slopes_now, more_slopes, late_slopes,
+                        mean_slopes,
+                    )  # fmt: skip
+                    v, f, fx, fv = at_v, at_f, at_fx, at_fv
+                    slopes[:] = slopes_now
+                    for j in range(columns):
+                        beyond[j] = more[2] * was[j] + more[4] * ds[0, j]
+                        later_on[j] = late[2] * was[j] + late[4] * ds[0, j]
+                    for p in range(columns - states):
+                        beyond[states + p] += more_slopes[hidden + p]
+                        later_on[states + p] += late_slopes[hidden + p]
+                    for p in range(n_par):
+                        beyond[states + p] += more[3] * d_kick[p, 1]
+                        later_on[states + p] += late[3] * d_kick[p, 1]
+                v_was = v
                 taken = half * kick[1]
-                share = 1.0 / (1.0 + taken * (fv + more_v))
+                share = 1.0 / (1.0 + taken * (fv + more[1]))
                 for j in range(columns):
                     df[j] = fx * ds[0, j]
                 for p in range(columns - states):
@@ -471,19 +545,23 @@ def run(
                 for k in range(hidden):
                     for j in range(columns):
                         df[j] += slopes[k] * dz[k, j]
-                if more != 0.0:
+                if leaps:
                     for j in range(columns):
                         dv = ds[1, j] - taken * (df[j] + beyond[j])
                         if states <= j < states + n_par:
-                            dv -= half * d_kick[j - states, 1] * (f + more)
+                            dv -= half * d_kick[j - states, 1] * (f + more[0])
                         df[j] += fv * dv * share
-                        beyond[j] += more_v * dv * share
+                        beyond[j] += more[1] * dv * share
                         for k in range(n_lin):
                             ds[k, j] -= kick[k] * beyond[j]
+                        ds[0, j] -= step * kick[1] * (later_on[j] + late[1] * dv * share)
                     for k in range(n_lin):
-                        s[k] -= kick[k] * more
-                        for p in range(n_par):
-                            ds[k, states + p] -= d_kick[p, k] * more
+                        s[k] -= kick[k] * more[0]
+                    for p in range(n_par):
+                        for k in range(n_lin):
+                            ds[k, states + p] -= d_kick[p, k] * more[0]
+                        ds[0, states + p] -= step * d_kick[p, 1] * late[0]
+                    s[0] -= step * kick[1] * late[0]
                 elif fv != 0.0:
                     own, other = 1.0 - fv * share * taken, fv * share
                     for j in range(columns):
@@ -500,11 +578,18 @@ def run(
                             ds[k, states + p] -= d_kick[p, k] * f
             if n % every == 0 and n < total:
                 row = first + n // every
+                apart = 0.0
+                if beside and jumps:
+                    off = TIMED * g[15]
+                    above, _, _ = _force(s[0], v + off, z, time, row, given, g, slopes_now, False)
+                    below, _, _ = _force(s[0], v - off, z, time, row, given, g, slopes_now, False)
+                    apart = 0.5 * (above - below)
                 for k in range(channels):
                     value = from_drive[k] * here + from_force[k] * f
                     for i in range(n_lin):
                         value += c[k, i] * s[i]
                     y[row, k] = value
+                    unsure[row, k] = from_force[k] * apart
                     out = dy[row, k]
                     by_0, by_1, by_f = c[k, 0], c[k, 1], from_force[k]
                     if beside and by_f != 0.0:
@@ -535,14 +620,14 @@ def run(
                 for j in range(columns):
                     change[j] = ds[0, j]
             next_at = min(at + 1, last)
-            there = drive[next_at]
+            line, there = lines[at], lines[next_at]
             if beside:
                 for k in range(n_lin):
                     s[k] -= kick[k] * f
                     for p in range(n_par):
                         ds[k, states + p] -= d_kick[p, k] * f
             for k in range(n_lin):
-                value = now[k] * here + later[k] * there
+                value = now[k] * line + later[k] * there
                 for i in range(n_lin):
                     value += transition[k, i] * s[i]
                 new[k] = value
@@ -558,7 +643,7 @@ def run(
                     for j in range(columns):
                         dnew[k, j] += weight * ds[i, j]
                 for p in range(n_par):
-                    own = d_now[p, k] * here + d_later[p, k] * there
+                    own = d_now[p, k] * line + d_later[p, k] * there
                     for i in range(n_lin):
                         own += d_transition[p, k, i] * s[i]
                     dnew[k, states + p] += own

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
@@ -16,6 +17,7 @@ from ssmr_ident.estimate.motor import drive_of
 from ssmr_ident.estimate.node import MEMORY, Node, Tables, law_places, law_vector, merged, stepped_with_slopes
 from ssmr_ident.estimate.pieces import Piece
 from ssmr_ident.estimate.values import Problem
+from ssmr_ident.signals.grid import line_corners
 
 Array = np.ndarray
 
@@ -41,6 +43,7 @@ class Simulated:
     dy: Array
     ends: Array
     dends: Array
+    unsure: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -190,7 +193,7 @@ def simulate(
         row, part = 0, 0
         for k in batch:
             rows, parts = slice(row, row + len(model.pieces[k].y)), slice(part, part + len(starts[k]))
-            yield Simulated(s.y[rows], s.dy[rows], s.ends[parts], s.dends[parts])
+            yield Simulated(s.y[rows], s.dy[rows], s.ends[parts], s.dends[parts], s.unsure[rows])
             row, part = rows.stop, parts.stop
 
 
@@ -237,12 +240,13 @@ def _batch(
     states, moved, turned = begun.shape[1], node.linear_states, model.turned
     columns = states + n_lin + n_tab + n_law + len(drives)
     y, dy = np.empty((row[-1], piece.y.shape[1])), np.empty((row[-1], piece.y.shape[1], columns))
-    ends, dends = np.empty(begun.shape), np.empty((*begun.shape, columns))
+    ends, dends, unsure = np.empty(begun.shape), np.empty((*begun.shape, columns)), np.empty(y.shape)
     if turned is not None:
         begun = np.hstack([begun[:, :moved] @ turned[0].T, begun[:, moved:]])
     beside = node.beside or piece.motor is not None
-    run(lin, d_lin, rows, d_rows, model.beside(pieces), beside, begun, places, times, drive, drives, motor, piece.every,
-        piece.step, y, dy, ends, dends)  # fmt: skip
+    lines = np.concatenate([line_corners(drive[a:b]) for a, b in itertools.pairwise(at)])
+    run(lin, d_lin, rows, d_rows, model.beside(pieces), beside, begun, places, times, drive, lines, drives, motor,
+        piece.every, piece.step, y, dy, ends, dends, unsure)  # fmt: skip
     if turned is not None:
         into, back, order = turned
         ends[:, :moved] = ends[:, :moved] @ back.T
@@ -255,7 +259,7 @@ def _batch(
     if any(m.after for m in node.members):
         for own, first, after in zip(pieces, row[:-1], row[1:], strict=True):
             y[first:after], dy[first:after] = _afterwards(model, own, y[first:after], dy[first:after], states)
-    return Simulated(y, dy, ends, dends)
+    return Simulated(y, dy, ends, dends, unsure)
 
 
 def _motor(model: Compiled, piece: Piece) -> tuple[bool, float, float, float, float]:

@@ -24,7 +24,7 @@ from ssmr_ident.physics.slots import (
     effect_vector,
 )
 from ssmr_ident.physics.voltage_drive import Controller, Course, VoltageDrive, torque, voltage
-from ssmr_ident.signals.grid import band_limited
+from ssmr_ident.signals.grid import band_limited, line_corners
 from ssmr_ident.simulate.sensed import sensed
 
 _unlisted = unlisted.force
@@ -47,10 +47,10 @@ def simulate_rig(
 ) -> np.ndarray:
     """Motion of the rig under a sampled force, or driven by a motor.
 
-    The mass, spring and damper are propagated exactly over a step with the force in a straight line across it; the
-    force is first made ``oversampling`` times finer within its band, because straight lines between the samples
-    of a force near half the sampling rate are not what acted. Effects kick the mass before and after each step
-    (Strang splitting, second order), and are passed over when there are none.
+    The mass, spring and damper are propagated exactly over a step with the force in a straight line across it, whose
+    corners make up for what lines take from a smooth force; it is first made ``oversampling`` times finer within its
+    band, because lines between the samples of a force near half the sampling rate are not what acted. Effects kick the
+    mass before and after each step (Strang splitting, second order), and are passed over when there are none.
 
     Parameters
     ----------
@@ -106,7 +106,17 @@ def simulate_rig(
     given = _given(motor, course, len(driving))
     beside = given[0] or not np.array_equal(e, effect_vector({}))
     laws = (rig.mass, rig.damping, rig.stiffness, e, beside, low_pass_coefficients(bandwidth_hz, step), given)
-    _run(*_propagators(rig, e[UNLISTED:], step), *laws, driving, position, velocity, step, oversampling, out)
+    _run(
+        *_propagators(rig, e[UNLISTED:], step),
+        *laws,
+        driving,
+        line_corners(driving),
+        position,
+        velocity,
+        step,
+        oversampling,
+        out,
+    )
     if not np.isfinite(out[-1]).all():
         row = int(np.flatnonzero(~np.isfinite(out).all(axis=1))[0])
         raise SimulationError(
@@ -181,7 +191,7 @@ def _extra(x, v, hidden, time, half, here, n, stiffness, e, given):
 @kernel
 def _run(
     transition, weight_now, weight_next, mass, damping, stiffness, e, beside, low_pass, given,
-    force, position, velocity, step, every, out,
+    force, lines, position, velocity, step, every, out,
 ):  # fmt: skip
     x, v, y, w = position, velocity, 0.0, 0.0
     hidden = np.zeros(STATES)
@@ -206,7 +216,7 @@ def _run(
             if beside:
                 kick = 0.5 * step / body * extra
                 v, w = v - kick, w + kick
-            now, later, start = force[n], force[n + 1], x
+            now, later, start = lines[n], lines[n + 1], x
             was = x, v, y, w
             x = transition[0, 0] * was[0] + transition[0, 1] * was[1] + weight_now[0] * now + weight_next[0] * later
             v = transition[1, 0] * was[0] + transition[1, 1] * was[1] + weight_now[1] * now + weight_next[1] * later
@@ -222,5 +232,5 @@ def _run(
             if beside:
                 element_advance(hidden, (x - start) / step, step, True, e)
                 half = 0.5 * step / body
-                extra = _extra(x, v, hidden, (n + 1) * step, half, later, n + 1, stiffness, e, given)
+                extra = _extra(x, v, hidden, (n + 1) * step, half, force[n + 1], n + 1, stiffness, e, given)
                 v, w = v - half * extra, w + half * extra
