@@ -51,6 +51,21 @@ def test_a_linear_rig_is_exact() -> None:
     assert motion[inner, 2] == pytest.approx(acceleration[inner], abs=2e-4 * np.abs(acceleration).max())
 
 
+@pytest.mark.parametrize(("friction", "share", "apart"), [(2.0, 0.0, 1e-3), (12.0, 0.1, 2e-3), (25.0, 0.6, 4e-3)])
+def test_friction_holds_a_rig_at_rest(friction: float, share: float, apart: float) -> None:
+    def rate(t: float, y: np.ndarray) -> list[float]:
+        rubs = friction * np.tanh(y[1] / 1e-4)
+        return [y[1], (_force(t) - RIG.damping * y[1] - RIG.stiffness * y[0] - rubs) / RIG.mass]
+
+    true = solve_ivp(rate, (0, TIME[-1]), [2e-3, 0.0], "LSODA", TIME, rtol=1e-9, atol=1e-12).y
+    assert share <= np.mean(np.abs(true[1]) < 1e-4) < share + 0.3
+    own = simulate_rig(
+        RIG, _force(TIME), RATE, position=2e-3, effects={"dry_friction": {"F_c_N": friction, "rounding_m_s": 1e-4}}
+    )
+    inner = slice(20, -20)
+    assert np.std(own[inner, 1] - true[1, inner]) < apart * np.std(true[1])
+
+
 @pytest.mark.parametrize(
     ("effects", "beside"),
     [

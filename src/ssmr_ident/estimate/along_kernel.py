@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from ssmr_ident.core.kernel import kernel
-from ssmr_ident.estimate.motion_kernel import law_force
 from ssmr_ident.physics.element import element_next
+from ssmr_ident.simulate.rig_kernel import law_force
 
 
 @kernel

@@ -11,11 +11,11 @@ from scipy.interpolate import BSpline
 from scipy.linalg import eigh
 
 from ssmr_ident.estimate.coordinate import Coordinate
-from ssmr_ident.estimate.motion_kernel import BY_INERTIA, BY_POSITION, BY_VELOCITY
 from ssmr_ident.estimate.node import BRANCH, LAG, MEMORY, RIDER, Member, Tables
 from ssmr_ident.estimate.pieces import Piece
 from ssmr_ident.estimate.values import Problem
 from ssmr_ident.physics.network import ONE
+from ssmr_ident.simulate.rig_kernel import BY_INERTIA, BY_POSITION, BY_VELOCITY
 
 Array = np.ndarray
 

@@ -12,12 +12,12 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from ssmr_ident.estimate.instrument import OUTPUT, passed_on
-from ssmr_ident.estimate.motion_kernel import run
 from ssmr_ident.estimate.motor import drive_of
 from ssmr_ident.estimate.node import MEMORY, Node, Tables, law_places, law_vector, merged, stepped_with_slopes
 from ssmr_ident.estimate.pieces import Piece
 from ssmr_ident.estimate.values import Problem
 from ssmr_ident.signals.grid import line_corners
+from ssmr_ident.simulate.rig_kernel import run
 
 Array = np.ndarray
 

@@ -3,33 +3,30 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.linalg import expm
 
 from ssmr_ident.core.errors import InputError, SimulationError
 from ssmr_ident.core.kernel import kernel
-from ssmr_ident.physics.effects import CATALOGUE, load_dependent_friction, unlisted
-from ssmr_ident.physics.element import STATES, element_advance, element_force, spring_force
+from ssmr_ident.physics.effects import CATALOGUE, unlisted
+from ssmr_ident.physics.element import STATES
 from ssmr_ident.physics.rig import Rig
 from ssmr_ident.physics.sensor import filter_step, low_pass_coefficients
-from ssmr_ident.physics.slots import (
-    LOAD_FRICTION,
-    LOAD_ROUNDING,
-    LOAD_SHARE,
-    UNLISTED,
-    Effects,
-    checked,
-    effect_vector,
-)
-from ssmr_ident.physics.voltage_drive import Controller, Course, VoltageDrive, torque, voltage
+from ssmr_ident.physics.slots import LOAD_FRICTION, LOAD_SHARE, UNLISTED, Effects, checked, effect_vector
+from ssmr_ident.physics.voltage_drive import Controller, Course, VoltageDrive
 from ssmr_ident.signals.grid import band_limited, line_corners
+from ssmr_ident.simulate.rig_kernel import run
 from ssmr_ident.simulate.sensed import sensed
 
-_unlisted = unlisted.force
-_gears, _slowed = load_dependent_friction.force, load_dependent_friction.slowed
 RIDER_SHARE, RIDER_HZ, RIDER_RATIO = unlisted.RIDER_SHARE, unlisted.RIDER_HZ, unlisted.RIDER_RATIO
+
+PART = 20_000
+"""Steps that are run at once: their slopes, which nobody asks for, are as much memory as there is."""
+
+TINIEST = 1e-12
+"""Size of the motion of a rig that only what no spring holds moves."""
 
 
 def simulate_rig(
@@ -101,22 +98,11 @@ def simulate_rig(
         rig = replace(rig, mass=rig.mass + motor.inertia)
     driving = force if fine or oversampling == 1 else band_limited(force, oversampling)
     step = 1.0 / (sample_rate * oversampling)
-    out = np.empty((n, 3))
-    e = effect_vector(active)
     given = _given(motor, course, len(driving))
-    beside = given[0] or not np.array_equal(e, effect_vector({}))
-    laws = (rig.mass, rig.damping, rig.stiffness, e, beside, low_pass_coefficients(bandwidth_hz, step), given)
-    _run(
-        *_propagators(rig, e[UNLISTED:], step),
-        *laws,
-        driving,
-        line_corners(driving),
-        position,
-        velocity,
-        step,
-        oversampling,
-        out,
-    )
+    motion = _motion(rig, effect_vector(active), driving, given, (position, velocity), step)
+    out = motion[::oversampling].copy()
+    if math.isfinite(bandwidth_hz):
+        out[:, 2] = _low_passed(motion[:, 2], low_pass_coefficients(bandwidth_hz, step))[::oversampling]
     if not np.isfinite(out[-1]).all():
         row = int(np.flatnonzero(~np.isfinite(out).all(axis=1))[0])
         raise SimulationError(
@@ -128,21 +114,89 @@ def simulate_rig(
     return np.column_stack(list(sensed(np.arange(n) / sample_rate, logged, active).values()))
 
 
-def _given(
-    motor: VoltageDrive | None, course: Course | None, count: int
-) -> tuple[bool, np.ndarray, np.ndarray, float, float, float, float]:
-    """Whether a motor is given anything; on the fine grid what that is and whether it is connected; controller's gain
-    and limit; the motor's gain and braking."""
+@dataclass(frozen=True, eq=False)
+class _Given:
+    """What a motor is given on the fine grid, and whether it is connected; as the loop takes it, but for a size."""
+
+    signal: np.ndarray
+    on: np.ndarray
+    gain: float
+    limit: float
+    motor: VoltageDrive | None
+
+    def stalled(self) -> np.ndarray:
+        """Its torque [N m] at rest at the origin."""
+        assert self.motor is not None
+        held = np.clip(self.gain * self.signal, -self.limit, self.limit) if self.gain else self.signal
+        return self.on * self.motor.gain * held
+
+
+def _given(motor: VoltageDrive | None, course: Course | None, count: int) -> _Given:
     if motor is None or course is None:
-        return False, np.zeros(1), np.zeros(1), 0.0, math.inf, 0.0, 0.0
+        return _Given(np.zeros(1), np.zeros(1), 0.0, math.inf, None)
     at = np.linspace(0.0, len(course.signal) - 1.0, count)
     signal, on = (np.interp(at, np.arange(len(x)), x) for x in (course.signal, course.on))
     held = course.controller or Controller(0.0)
-    return True, signal, on, held.gain, held.limit, motor.gain, motor.braking
+    return _Given(signal, on, held.gain, held.limit, motor)
 
 
-def _propagators(rig: Rig, free: np.ndarray, step: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Exact step of (x, v) under a force that runs straight from f0 to f1: state matrix and the two weights.
+def _motion(
+    rig: Rig, e: np.ndarray, force: np.ndarray, given: _Given, begun: tuple[float, float], step: float
+) -> np.ndarray:
+    """Position, velocity, acceleration on the fine grid, (n, 3) float."""
+    motor = given.motor
+    plain = rig
+    driving = force
+    if motor is not None:
+        plain, driving = replace(rig, damping=rig.damping + motor.braking), force + given.stalled()
+    usual = _looped(
+        plain, effect_vector({}), driving, _Given(np.zeros(1), np.zeros(1), 0.0, math.inf, None), begun, step
+    )
+    if motor is None and np.array_equal(e, effect_vector({})):
+        return usual
+    size, speed, _ = (
+        float(np.sqrt(np.mean(column**2))) or TINIEST for column in np.where(np.isfinite(usual), usual, 0.0).T
+    )
+    return _looped(rig, e, force, given, begun, step, size, speed)
+
+
+def _looped(
+    rig: Rig, e: np.ndarray, force: np.ndarray, given: _Given, begun: tuple[float, float], step: float,
+    size: float = 1.0, speed: float = 1.0,
+) -> np.ndarray:  # fmt: skip
+    """The same by the loop, part by part; ``size`` [m] and ``speed`` [m/s] of the motion are what it is exact to."""
+    motor, beside = given.motor, not np.array_equal(e, effect_vector({}))
+    lin, rows = _linear(rig, e[UNLISTED:], step)
+    values = np.array([rig.mass, rig.damping, rig.stiffness, *((motor.constant, motor.resistance) if motor else ())])
+    n_lin, n_par = len(lin[0]), len(values)
+    d_lin, d_rows = (tuple(np.zeros((n_par, *x.shape)) for x in part) for part in (lin, rows))
+    drives = (motor is not None, given.gain, given.limit, motor.ratio if motor else 1.0, rig.mass * speed / step)
+    none, uses = np.zeros((2, 0)), np.ones(8, dtype=bool)
+    uses[7] = e[LOAD_FRICTION] != 0.0 or e[LOAD_SHARE] != 0.0
+    g = (
+        1.0, (1.0, 1.0, 1.0), none, none, np.zeros((2, 2, 0)), np.zeros((1, 0)), np.zeros(0, dtype=np.int64),
+        np.zeros(0), np.stack([values, np.zeros(n_par)]), np.zeros(0), beside, e, np.zeros(0, dtype=np.int64),
+        np.zeros(0), size, speed, uses, drives,
+    )  # fmt: skip
+    count, states = len(force), n_lin + STATES
+    columns = states + n_par + 1
+    out, lines, slopes = np.empty((count, 3)), line_corners(force), np.zeros((1, count))
+    state = np.zeros((1, states))
+    state[0, :2] = begun
+    for first in range(0, count, PART):
+        length = min(PART, count - first)
+        places = np.array([[0, length, length - 1, first, count - 1]])
+        y, dy, ends = np.empty((length, 3)), np.empty((length, 3, columns)), np.empty((1, states))
+        run(lin, d_lin, rows, d_rows, g, beside or motor is not None, state, places, np.array([first * step]), force,
+            lines, slopes, (given.signal, given.on), 1, step, y, dy, ends, np.empty((1, states, columns)),
+            np.empty((length, 3)))  # fmt: skip
+        out[first : first + length], state = y, ends
+    return out
+
+
+def _linear(rig: Rig, free: np.ndarray, step: float) -> tuple[tuple[np.ndarray, ...], tuple[np.ndarray, ...]]:
+    """Exact step of (x, v) under a force that runs straight from f0 to f1, and position, velocity and acceleration of
+    them: (state matrix, the two weights, half a kick), (over states, over the force, over one beside).
 
     Of (x, v, y, w) where a part of the mass rides along, which is y further than x, with the relative speed w.
     """
@@ -161,76 +215,17 @@ def _propagators(rig: Rig, free: np.ndarray, step: float) -> tuple[np.ndarray, n
         a[3, 2:4] -= pull
     a[n, n + 1] = 1.0 / step
     e = expm(a * step)
-    return e[:n, :n].copy(), e[:n, n] - e[:n, n + 1], e[:n, n + 1].copy()
+    now, later = e[:n, n] - e[:n, n + 1], e[:n, n + 1]
+    kick = np.array([0.0, 0.5 * step / body, 0.0, -0.5 * step / body])[:n]
+    over = np.vstack([np.eye(n)[:2], a[1, :n]])
+    rows = (over, np.array([0.0, 0.0, 1.0 / body]), np.array([0.0, 0.0, -1.0 / body]))
+    return tuple(np.ascontiguousarray(x) for x in (e[:n, :n], now, later, kick)), rows
 
 
 @kernel
-def _extra(x, v, hidden, time, half, here, n, stiffness, e, given):
-    """Force beside spring, damper and what drives from outside [N] once it has kicked the velocity ``v`` for ``half``
-    [s/kg]; ``here`` : force from outside [N]."""
-    driven, signal, on, gain, limit, motor_gain, braking = given
-    loads = e[LOAD_FRICTION] != 0.0 or e[LOAD_SHARE] != 0.0
-    extra, kicked = 0.0, v
-    # the kick takes the velocity after it, so that damping keeps the second order
-    for _ in range(3 if half > 0.0 else 1):
-        extra = element_force(x, kicked, hidden, stiffness, 1.0, 1.0, True, e)
-        extra += _unlisted(x, kicked, time, 1.0, e[UNLISTED:])
-        drive = here
-        if driven:
-            own = torque(voltage(signal[n], x, gain, limit), kicked, on[n], motor_gain, braking)
-            extra -= own
-            drive += own
-        if loads:
-            carried = drive + spring_force(x, stiffness, e)
-            rubs = e[LOAD_FRICTION], e[LOAD_SHARE], e[LOAD_ROUNDING]
-            extra += _gears(_slowed(v - half * extra, half, carried, *rubs), carried, *rubs)
-        kicked = v - half * extra
-    return extra
-
-
-@kernel
-def _run(
-    transition, weight_now, weight_next, mass, damping, stiffness, e, beside, low_pass, given,
-    force, lines, position, velocity, step, every, out,
-):  # fmt: skip
-    x, v, y, w = position, velocity, 0.0, 0.0
-    hidden = np.zeros(STATES)
-    free = e[UNLISTED:]
-    riding = transition.shape[0] == 4
-    share = free[RIDER_SHARE] if riding else 0.0
-    body, turning = mass * (1.0 - share), 2.0 * math.pi * free[RIDER_HZ]
-    pull_y, pull_w = mass * share * turning * turning, 2.0 * mass * share * free[RIDER_RATIO] * turning
-    extra = _extra(x, v, hidden, 0.0, 0.0, force[0], 0, stiffness, e, given) if beside else 0.0
-    first = (force[0] - damping * v - stiffness * x - extra) / body
-    history = np.full((1, 4), first)
-    steps = (out.shape[0] - 1) * every
-    for n in range(steps + 1):
-        inertial = force[n] - damping * v - stiffness * x - extra
-        if riding:
-            inertial += pull_y * y + pull_w * w
-        acceleration = filter_step(history, 0, inertial / body, low_pass)
-        if n % every == 0:
-            row = out[n // every]
-            row[0], row[1], row[2] = x, v, acceleration
-        if n < steps:
-            if beside:
-                kick = 0.5 * step / body * extra
-                v, w = v - kick, w + kick
-            now, later, start = lines[n], lines[n + 1], x
-            was = x, v, y, w
-            x = transition[0, 0] * was[0] + transition[0, 1] * was[1] + weight_now[0] * now + weight_next[0] * later
-            v = transition[1, 0] * was[0] + transition[1, 1] * was[1] + weight_now[1] * now + weight_next[1] * later
-            if riding:
-                x += transition[0, 2] * y + transition[0, 3] * w
-                v += transition[1, 2] * y + transition[1, 3] * w
-                y, w = 0.0, 0.0
-                for k in range(4):
-                    y += transition[2, k] * was[k]
-                    w += transition[3, k] * was[k]
-                y += weight_now[2] * now + weight_next[2] * later
-                w += weight_now[3] * now + weight_next[3] * later
-            if beside:
-                element_advance(hidden, (x - start) / step, step, True, e)
-                half = 0.5 * step / body
-                extra = _extra(x, v, hidden, (n + 1) * step, half, force[n + 1], n + 1, stiffness, e, given)
-                v, w = v - half * extra, w + half * extra
+def _low_passed(signal, coefficients):
+    """What a second-order low-pass, at rest at its first value, makes of a signal."""
+    history, out = np.full((1, 4), signal[0]), np.empty(len(signal))
+    for n in range(len(signal)):
+        out[n] = filter_step(history, 0, signal[n], coefficients)
+    return out

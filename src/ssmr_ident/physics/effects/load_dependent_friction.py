@@ -23,31 +23,6 @@ def force(v, carried, friction, share, rounding):
     return (friction + share * abs(carried)) * math.tanh(v / rounding)
 
 
-@kernel
-def slowed(v, kick, carried, friction, share, rounding):
-    """Velocity w [m/s] with w + kick·force(w) = v: safeguarded Newton on a function that only rises.
-
-    v : float [m/s], kick : float [m/(s N)], the others as in ``force``.
-    """
-    most = kick * (friction + share * abs(carried))
-    low, high = v - most, v + most
-    w = min(max(v, low), high)
-    for _ in range(60):
-        t = math.tanh(w / rounding)
-        away = w - v + most * t
-        if away > 0.0:
-            high = w
-        else:
-            low = w
-        new = w - away / (1.0 + most * (1.0 - t * t) / rounding)
-        if not low <= new <= high:
-            new = 0.5 * (low + high)
-        if abs(new - w) <= 1e-12 * (abs(v) + rounding):
-            return new
-        w = new
-    return w
-
-
 EFFECT = Effect(
     id="load_dependent_friction",
     sentence="The friction of the gears grows with the torque that they carry.",

@@ -1,9 +1,8 @@
-"""The rig's motion with its slopes, stretch by stretch: exact linear steps, kicks of the forces beside them.
+"""A rig's motion with its slopes, stretch by stretch: exact linear steps, kicks of the forces beside them.
 
-The scheme is the simulator's own (``simulate/rig.py``: Strang splitting about the exact propagator), so that a fit and
-the simulator agree, but for forces that jump where the motion turns (``_turned``). Here every state carries its
-derivatives with respect to where its stretch begins, to the model's parameters and to what else drives it (forward
-sensitivities).
+Strang splitting about the exact propagator, with the mean of the force in steps near rest, where it may jump. One loop
+simulates and fits: every state carries its derivatives with respect to where its stretch begins, to the model's
+parameters and to what else drives it (forward sensitivities).
 """
 
 from __future__ import annotations
@@ -252,7 +251,7 @@ def _between(next_v, v, away, low, high):
 @kernel
 def _nears_rest(v_was, v):
     """Whether a step comes from rest, goes to it or passes through: only there does a force jump with speed."""
-    return abs(v - v_was) > 0.5 * max(abs(v), abs(v_was)) and v * v_was != 0.0
+    return abs(v - v_was) > 0.5 * max(abs(v), abs(v_was))
 
 
 @kernel
@@ -271,7 +270,8 @@ def _course(v, v_was, f, f_was, fv, fv_was, mean, mean_was, kick):
     """
     change = v - v_was
     between = (v * mean - v_was * mean_was) / change
-    by_end, by_begin = (f - mean) / v, (f_was - mean_was) / v_was
+    by_end = (f - mean) / v if v != 0.0 else 0.5 * fv
+    by_begin = (f_was - mean_was) / v_was if v_was != 0.0 else 0.5 * fv_was
     if v * v_was < 0.0:  # share·(change + jump·(1 - share)) = -v_was, the jump as a change of velocity
         held = mean - mean_was
         jump = 2.0 * kick * held
