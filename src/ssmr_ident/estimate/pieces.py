@@ -34,7 +34,7 @@ FORCES, FEET = ("force", "torque"), ("base_position", "base_acceleration")
 FINEST = 60
 """Samples a period that are kept; faster logs are averaged over blocks, by which a sine of 60 samples loses 0.05 %."""
 
-STEPS = 120
+STEPS = 60
 """Least integration steps a period: kicks err by (2 pi / steps)^2 / 24, a tenth of a per mille, which is below what
 noise of a thousandth leaves unknown of a friction in some thousand samples."""
 

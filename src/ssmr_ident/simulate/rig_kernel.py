@@ -28,6 +28,11 @@ NEWTON = 30
 NEAR = 1e-5
 """Of the largest velocity, how near the first guess is where a straight line goes the rest of the way."""
 
+NOTHING = (0.0, 0.0, 0.0, 0.0, 0.0)
+
+LITTLE = 1e-6
+"""Of the size of the speed, what a force near rest does to it beyond its mean of begin and end that is not counted."""
+
 GRADES = 5
 """Parts of a velocity, each a quarter of the one before, in which a force that may jump at nought is averaged."""
 
@@ -331,7 +336,7 @@ def _along_speed(v, v_was, moved, kick, x, z, time, row, given, g, slopes, more_
     more, late : (5,) float
         Force [N] that the kick at the end has besides; and that which, over the whole step, would have moved the rig as
         what came later did beyond what came before. Each with its slopes over both velocities, the later first, over
-        the kick and over x; those over parameters in ``more_slopes`` and ``late_slopes``.
+        the kick and over x; those over parameters in ``more_slopes`` and ``late_slopes``. All 0 where it is little.
     """
     mean_was, _, f_was, _, fv_was = _toward_rest(x, v_was, z, time, row, given, g, slopes, mean_slopes, False)
     low, high = -math.inf, math.inf
@@ -339,6 +344,8 @@ def _along_speed(v, v_was, moved, kick, x, z, time, row, given, g, slopes, more_
     while True:
         mean, _, f, _, fv = _toward_rest(x, v, z, time, row, given, g, slopes, mean_slopes, False)
         more, late, more_of, late_of = _course(v, v_was, f, f_was, fv, fv_was, mean, mean_was, kick)
+        if turn == 0 and kick * (abs(more[0]) + abs(late[0])) < LITTLE * g[15]:
+            return v, f, 0.0, fv, NOTHING, NOTHING
         off = v - moved + kick * (f + more[0])
         away = off / max(1.0 + kick * (fv + more[1]), 0.1)
         if abs(away) <= 1e-7 * g[15] or turn == NEWTON:
@@ -517,13 +524,14 @@ def run(
                     # once it has settled, a last turn takes the slopes as well
                     turn = NEWTON if abs(away) <= 1e-7 * g[15] else turn + 1
                     v, low, high = _between(v - away, v, off, low, high)
-                more, late = (0.0, 0.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0, 0.0)
-                leaps = n > 0 and jumps and _nears_rest(v_was, v)
-                if leaps:
+                more, late = NOTHING, NOTHING
+                if n and jumps and _nears_rest(v_was, v):
                     at_v, at_f, at_fx, at_fv, more, late = _along_speed(
                         v, v_was, moved, kick[1], s[0], z, time, row, given, g, slopes_now, more_slopes, late_slopes,
                         mean_slopes,
                     )  # fmt: skip
+                leaps = more[0] != 0.0
+                if leaps:
                     v, f, fx, fv = at_v, at_f, at_fx, at_fv
                     slopes[:] = slopes_now
                     for j in range(columns):
