@@ -35,8 +35,7 @@ FINEST = 60
 """Samples a period that are kept; faster logs are averaged over blocks, by which a sine of 60 samples loses 0.05 %."""
 
 STEPS = 60
-"""Least integration steps a period: kicks err by (2 pi / steps)^2 / 24, a tenth of a per mille, which is below what
-noise of a thousandth leaves unknown of a friction in some thousand samples."""
+"""Least integration steps a period: kicks err by (2 pi / steps)^2 / 24, half a per mille of the force beside."""
 
 STRAIGHT, FINER = 0.25, 4
 """Radians of a drive's fastest part in a step: what ``line_corners`` leaves is their fourth power over 90; and at most

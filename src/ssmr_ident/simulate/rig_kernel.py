@@ -26,19 +26,20 @@ NEWTON = 30
 """Iterations at the most for the velocity after a kick, whose force depends on it."""
 
 NEAR = 1e-5
-"""Of the largest velocity, how near the first guess is where a straight line goes the rest of the way."""
+"""Of the largest velocity, how near the first guess is where a straight line goes the rest of the way, and what a force
+that bends near rest does to it that is not counted."""
 
 NOTHING = (0.0, 0.0, 0.0, 0.0, 0.0)
-
-LITTLE = 1e-6
-"""Of the size of the speed, what a force near rest does to it beyond its mean of begin and end that is not counted."""
 
 GRADES = 5
 """Parts of a velocity, each a quarter of the one before, in which a force that may jump at nought is averaged."""
 
 TIMED = 1e-3
-"""Of the size of the speed, how far that of a run is off where a force jumps, at the most: a third of it at 120 steps a
-period, as a stiff solver tells for dry friction of three sizes."""
+"""Of the size of the speed, how far that of a run is off where a force jumps, as a stiff solver tells: a tenth of it for
+dry friction of a fortieth of what drives, all of it where friction holds the rig for most of the time."""
+
+VALUE, BY_SPEED, ALL = range(3)
+"""What is wanted of a force: itself, its slope over speed, all its slopes."""
 
 BY_POSITION, BY_VELOCITY, CONSTANT, BY_INERTIA = range(4)
 """What a course over time multiplies."""
@@ -85,9 +86,10 @@ def _of_motor(x, v, given, motor, linear, slopes, first):
 
 
 @inlined
-def _force(x, v, z, time, row, given, g, slopes, with_slopes):
+def _force(x, v, z, time, row, given, g, slopes, wanted):
     """Force beside the linear rig [N], its slopes over x and v; those over hidden states and parameters into
-    ``slopes``, (hidden + parameters,). ``given`` : what drives [N], what a motor is given, whether it is connected."""
+    ``slopes``, (hidden + parameters,); as far as they are ``wanted``. ``given`` : what drives [N], what a motor is
+    given, whether it is connected."""
     (reach, steep, tab_x, tab_v, tab_xv, courses, course_kind, c, linear, yields, has_law, e, law_index, law_scale,
      size_x, size_v, uses, motor) = g  # fmt: skip
     jenkins = len(yields)
@@ -110,7 +112,7 @@ def _force(x, v, z, time, row, given, g, slopes, with_slopes):
             value = tab_x[i, k] + share * slope
             f += c[at] * value
             fx += c[at] * slope * per / reach
-            if with_slopes:
+            if wanted == ALL:
                 slopes[first + at] = value
             at += 1
     pulls, pulls_x = f - pulls, fx - pulls_x  # what a spring of any shape pulls
@@ -125,7 +127,7 @@ def _force(x, v, z, time, row, given, g, slopes, with_slopes):
             value = tab_v[i, k] + share * slope
             f += c[at] * value
             fv += c[at] * slope * per * change
-            if with_slopes:
+            if wanted == ALL:
                 slopes[first + at] = value
             at += 1
         if products:
@@ -138,7 +140,7 @@ def _force(x, v, z, time, row, given, g, slopes, with_slopes):
                 f += c[at] * of_x * of_v
                 fv += c[at] * of_x * slope_v * per * change
                 fx += c[at] * slope_x * per_x / reach * of_v
-                if with_slopes:
+                if wanted == ALL:
                     slopes[first + at] = of_x * of_v
                 at += 1
     for k in range(courses.shape[1]):
@@ -156,20 +158,20 @@ def _force(x, v, z, time, row, given, g, slopes, with_slopes):
             value = psi * (linear[0, 2] * x + linear[0, 1] * v - drive)
             fx += c[at] * psi * (linear[0, 2] - drive_x)
             fv += c[at] * psi * (linear[0, 1] - drive_v)
-            if with_slopes:
+            if wanted == ALL:
                 slopes[hidden + 2] += c[at] * psi * x * linear[1, 2]
                 slopes[hidden + 1] += c[at] * psi * v * linear[1, 1]
         f += c[at] * value
-        if with_slopes:
+        if wanted == ALL:
             slopes[first + at] = value
         at += 1
     for k in range(jenkins):
         f += c[at] * z[k]
-        if with_slopes:
+        if wanted == ALL:
             slopes[k] = c[at]
             slopes[first + at] = z[k]
         at += 1
-    if motor[0] and with_slopes:
+    if motor[0] and wanted == ALL:
         slopes[first + at + len(law_index)] -= drive_zero
     if has_law:
         h = (z[jenkins], z[jenkins + 1], z[jenkins + 2]) if remembers else (0.0, 0.0, 0.0)
@@ -180,7 +182,7 @@ def _force(x, v, z, time, row, given, g, slopes, with_slopes):
         d_drive = TINY * motor[4]
         centre, by_drive = 0.0, 0.0
         # one place from which the law is called, or the compiler writes it out a dozen times
-        for q in range(8 + len(law_index) if with_slopes else 2):
+        for q in range(8 + len(law_index) if wanted == ALL else 1 + wanted):
             if (1 <= q < 7 and not uses[q - 1]) or (q == 7 and not gears):
                 continue
             was = e[law_index[q - 8]] if q >= 8 else 0.0
@@ -208,7 +210,7 @@ def _force(x, v, z, time, row, given, g, slopes, with_slopes):
             else:
                 slopes[first + at + q - 8] = (value - centre) / (TINY * law_scale[q - 8])
                 e[law_index[q - 8]] = was
-        if with_slopes and gears:  # what drives is carried by the gears, too
+        if wanted == ALL and gears:  # what drives is carried by the gears, too
             fx += by_drive * (drive_x + pulls_x)
             fv += by_drive * drive_v
             for k in range(tab_x.shape[1]):
@@ -233,7 +235,8 @@ def _toward_rest(x, v, z, time, row, given, g, slopes, mean_slopes, with_slopes)
         elif q < 2 * GRADES:
             weight += 0.5 * at
         slopes[:] = 0.0
-        f, fx, fv = _force(x, v * at, z, time, row, given, g, slopes, with_slopes)
+        wanted = ALL if with_slopes else BY_SPEED if q == 2 * GRADES else VALUE
+        f, fx, fv = _force(x, v * at, z, time, row, given, g, slopes, wanted)
         mean += weight * f
         mean_x += weight * fx
         if with_slopes:
@@ -336,7 +339,7 @@ def _along_speed(v, v_was, moved, kick, x, z, time, row, given, g, slopes, more_
     more, late : (5,) float
         Force [N] that the kick at the end has besides; and that which, over the whole step, would have moved the rig as
         what came later did beyond what came before. Each with its slopes over both velocities, the later first, over
-        the kick and over x; those over parameters in ``more_slopes`` and ``late_slopes``. All 0 where it is little.
+        the kick and over x; those over parameters in ``more_slopes`` and ``late_slopes``.
     """
     mean_was, _, f_was, _, fv_was = _toward_rest(x, v_was, z, time, row, given, g, slopes, mean_slopes, False)
     low, high = -math.inf, math.inf
@@ -344,8 +347,6 @@ def _along_speed(v, v_was, moved, kick, x, z, time, row, given, g, slopes, more_
     while True:
         mean, _, f, _, fv = _toward_rest(x, v, z, time, row, given, g, slopes, mean_slopes, False)
         more, late, more_of, late_of = _course(v, v_was, f, f_was, fv, fv_was, mean, mean_was, kick)
-        if turn == 0 and kick * (abs(more[0]) + abs(late[0])) < LITTLE * g[15]:
-            return v, f, 0.0, fv, NOTHING, NOTHING
         off = v - moved + kick * (f + more[0])
         away = off / max(1.0 + kick * (fv + more[1]), 0.1)
         if abs(away) <= 1e-7 * g[15] or turn == NEWTON:
@@ -511,7 +512,9 @@ def run(
                 turn, low, high = 0, -math.inf, math.inf
                 while True:
                     slopes[:] = 0.0
-                    f, fx, fv = _force(s[0], v, z, time, row, given, g, slopes, turn == 0 or turn == NEWTON)
+                    f, fx, fv = _force(
+                        s[0], v, z, time, row, given, g, slopes, ALL if turn in (0, NEWTON) else BY_SPEED
+                    )
                     off = half * (v - moved + kick[1] * f)
                     away = off / max(1.0 + kick[1] * fv, 0.1)
                     if turn == NEWTON:
@@ -525,13 +528,17 @@ def run(
                     turn = NEWTON if abs(away) <= 1e-7 * g[15] else turn + 1
                     v, low, high = _between(v - away, v, off, low, high)
                 more, late = NOTHING, NOTHING
-                if n and jumps and _nears_rest(v_was, v):
+                leaps = n > 0 and jumps and _nears_rest(v_was, v)
+                if leaps:  # a quarter of the way a smooth force is on a straight line
+                    begun, _, _ = _force(s[0], v_was, z, time, row, given, g, slopes_now, VALUE)
+                    at_v = 0.75 * v_was + 0.25 * v
+                    at_f, _, _ = _force(s[0], at_v, z, time, row, given, g, slopes_now, VALUE)
+                    leaps = kick[1] * abs(at_f - 0.75 * begun - 0.25 * f) > NEAR * g[15]
+                if leaps:
                     at_v, at_f, at_fx, at_fv, more, late = _along_speed(
                         v, v_was, moved, kick[1], s[0], z, time, row, given, g, slopes_now, more_slopes, late_slopes,
                         mean_slopes,
                     )  # fmt: skip
-                leaps = more[0] != 0.0
-                if leaps:
                     v, f, fx, fv = at_v, at_f, at_fx, at_fv
                     slopes[:] = slopes_now
                     for j in range(columns):
@@ -589,8 +596,8 @@ def run(
                 apart = 0.0
                 if beside and jumps:
                     off = TIMED * g[15]
-                    above, _, _ = _force(s[0], v + off, z, time, row, given, g, slopes_now, False)
-                    below, _, _ = _force(s[0], v - off, z, time, row, given, g, slopes_now, False)
+                    above, _, _ = _force(s[0], v + off, z, time, row, given, g, slopes_now, VALUE)
+                    below, _, _ = _force(s[0], v - off, z, time, row, given, g, slopes_now, VALUE)
                     apart = 0.5 * (above - below)
                 for k in range(channels):
                     value = from_drive[k] * here + from_force[k] * f
