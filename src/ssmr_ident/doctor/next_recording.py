@@ -203,10 +203,10 @@ def _begun(fit: Fit, plan: Plan) -> Array:
 
 
 def _simulated(problem: Problem, fit: Fit, plan: Plan) -> Array | None:
-    """Channels, (n, c) float; None where the simulation leaves the finite numbers."""
+    """Channels, (n, c) float; None where the simulation leaves the finite numbers, or nothing moves."""
     piece = _piece(problem, plan)
     (y,) = motions(Compiled.of(problem, fit.node, fit.point, (piece,)), [_begun(fit, plan)])
-    return y if np.all(np.isfinite(y)) else None
+    return y if np.all(np.isfinite(y)) and np.any(y) else None
 
 
 def _distances(problem: Problem, fits: Sequence[Fit], plan: Plan, held: bool) -> Array | None:
