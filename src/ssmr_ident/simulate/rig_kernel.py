@@ -35,8 +35,8 @@ GRADES = 5
 """Parts of a velocity, each a quarter of the one before, in which a force that may jump at nought is averaged."""
 
 TIMED = 1e-3
-"""Of the size of the speed, how far that of a run is off where a force jumps, as a stiff solver tells: a tenth of it for
-dry friction of a fortieth of what drives, all of it where friction holds the rig for most of the time."""
+"""Of the size of the speed, how far that of a run is off where a force jumps, as a stiff solver tells: a tenth of it
+for dry friction of a fortieth of what drives, all of it where friction holds the rig for most of the time."""
 
 VALUE, BY_SPEED, ALL = range(3)
 """What is wanted of a force: itself, its slope over speed, all its slopes."""

@@ -14,6 +14,8 @@ from ssmr_ident.diagnose.scan import promising, scan
 from ssmr_ident.doctor.decays.laws import LAST, SCREENED_S, begun_at, exact, loudest, on_whole, starts
 from ssmr_ident.doctor.decays.linear import LinearFit, fit_linear
 from ssmr_ident.doctor.decays.recordings import Decay, thinned
+from ssmr_ident.doctor.decide import certain
+from ssmr_ident.doctor.robots.answer import table
 from ssmr_ident.doctor.robots.cooled import (
     FAR_OFF,
     FURTHER,
@@ -253,13 +255,20 @@ def _laws_beside(search: Search, first: Found, say: Progress) -> None:
 
 def _promising(search: Search, first: Found, laws: list[Member]) -> list[Member]:
     """Laws that a score test beside a fit that follows the recordings speaks for, and those that begin at a threshold,
-    of which it says nothing; beside a fit that does not follow them, all."""
-    if first.fit is None or search.over(first) > NEAR:
+    of which it says nothing; all beside a fit that does not follow them, and where another effect is as good as
+    certain, which is then held against all."""
+    if first.fit is None or search.over(first) > NEAR or _something_is_certain(search):
         return laws
     asked = [CATALOGUE[name] for name in dict.fromkeys(m.id for m in laws)]
     found = scan(differentiate(first.fit), [effect for effect in asked if not effect.sudden])
     likely = {suspect.effect for group in found for suspect in group if promising(suspect)}
     return [m for m in laws if m.id in likely or CATALOGUE[m.id].sudden]
+
+
+def _something_is_certain(search: Search) -> bool:
+    rows = [row for row, _ in table(search)]
+    base = next(row for row in rows if not row.ids)
+    return any(certain(row, base) for row in rows)
 
 
 def _linear(search: Search, first: Found, ways: Sequence[Member]) -> Found | None:
