@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from retold import OTHERWISE, SAME_SAMPLES, shaken
+from retold import OTHERWISE, SAME_SAMPLES, rolls, shaken
 
 from ssmr_ident.workflows.diagnose import diagnose_session
 from ssmr_ident.workflows.fit.run import fit_session
@@ -38,3 +38,12 @@ def test_the_same_diagnosis_where_nothing_is_missing(tmp_path: Path, way: str) -
 def test_the_same_name_where_a_law_is_missing(tmp_path: Path, way: str) -> None:
     told = diagnose_session(OTHERWISE[way](shaken(hardening=2e7)).write(tmp_path))
     assert (told.verdict, [effect.id for effect in told.effects]) == ("missing_physics", ["nonlinear_stiffness"])
+
+
+@pytest.mark.parametrize("way", ["begun later", "at half the rate"])
+def test_the_same_law_of_a_robot(tmp_path: Path, way: str) -> None:
+    told = diagnose_session(OTHERWISE[way](rolls("nonlinear_stiffness.k3_N_m3", 1e10)).write(tmp_path))
+    assert [effect.id for effect in told.effects] == ["nonlinear_stiffness"]
+    k3 = told.effects[0].parameters["k3_N_m3"]
+    assert k3.std is not None
+    assert abs(k3.value - 1e10) < 3.0 * k3.std

@@ -19,6 +19,7 @@ from ssmr_ident.estimate.generic import static
 from ssmr_ident.estimate.node import Member, Node
 from ssmr_ident.estimate.pieces import Piece, before_low_pass, fastest_part, stretches
 from ssmr_ident.estimate.regression import regressed
+from ssmr_ident.estimate.scales import nuisance_count
 from ssmr_ident.estimate.shoot_kernel import eliminate
 from ssmr_ident.estimate.shooting import shot
 from ssmr_ident.estimate.simulated import Compiled, simulate
@@ -135,6 +136,27 @@ def test_a_force_that_jumps_where_motion_turns_does_so_within_the_step(force: fl
     (found,) = simulate(compiled(p, node, point), [start], [borders], [0.0])
     moves = np.abs(true.y[1]) > 0.01  # of a sample within the jump none is sure
     assert np.sqrt(np.mean((found.y - own.y)[moves] ** 2)) < agree * own.y.std()
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_friction_and_its_rounding_lie_where_they_are(seed: int) -> None:
+    random = np.random.default_rng(seed)
+    rate, count, every, true = 200.0, 1000, 2, (1.5, 1e-4)
+    tones, phases = np.arange(1.5, 6.0, 0.25), random.uniform(0.0, 2.0 * np.pi, 18)
+    drive = lambda t: 2.0 * np.sin(2.0 * np.pi * np.multiply.outer(t, tones) + phases).sum(axis=-1)  # noqa: E731
+    law = lambda t, y: (drive(t) - DAMPING * y[1] - STIFFNESS * y[0] - true[0] * np.tanh(y[1] / true[1])) / MASS  # noqa: E731
+    time, fine = np.arange(count) / rate, np.arange(count * every + 1) / rate / every
+    states = solve_ivp(
+        lambda t, y: [y[1], law(t, y)], (0.0, time[-1]), [0.0, 0.0], "LSODA", t_eval=time, rtol=1e-9, atol=1e-12
+    ).y
+    y = law(time, states) + 0.01 * random.standard_normal(count)
+    p = problem(piece(time, y, "acceleration", 0.01, drive(fine), every))
+    node = Node(p.baseline, (friction(1.2),))
+    point = np.array([0.0, 0.0, 0.0, 1.0, node.coordinates[4].at(1e-3)])
+    found = polish(p, node, Start(point, (np.zeros(nuisance_count(node, p.pieces[0])),)), 60)
+    assert found.residuals[0].std() == pytest.approx(0.01, rel=0.1)
+    stds = np.sqrt(np.diag(found.covariance)) * np.abs(node.slopes(found.point))
+    assert np.all(np.abs(node.values(found.point)[3:] - true) < 3.0 * stds[3:])
 
 
 @pytest.mark.parametrize("variable", ["x", "v", ""])
