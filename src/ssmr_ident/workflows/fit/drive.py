@@ -14,7 +14,7 @@ from ssmr_ident.estimate.baseline import STEPS, baseline_fit, on_every_sample, u
 from ssmr_ident.estimate.coarser import coarser
 from ssmr_ident.estimate.exact import polish
 from ssmr_ident.estimate.generic import STATIC
-from ssmr_ident.estimate.motion import motion
+from ssmr_ident.estimate.network import paths_of
 from ssmr_ident.estimate.stretches import sampled
 from ssmr_ident.estimate.values import Fit, Problem, Start
 
@@ -33,7 +33,8 @@ def with_friction(problem: Problem, fit: Fit) -> tuple[Problem, Fit, list[str]] 
     few, begins = sampled(coarser(problem))
     base = baseline_fit(few)
     form = next(f for f in FORMS if f.effect == FRICTION and f.kind == STATIC)
-    (offer,) = proposals(few, base, motion(few, base), forms=[form])
+    # along the baseline's own motion the baseline leaves no force at all
+    (offer,) = proposals(few, base, paths_of(few, base.node, base.point), forms=[form])
     found = on_every_sample(problem, begun(few, offer, base), begins)
     quiet, found = under_own_noise(problem, found)
     plain = polish(quiet, fit.node, Start(fit.point, fit.nuisances), STEPS)
