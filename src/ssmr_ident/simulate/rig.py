@@ -23,10 +23,10 @@ from ssmr_ident.simulate.sensed import sensed
 RIDER_SHARE, RIDER_HZ, RIDER_RATIO = unlisted.RIDER_SHARE, unlisted.RIDER_HZ, unlisted.RIDER_RATIO
 
 PART = 20_000
-"""Steps that are run at once: their slopes, which nobody asks for, are as much memory as there is."""
+"""Steps that are run at once, for their slopes, which nobody asks for here, take memory."""
 
 TINIEST = 1e-12
-"""Size of the motion of a rig that only what no spring holds moves."""
+"""Least size of a motion [m] and of its speed [m/s], of a rig that nothing seems to move."""
 
 
 def simulate_rig(
@@ -144,20 +144,14 @@ def _motion(
     rig: Rig, e: np.ndarray, force: np.ndarray, given: _Given, begun: tuple[float, float], step: float
 ) -> np.ndarray:
     """Position, velocity, acceleration on the fine grid, (n, 3) float."""
-    motor = given.motor
-    plain = rig
-    driving = force
+    plain, driving, motor = rig, force, given.motor
     if motor is not None:
         plain, driving = replace(rig, damping=rig.damping + motor.braking), force + given.stalled()
-    usual = _looped(
-        plain, effect_vector({}), driving, _Given(np.zeros(1), np.zeros(1), 0.0, math.inf, None), begun, step
-    )
+    usual = _looped(plain, effect_vector({}), driving, _given(None, None, 0), begun, step)
     if motor is None and np.array_equal(e, effect_vector({})):
         return usual
-    size, speed, _ = (
-        float(np.sqrt(np.mean(column**2))) or TINIEST for column in np.where(np.isfinite(usual), usual, 0.0).T
-    )
-    return _looped(rig, e, force, given, begun, step, size, speed)
+    size, speed, _ = np.abs(np.where(np.isfinite(usual), usual, 0.0)).max(axis=0)
+    return _looped(rig, e, force, given, begun, step, max(float(size), TINIEST), max(float(speed), TINIEST))
 
 
 def _looped(
