@@ -93,9 +93,9 @@ class Fit:
     covariance : (p, p) float
         Of the coordinates.
     residuals : tuple of (n, c) float
-        Model less measured, SI.
+        Model less measured, SI; of a sample within a force's jump divided by how many times larger its noise counts.
     chi2 : float
-        Of the whitened residuals.
+        Of the whitened residuals, with the logarithm that the likelihood has of such a sample's larger noise.
     prior : float
         What the priors of the physics add to it.
     dof : float

@@ -30,6 +30,7 @@ NEAR = 1e-5
 that bends near rest does to it that is not counted."""
 
 NOTHING = (0.0, 0.0, 0.0, 0.0, 0.0)
+"""What ``_along_speed`` has of a force that does not bend."""
 
 GRADES = 5
 """Parts of a velocity, each a quarter of the one before, in which a force that may jump at nought is averaged."""
