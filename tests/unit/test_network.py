@@ -219,7 +219,7 @@ def test_a_fit_finds_stiffness_that_nobody_knew(tmp_path: Path) -> None:
     network = network_from_parameters(CHAIN.known())
     network.values[[2, 4]] = CHAIN.damping
     seen = Seen((2, 2), (0, 1), False, 0)
-    (transition, now, later, _), (rows, by_drive, _) = stepped(bare(network), network.values, seen, 1.0 / 500.0)
+    (transition, now, later, *_), (rows, by_drive, *_) = stepped(bare(network), network.values, seen, 1.0 / 500.0)
     runs = []
     for _ in range(3):
         time, push = pushed(CHAIN, random, 20.0, 3.0, 500.0)

@@ -89,10 +89,34 @@ def test_effects_on_a_rig_follow_their_equation(effects: dict, beside: object) -
         {"hysteresis": {"alpha": 0.8, "yield_m": 1e-3}},
     ],
 )
-def test_oversampling_converges_at_second_order_with_an_effect(effects: dict) -> None:
+def test_oversampling_converges_with_an_effect(effects: dict) -> None:
     runs = [simulate_rig(RIG, _force(TIME), RATE, 1e-3, oversampling=n, effects=effects)[:, 0] for n in (2, 4, 8)]
     coarse, fine = np.abs(runs[0] - runs[1]).max(), np.abs(runs[1] - runs[2]).max()
     assert np.log2(coarse / fine) > 1.7
+
+
+def test_a_spring_that_hardens_is_followed_to_the_fourth_order() -> None:
+    """Against scipy's DOP853, from 27 steps a period of the rig on."""
+    rate, turning, phases = 400.0, 2.0 * math.pi * np.arange(8.0, 22.0, 1.3), np.arange(11) ** 2.0
+    rig, k3 = Rig(1.5, 3.0, 1.5 * (2.0 * math.pi * 15.0) ** 2), 2e7
+
+    def force(time: np.ndarray) -> np.ndarray:
+        return np.asarray(5.0 * np.sin(np.multiply.outer(time, turning) + phases).sum(axis=-1))
+
+    def rate_of(t: float, y: np.ndarray) -> list[float]:
+        return [y[1], float(force(t) - rig.damping * y[1] - rig.stiffness * y[0] - k3 * y[0] ** 3) / rig.mass]
+
+    time, off = np.arange(300) / rate, []
+    true = solve_ivp(rate_of, (0, time[-1]), [0.0, 0.0], "DOP853", time, rtol=1e-11, atol=1e-14).y
+    for finer in (2, 4, 8):
+        given = force(np.arange(299 * finer + 1) / (rate * finer))
+        effects = {"nonlinear_stiffness": {"k3_N_m3": k3}}
+        found = simulate_rig(rig, given, rate, oversampling=finer, effects=effects, fine=True)
+        off.append([np.std(found[:, k] - true[k]) / np.std(true[k]) for k in (0, 1)])
+    order = np.log2(np.divide(off[:-1], off[1:]))
+    assert order[:, 0].min() > 3.8
+    assert order[:, 1].min() > 2.8  # the rise of the force is that of the step before
+    assert max(off[0]) < 5e-5
 
 
 def test_band_limited_samples_lie_on_the_curve() -> None:

@@ -12,7 +12,7 @@ from ssmr_ident.estimate.values import Problem
 from ssmr_ident.signals.noise import AutoregressiveNoise
 
 COARSE, STEPS = 20, 40
-"""Samples and integration steps a period: forces beside the linear rig err by (2 pi / 40)^2 / 24, a per mille."""
+"""Samples and integration steps a period: means over a twentieth of one are off by some per mille of a force beside."""
 
 
 def coarser(problem: Problem) -> Problem:

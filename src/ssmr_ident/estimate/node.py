@@ -17,6 +17,7 @@ from ssmr_ident.physics.element import STATES
 from ssmr_ident.physics.exponential import exponentials
 from ssmr_ident.physics.network import ONE, Layout
 from ssmr_ident.physics.slots import SLOTS, effect_vector
+from ssmr_ident.simulate.kicks import kicks, seen_by
 
 Array = np.ndarray
 
@@ -320,20 +321,22 @@ def _pull(hz: Array, ratio: Array) -> Array:
 
 
 def stepped(node: Node, values: Array, seen: Seen, step: float) -> tuple[tuple[Array, ...], tuple[Array, ...]]:
-    """Exact step under a drive in a straight line, and the channels: ((T, now, later, half a kick), rows).
+    """Exact step under a drive in a straight line, and the channels: ((T, now, later, kick, aside), rows).
 
     Parameters
     ----------
     values : (…, linear) float
         Axes in front are those of what is returned.
     """
-    a, drive, kick, *rows = matrices(node, values, seen)
+    a, drive, force, rows, by_drive, by_force = matrices(node, values, seen)
     n = a.shape[-1]
     blocks = np.zeros((*a.shape[:-2], n + 2, n + 2))
     blocks[..., :n, :n], blocks[..., :n, n], blocks[..., n, n + 1] = a * step, drive * step, 1.0
     e = exponentials(blocks.reshape(-1, n + 2, n + 2)).reshape(blocks.shape)
     later = e[..., :n, n + 1].copy()
-    return (e[..., :n, :n].copy(), e[..., :n, n] - later, later, 0.5 * step * kick), tuple(rows)
+    kick, aside = kicks(a, force, step)
+    lin = e[..., :n, :n].copy(), e[..., :n, n] - later, later, kick, aside
+    return lin, (rows, by_drive, *seen_by(rows, by_force, kick, aside))
 
 
 def stepped_with_slopes(node: Node, values: Array, slopes: Array, seen: Seen, step: float):

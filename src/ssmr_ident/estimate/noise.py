@@ -77,7 +77,7 @@ def from_force(piece: Piece, fit: Fit) -> list[tuple[Array, Array]]:
     if motor is not None and piece.motor is not None:  # it brakes, and its controller holds
         values[1] += motor.braking
         values[2] += motor.gain * piece.motor.gain
-    (transition, now, later, _), (rows, by_drive, _) = stepped(bare, values, piece.seen, 1.0 / piece.rate)
+    (transition, now, later, *_), (rows, by_drive, *_) = stepped(bare, values, piece.seen, 1.0 / piece.rate)
     # a drive in straight lines enters with its next value: that part belongs to the output
     entering = (now + transition @ later)[:, None]
     through = (rows @ later + by_drive)[:, None]

@@ -35,7 +35,7 @@ FINEST = 60
 """Samples a period that are kept; faster logs are averaged over blocks, by which a sine of 60 samples loses 0.05 %."""
 
 STEPS = 60
-"""Least integration steps a period: kicks err by (2 pi / steps)^2 / 24, half a per mille of the force beside."""
+"""Least integration steps a period: forces that jump and such that remember err by their square."""
 
 STRAIGHT, FINER = 0.25, 4
 """Radians of a drive's fastest part in a step: what ``line_corners`` leaves is their fourth power over 90; and at most

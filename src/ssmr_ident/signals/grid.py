@@ -107,8 +107,10 @@ def line_corners(signal: np.ndarray) -> np.ndarray:
     (n,): lines through them take (angle a step)^2 / 12 of a sine away, and here its fourth power is left.
 
     >>> line_corners(np.array([0.0, 0.0, 12.0, 0.0, 0.0]))
-    array([ 0., -1., 14., -1.,  0.])
+    array([-1., -1., 14., -1., -1.])
     """
     found = np.array(signal, dtype=float)
-    found[1:-1] = (14.0 * signal[1:-1] - signal[:-2] - signal[2:]) / 12.0
+    if len(found) > 2:
+        bend = (found[:-2] - 2.0 * found[1:-1] + found[2:]) / 12.0
+        found -= np.concatenate([bend[:1], bend, bend[-1:]])  # ends bend as their neighbours do
     return found

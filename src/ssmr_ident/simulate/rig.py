@@ -17,6 +17,7 @@ from ssmr_ident.physics.sensor import filter_step, low_pass_coefficients
 from ssmr_ident.physics.slots import LOAD_FRICTION, LOAD_SHARE, UNLISTED, Effects, checked, effect_vector
 from ssmr_ident.physics.voltage_drive import Controller, Course, VoltageDrive
 from ssmr_ident.signals.grid import band_limited, line_corners
+from ssmr_ident.simulate.kicks import kicks, seen_by
 from ssmr_ident.simulate.rig_kernel import run
 from ssmr_ident.simulate.sensed import sensed
 
@@ -47,7 +48,8 @@ def simulate_rig(
     The mass, spring and damper are propagated exactly over a step with the force in a straight line across it, whose
     corners make up for what lines take from a smooth force; it is first made ``oversampling`` times finer within its
     band, because lines between the samples of a force near half the sampling rate are not what acted. Effects kick the
-    mass before and after each step (Strang splitting, second order), and are passed over when there are none.
+    mass before and after each step (Strang splitting, with what kicks leave of a smooth force: fourth order for one of
+    the deflection alone, second order for others), and are passed over when there are none.
 
     Parameters
     ----------
@@ -190,7 +192,7 @@ def _looped(
 
 def _linear(rig: Rig, free: np.ndarray, step: float) -> tuple[tuple[np.ndarray, ...], tuple[np.ndarray, ...]]:
     """Exact step of (x, v) under a force that runs straight from f0 to f1, and position, velocity and acceleration of
-    them: (state matrix, the two weights, half a kick), (over states, over the force, over one beside).
+    them: (state matrix, the two weights, kick, aside), (over states, over the force, over one beside, over its rise).
 
     Of (x, v, y, w) where a part of the mass rides along, which is y further than x, with the relative speed w.
     """
@@ -210,10 +212,10 @@ def _linear(rig: Rig, free: np.ndarray, step: float) -> tuple[tuple[np.ndarray, 
     a[n, n + 1] = 1.0 / step
     e = expm(a * step)
     now, later = e[:n, n] - e[:n, n + 1], e[:n, n + 1]
-    kick = np.array([0.0, 0.5 * step / body, 0.0, -0.5 * step / body])[:n]
-    over = np.vstack([np.eye(n)[:2], a[1, :n]])
-    rows = (over, np.array([0.0, 0.0, 1.0 / body]), np.array([0.0, 0.0, -1.0 / body]))
-    return tuple(np.ascontiguousarray(x) for x in (e[:n, :n], now, later, kick)), rows
+    kick, aside = kicks(a[:n, :n], np.array([0.0, 1.0 / body, 0.0, -1.0 / body])[:n], step)
+    over, felt = np.vstack([np.eye(n)[:2], a[1, :n]]), np.array([0.0, 0.0, 1.0 / body])
+    rows = (over, felt, *seen_by(over, -felt, kick, aside))
+    return tuple(np.ascontiguousarray(x) for x in (e[:n, :n], now, later, kick, aside)), rows
 
 
 @kernel

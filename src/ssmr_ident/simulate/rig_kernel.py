@@ -1,8 +1,8 @@
 """A rig's motion with its slopes, stretch by stretch: exact linear steps, kicks of the forces beside them.
 
-Strang splitting about the exact propagator, with the mean of the force in steps near rest, where it may jump. One loop
-simulates and fits: every state carries its derivatives with respect to where its stretch begins, to the model's
-parameters and to what else drives it (forward sensitivities).
+Strang splitting about the exact propagator, with what kicks leave of a smooth force (``simulate.kicks``), and the mean
+of the force in steps near rest, where it may jump. One loop simulates and fits: every state carries its derivatives
+with respect to where its stretch begins, to the model's parameters and to what else drives it (forward sensitivities).
 """
 
 from __future__ import annotations
@@ -366,7 +366,9 @@ def _along_speed(v, v_was, moved, kick, x, z, time, row, given, g, slopes, more_
         late_slopes[k] += late_of[1] * slopes[k] + late_of[3] * mean_slopes[k]
     more_x = more_of[0] * fx_was + more_of[1] * fx + more_of[2] * mean_x_was + more_of[3] * mean_x
     late_x = late_of[0] * fx_was + late_of[1] * fx + late_of[2] * mean_x_was + late_of[3] * mean_x
-    return v, f, fx, fv, (*more, more_x), (*late, late_x)
+    rise = f - f_was
+    jump = min(max(2.0 * (mean - mean_was) / rise - 1.0, 0.0), 1.0) if rise != 0.0 else 0.0
+    return v, f, fx, fv, (*more, more_x), (*late, late_x), jump
 
 
 @kernel
@@ -425,10 +427,11 @@ def run(
     Parameters
     ----------
     lin, slopes_lin : tuples of float
-        (T, now, later, kick), and the same with a first axis over the linear parameters: the exact step of the linear
-        states, what the drive at its begin and end adds, and what one newton takes away in half a step.
+        (T, now, later, kick, aside), and the same with a first axis over the linear parameters: the exact step of the
+        linear states, what the drive at its begin and end adds, what one newton takes away in half a step, and how far
+        from the state kicks then leave it (``simulate.kicks``).
     rows, slopes_rows : tuples of float
-        (C, from_drive, from_force): channels over states, drive and force beside.
+        (C, from_drive, from_force, from_rise): channels over states, drive, force beside and its rise over a step.
     g : tuple
         The forces beside, as ``_force`` unpacks them: its last is (whether there is a motor, gain and limit of its
         controller, its gear ratio, size of what drives).
@@ -459,10 +462,10 @@ def run(
     unsure : (n, channels) float
         Filled: how far channels are off for a speed that is, where forces beside are steep.
     """
-    transition, now, later, kick = lin
-    d_transition, d_now, d_later, d_kick = slopes_lin
-    c, from_drive, from_force = rows
-    d_c, d_from_drive, d_from_force = slopes_rows
+    transition, now, later, kick, aside = lin
+    d_transition, d_now, d_later, d_kick, d_aside = slopes_lin
+    c, from_drive, from_force, from_rise = rows
+    d_c, d_from_drive, d_from_force, _ = slopes_rows
     states = starts.shape[1]
     n_lin = transition.shape[0]
     hidden = states - n_lin
@@ -477,7 +480,7 @@ def run(
     dz = np.zeros((max(hidden, 1), columns))
     df, change = np.zeros(columns), np.zeros(columns)
     slopes, by_v = np.zeros(hidden + columns), np.zeros(STATES)
-    was, beyond, later_on = np.zeros(columns), np.zeros(columns), np.zeros(columns)
+    was, df_was, beyond, later_on = np.zeros(columns), np.zeros(columns), np.zeros(columns), np.zeros(columns)
     slopes_now = np.zeros(hidden + columns)
     more_slopes, late_slopes = np.zeros(hidden + columns), np.zeros(hidden + columns)
     mean_slopes = np.zeros(hidden + columns)
@@ -485,6 +488,7 @@ def run(
     for k in range(n_lin):
         for i in range(n_lin):
             moved_by[k] += transition[k, i] * kick[i]
+    away_from, d_away = -aside, -d_aside
     jumps = g[16][0] or g[3].shape[1] > 0 or g[4].shape[2] > 0  # what does not look at speed does not jump with it
     for stretch in range(starts.shape[0]):
         ds[:], dz[:], df[:] = 0.0, 0.0, 0.0
@@ -494,7 +498,7 @@ def run(
         for k in range(hidden):
             z[k] = starts[stretch, n_lin + k]
             dz[k, n_lin + k] = 1.0
-        f, fx, fv, x_was, v_was = 0.0, 0.0, 0.0, 0.0, 0.0
+        f, fx, fv, x_was, v_was, f_was, rise = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
         first, after, last_row, driven_from, last = places[stretch]
         total = (after - first) * every
         for n in range(total + 1):
@@ -506,16 +510,18 @@ def run(
                 row = min(first + n // every, last_row)
                 time = times[stretch] + n * step
                 half = 1.0 if n else 0.0
-                v = moved
+                v, f_was = moved, f
                 if n:  # as the last force goes on, to first order
                     f += (fx * (s[0] - x_was) + fv * (moved - kick[1] * f - v_was)) / max(1.0 + kick[1] * fv, 0.1)
                     v -= kick[1] * f
                 turn, low, high = 0, -math.inf, math.inf
                 while True:
                     slopes[:] = 0.0
-                    f, fx, fv = _force(
-                        s[0], v, z, time, row, given, g, slopes, ALL if turn in (0, NEWTON) else BY_SPEED
-                    )
+                    wanted = ALL if turn in (0, NEWTON) else BY_SPEED
+                    guess = f
+                    f, fx, fv = _force(s[0] - half * aside[0] * guess, v, z, time, row, given, g, slopes, wanted)
+                    met = 1.0 / (1.0 + half * aside[0] * fx)
+                    f, fx, fv = guess + met * (f - guess), met * fx, met * fv
                     off = half * (v - moved + kick[1] * f)
                     away = off / max(1.0 + kick[1] * fv, 0.1)
                     if turn == NEWTON:
@@ -528,16 +534,19 @@ def run(
                     # once it has settled, a last turn takes the slopes as well
                     turn = NEWTON if abs(away) <= 1e-7 * g[15] else turn + 1
                     v, low, high = _between(v - away, v, off, low, high)
-                more, late = NOTHING, NOTHING
+                for j in range(len(slopes)):
+                    slopes[j] *= met
+                more, late, jump = NOTHING, NOTHING, 0.0
                 leaps = n > 0 and jumps and _nears_rest(v_was, v)
                 if leaps:  # a quarter of the way a smooth force is on a straight line
-                    begun, _, _ = _force(s[0], v_was, z, time, row, given, g, slopes_now, VALUE)
+                    x = s[0] - aside[0] * f_was
+                    begun, _, _ = _force(x, v_was, z, time, row, given, g, slopes_now, VALUE)
                     at_v = 0.75 * v_was + 0.25 * v
-                    at_f, _, _ = _force(s[0], at_v, z, time, row, given, g, slopes_now, VALUE)
+                    at_f, _, _ = _force(x, at_v, z, time, row, given, g, slopes_now, VALUE)
                     leaps = kick[1] * abs(at_f - 0.75 * begun - 0.25 * f) > NEAR * g[15]
                 if leaps:
-                    at_v, at_f, at_fx, at_fv, more, late = _along_speed(
-                        v, v_was, moved, kick[1], s[0], z, time, row, given, g, slopes_now, more_slopes, late_slopes,
+                    at_v, at_f, at_fx, at_fv, more, late, jump = _along_speed(
+                        v, v_was, moved, kick[1], x, z, time, row, given, g, slopes_now, more_slopes, late_slopes,
                         mean_slopes,
                     )  # fmt: skip
                     v, f, fx, fv = at_v, at_f, at_fx, at_fv
@@ -558,6 +567,8 @@ def run(
                     df[j] = fx * ds[0, j]
                 for p in range(columns - states):
                     df[states + p] += slopes[hidden + p]
+                for p in range(n_par):
+                    df[states + p] -= half * fx * d_aside[p, 0] * f
                 for k in range(hidden):
                     for j in range(columns):
                         df[j] += slopes[k] * dz[k, j]
@@ -578,20 +589,27 @@ def run(
                             ds[k, states + p] -= d_kick[p, k] * more[0]
                         ds[0, states + p] -= step * d_kick[p, 1] * late[0]
                     s[0] -= step * kick[1] * late[0]
+                    for k in range(n_lin):  # where kicks put it, of the force that is now
+                        s[k] += jump * aside[k] * (f - f_was)
+                        for j in range(columns):
+                            ds[k, j] += jump * aside[k] * (df[j] - df_was[j])
+                        for p in range(n_par):
+                            ds[k, states + p] += jump * d_aside[p, k] * (f - f_was)
                 elif fv != 0.0:
                     own, other = 1.0 - fv * share * taken, fv * share
                     for j in range(columns):
                         df[j] = own * df[j] + other * ds[1, j]
                     for p in range(n_par):
                         df[states + p] -= other * half * d_kick[p, 1] * f
-                if n:
-                    for k in range(n_lin):
-                        s[k] -= kick[k] * f
-                        if kick[k] != 0.0:
-                            for j in range(columns):
-                                ds[k, j] -= kick[k] * df[j]
-                        for p in range(n_par):
-                            ds[k, states + p] -= d_kick[p, k] * f
+                rise = 0.0 if leaps or n == 0 else f - f_was
+                own, d_own = (kick, d_kick) if n else (away_from, d_away)
+                for k in range(n_lin):
+                    s[k] -= own[k] * f
+                    if own[k] != 0.0:
+                        for j in range(columns):
+                            ds[k, j] -= own[k] * df[j]
+                    for p in range(n_par):
+                        ds[k, states + p] -= d_own[p, k] * f
             if n % every == 0 and n < total:
                 row = first + n // every
                 apart = 0.0
@@ -601,7 +619,7 @@ def run(
                     below, _, _ = _force(s[0], v - off, z, time, row, given, g, slopes_now, VALUE)
                     apart = 0.5 * (above - below)
                 for k in range(channels):
-                    value = from_drive[k] * here + from_force[k] * f
+                    value = from_drive[k] * here + from_force[k] * f + from_rise[k] * rise
                     for i in range(n_lin):
                         value += c[k, i] * s[i]
                     y[row, k] = value
@@ -630,7 +648,7 @@ def run(
                 break
             if jumps:
                 for j in range(columns):
-                    was[j] = ds[1, j]
+                    was[j], df_was[j] = ds[1, j], df[j]
             x_was = s[0]
             if hidden:
                 for j in range(columns):
@@ -671,11 +689,13 @@ def run(
             if hidden:
                 for j in range(columns):
                     change[j] = ds[0, j] - change[j]
-                _advance(z, dz, s[0] - x_was, change, step, zero - len(g[12]), by_v, g)
+                _advance(z, dz, s[0] - x_was - aside[0] * rise, change, step, zero - len(g[12]), by_v, g)
         for k in range(n_lin):
-            ends[stretch, k] = s[k]
+            ends[stretch, k] = s[k] - aside[k] * f + kick[k] * rise / 6.0
             for j in range(columns):
-                dends[stretch, k, j] = ds[k, j]
+                dends[stretch, k, j] = ds[k, j] - aside[k] * df[j]
+            for p in range(n_par):
+                dends[stretch, k, states + p] -= d_aside[p, k] * f
         for k in range(hidden):
             ends[stretch, n_lin + k] = z[k]
             for j in range(columns):
