@@ -11,10 +11,12 @@ import pytest
 from ssmr_ident.core.parameter import Estimate
 from ssmr_ident.core.recording import Channel, Provenance, Recording
 from ssmr_ident.diagnose.setup import unknowns_of
+from ssmr_ident.doctor.decays.laws import exact
 from ssmr_ident.doctor.decays.linear import fit_linear, system
 from ssmr_ident.doctor.decays.recordings import Decay, decay_of, thinned
 from ssmr_ident.doctor.decays.run import alone, diagnose, takes
 from ssmr_ident.doctor.robots.answer import WEIGHED
+from ssmr_ident.doctor.robots.found import cost_of
 from ssmr_ident.doctor.table import Row
 from ssmr_ident.experiments import Scenario
 from ssmr_ident.experiments.campaign import Campaign, Measurement
@@ -165,6 +167,17 @@ def test_a_displaced_centre_of_mass_is_named_with_what_to_weigh() -> None:
     for name, value in offset.items():
         assert float(effect.parameters[name].value) == pytest.approx(value, abs=1.5e-3)
     assert found.next_experiment == WEIGHED
+
+
+@pytest.mark.compiles
+@pytest.mark.parametrize(("stiffness", "tau"), [(1800.0, 0.017), (2000.0, 0.03), (3000.0, 0.1)])
+def test_branches_hold_what_the_release_has_left_in_them(stiffness: float, tau: float) -> None:
+    branch = {"K_m_N_m": stiffness, "tau_s": tau}
+    decays, model = prepared(released({"viscoelastic_relaxation": branch}, seconds=1.0))
+    model, own = model.with_effect("viscoelastic_relaxation", branch, branch)
+    fit = fit_linear(decays, model, np.concatenate([np.zeros(len(model.physics)), own]))
+    assert fit is not None
+    assert cost_of(exact(decays, fit, 3)) < 1.02 * fit.cost
 
 
 @pytest.mark.slow

@@ -33,9 +33,6 @@ SCREENED_S = 0.7, 1.4
 LAST = 3
 """Steps of states alone."""
 
-STATES_FIRST = 8
-"""Steps of the states at the release alone, where closed form and simulator have other ones."""
-
 FAR = 3.0
 """Standard deviations of what is known that a baseline may have moved before laws are begun from what is known, too."""
 
@@ -126,10 +123,10 @@ def nuisance_of(state: Array, model: Model) -> Array:
 def exact(decays: Sequence[Decay], fit: LinearFit, steps: int) -> JointFit:
     """A linear fit led on by the simulator, in which nothing is small.
 
-    There branches hold a share of what the release is displaced by; in closed form anything. So states come first.
+    There branches hold a share of what the release is displaced by; in closed form anything, so that its states at the
+    release are no begin.
     """
     trials, nuisances = [d.trial for d in decays], [nuisance_of(x, fit.model) for x in fit.states]
-    begun = evaluate(trials, fit.model, fit.point, nuisances)
-    if "viscoelastic_relaxation" in fit.model.held:
-        begun = descend(begun, STATES_FIRST, shared=False, plain=True)
+    branches = "viscoelastic_relaxation" in fit.model.held
+    begun = released(decays, fit.model, fit.point) if branches else evaluate(trials, fit.model, fit.point, nuisances)
     return descend(begun, steps, plain=True)
