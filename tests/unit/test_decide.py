@@ -122,6 +122,16 @@ def test_a_second_effect_that_is_there() -> None:
     assert found.listed
 
 
+def test_a_second_effect_of_less_than_a_hundredth_in_size_is_not_believed() -> None:
+    base = row("", "", 0.0, 1e8, 100.0)
+    law = row("dry_friction", "static_force", 49_990_000.0, 20_000.0, 2.0)
+    shape = row("unlisted", "static_force", 49_990_010.0, 19_900.0, 1.99, generic=True)
+    pair = row("dry_friction sensor_bandwidth", "static_force sensor_chain", 49_994_900.0, 10_200.0, 1.3)
+    assert decide([base, law, shape, pair]).chosen is law
+    more = replace(pair, log_evidence=49_997_000.0, chi2=5900.0, over=1.0)
+    assert decide([base, law, shape, more]).chosen is more
+
+
 def test_a_shape_between_those_of_a_grid_is_found() -> None:
     def along(shape):
         return (math.log(shape["gap_m"] / 0.37)) ** 2, shape, 0.0, 0.0, shape

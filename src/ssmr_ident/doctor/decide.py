@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ssmr_ident.doctor.rules import CERTAIN, FOLLOWS, FORMULA, HALVED, OVER_NOISE, SECOND, STATED, TIE, UNEVEN
-from ssmr_ident.doctor.table import FRICTION, Row
+from ssmr_ident.doctor.table import FRICTION, Row, grain
 
 STATIC, MEMORY, GEOMETRY = "static_force", "memory", "geometry"
 MISSING, NOTHING, UNDETERMINED = "missing_physics", "nothing_missing", "undetermined"
@@ -151,7 +151,7 @@ def stands(row: Row, rows: Sequence[Row]) -> bool:
         explained = HALVED * row.over**2 < min(r.over for r in rows if math.isfinite(r.over)) ** 2
         only_noise = explained and row.left.follows < FOLLOWS and row.left.uneven < UNEVEN
         takes = halved or (only_noise and row.chi2 < (1.0 - FORMULA) * best.chi2)
-        if not takes or row.log_evidence < best.log_evidence + SECOND:
+        if not takes or row.log_evidence < best.log_evidence + max(SECOND, grain(rows)):
             return False
     return True
 

@@ -11,9 +11,10 @@ import numpy as np
 
 from ssmr_ident.doctor.laws import simpler
 from ssmr_ident.doctor.rules import UNIT
-from ssmr_ident.doctor.table import Row, row_of
+from ssmr_ident.doctor.table import Row, log_evidence, row_of
 from ssmr_ident.estimate.exact import polish
-from ssmr_ident.estimate.node import Node
+from ssmr_ident.estimate.motion import motion
+from ssmr_ident.estimate.node import Member, Node
 from ssmr_ident.estimate.regression import regressed
 from ssmr_ident.estimate.shooting import shot
 from ssmr_ident.estimate.values import Fit, Problem, Start, Stop
@@ -101,6 +102,18 @@ def again(problem: Problem, fit: Fit, steps: int) -> Fit:
     return polish(problem, fit.node, Start(fit.point, fit.nuisances), steps)
 
 
+def beside(problem: Problem, fit: Fit, member: Member, steps: int) -> Fit:
+    """A fit with a member beside it; a shape, whose gain a straight line foretells, moves only where it gains
+    evidence so."""
+    node = fit.node.with_member(member)
+    start = Start(joined(node, fit), carried(node, fit))
+    if member.tables:
+        still = polish(problem, node, start, 0)
+        if log_evidence(still, problem.samples) + 0.5 * still.promised < log_evidence(fit, problem.samples):
+            return still
+    return polish(problem, node, start, steps)
+
+
 def further(problem: Problem, fit: Fit) -> Fit:
     """A fit led on: by damped steps, and from where an undamped one leads, along which the data hardly see and damping
     keeps all from moving; damped steps then find back to the floor of a valley that bends."""
@@ -130,6 +143,17 @@ def finished(search: Search, near: Fit, base: Fit, paths: Sequence[Array], point
         point = regressed(problem, paths, near.node) if plain else joined(near.node, base)
     far = from_paths(problem, near.node, point, paths)
     return far if far.cost < full.cost else full
+
+
+def shapes_again(search: Search) -> None:
+    """Shapes begin again along the motion of the best fit, which the recordings alone do not tell as well."""
+    best = min(search.fits, key=lambda f: f.cost)
+    paths = motion(search.problem, best)
+    for fit in [f for f in search.fits if f is not best and f.node.generic and f.node.members[0].tables]:
+        start = Start(regressed(search.problem, paths, fit.node), carried(fit.node, best))
+        near = polish(search.problem, fit.node, start, SHORT)
+        if near.cost < fit.cost:
+            search.add(again(search.problem, near, FULL))
 
 
 def offered_back(search: Search, count: int = OFFERED) -> None:

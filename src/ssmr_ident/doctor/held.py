@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ssmr_ident.doctor.fitted import carried
 from ssmr_ident.estimate.exact import polish
 from ssmr_ident.estimate.generic import BY_RECORDING
 from ssmr_ident.estimate.network import paths_of
@@ -52,15 +53,18 @@ def _of(problem: Problem, pieces: list[Piece]) -> Problem:
     return replace(problem, pieces=tuple(pieces), noises=tuple(noise[id(p.white)] for p in pieces))
 
 
-def held_fit(kept: Problem, fit: Fit) -> Fit | None:
+def held_fit(kept: Problem, fit: Fit, near: Fit | None = None) -> Fit | None:
     """A fit's model on other recordings, their starts and zeros alone refitted.
 
-    None for a law by recording, and for one that leaves the finite numbers.
+    None for a law by recording, and for one that leaves the finite numbers. ``near`` : another fit on the same ones,
+    whose starts are begun from.
     """
     if any(BY_RECORDING in m.form for m in fit.node.members):
         return None
     start = Start(fit.point, paths=tuple(paths_of(kept, fit.node, fit.point)))
-    if math.isfinite(kept.horizon):
+    if near is not None:
+        start = Start(fit.point, carried(fit.node, near))
+    elif math.isfinite(kept.horizon):
         start = shot(kept, fit.node, start, held=True)
     else:
         start = Start(fit.point, tuple(starts_of(kept, fit.node, start)))

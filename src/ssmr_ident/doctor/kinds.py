@@ -19,7 +19,8 @@ Array = np.ndarray
 def kinds(problem: Problem, paths: Sequence[Array]) -> list[Member]:
     """Generic members of every kind that these recordings can show, and the links of the sensor chain."""
     f = problem.frequency
-    found = [static(problem, paths), memory(problem, paths), changing(problem)]
+    found = [static(problem, paths, variable) for variable in ("x", "v", "")]
+    found += [memory(problem, paths), changing(problem)]
     found.append(branch(problem, 0.5 / (2.0 * math.pi * f)))
     other = by_recording(problem)
     found += [other] if other else []

@@ -20,7 +20,6 @@ from ssmr_ident.diagnose.worth import overlays, worth
 from ssmr_ident.doctor.decide import MISSING, NOTHING, UNDETERMINED, Decision
 from ssmr_ident.doctor.fitted import Search
 from ssmr_ident.doctor.further_body import mode_parameters, riders, shapes_told, with_further_bodies
-from ssmr_ident.doctor.held import held_fit
 from ssmr_ident.doctor.law_curve import law_curve
 from ssmr_ident.doctor.left import beyond, wandering
 from ssmr_ident.doctor.next_recording import next_recording
@@ -71,12 +70,10 @@ def answer(found: Examined) -> Diagnosis:
     training = worth(before, after if chosen is not base else before, names_of(found.fitted))
     heldout = PredictionQuality(math.nan, math.nan, math.nan)
     drawn = overlays([p.name for p in found.fitted.pieces], before, after, heldout=False)
-    if found.kept is not None:
-        first, second = held_fit(found.kept, base.fit), held_fit(found.kept, chosen.fit)
-        if first is not None and second is not None:
-            kept = [predictions(found.kept, f, found.known) for f in (first, second)]
-            heldout = worth(kept[0], kept[1] if chosen is not base else kept[0], names_of(found.kept))
-            drawn = overlays([p.name for p in found.kept.pieces], kept[0], kept[1], heldout=True)
+    if found.kept is not None and base.kept is not None and chosen.kept is not None:
+        kept = [predictions(found.kept, f, found.known) for f in (base.kept, chosen.kept)]
+        heldout = worth(kept[0], kept[1] if chosen is not base else kept[0], names_of(found.kept))
+        drawn = overlays([p.name for p in found.kept.pieces], kept[0], kept[1], heldout=True)
     decision = _checked(decision, training, heldout)
     named = decision.verdict == MISSING
     before_file = exported(base.fit, found.known)

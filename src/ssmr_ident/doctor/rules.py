@@ -27,6 +27,10 @@ FORMULA = 0.02
 """Share of the baseline's misfit, in squares, that a named law may leave beside the best of any shape and still be that
 law: a seventh in size. Set by judgement, like ``HALVED``; not yet calibrated."""
 
+GRAIN = 1e-4
+"""Share of the baseline's misfit, in squares, that a second effect takes at the least: a hundredth in size. What drives
+between two samples, and how instruments see it, is known to some per mille only."""
+
 OVER_NOISE = 1.6
 """Ratio of what is left to white noise from which it is asked whether it follows the motion."""
 

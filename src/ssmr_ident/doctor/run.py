@@ -34,7 +34,7 @@ Array = np.ndarray
 Progress = Callable[[str, int, int], None]
 
 
-SHOWN = 8
+SHOWN = 6
 """Rows of the table that are held against what was kept back."""
 
 
@@ -105,8 +105,8 @@ def examined(campaign: Campaign, known: ParameterSet, progress: Progress | None,
     base = next(r for r in rows if not r.ids)
     decision = decide(rows)
     if kept is not None:
-        wanted = {id(r): r for r in (*rows[:SHOWN], base, *([decision.chosen] if decision.chosen else []))}
-        rows = tuple(_with_heldout(r, kept, known) if id(r) in wanted else r for r in rows)
+        wanted = (*rows[:SHOWN], base, *([decision.chosen] if decision.chosen else []))
+        rows = _with_heldout(rows, {id(r) for r in wanted}, kept, known)
     if not alone:
         notes += _of_network(fitted, rows, decision)
     if search.untried:
@@ -156,9 +156,12 @@ def _with_left(row: Row, problem: Problem) -> Row:
     return replace(row, left=left(problem, row.fit))
 
 
-def _with_heldout(row: Row, kept: Problem, known: ParameterSet) -> Row:
-    assert row.fit is not None
-    found = held_fit(kept, row.fit)
-    if found is None:
-        return row
-    return replace(row, heldout=float(np.mean(errors(predictions(kept, found, known)))))
+def _with_heldout(rows: Sequence[Row], wanted: set[int], kept: Problem, known: ParameterSet) -> tuple[Row, ...]:
+    found, near = [], None
+    for row in rows:
+        held = held_fit(kept, row.fit, near) if id(row) in wanted and row.fit is not None else None
+        if held is not None:
+            near = held
+            row = replace(row, kept=held, heldout=float(np.mean(errors(predictions(kept, held, known)))))
+        found.append(row)
+    return tuple(found)

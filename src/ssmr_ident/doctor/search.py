@@ -17,19 +17,20 @@ from ssmr_ident.doctor.fitted import (
     Progress,
     Search,
     again,
+    beside,
     carried,
     finished,
     further,
-    joined,
     offered_back,
     offered_up,
+    shapes_again,
 )
 from ssmr_ident.doctor.kinds import kinds
 from ssmr_ident.doctor.named import named_along
 from ssmr_ident.doctor.networks import members_of_network
-from ssmr_ident.doctor.rules import FORMULA, TIE
+from ssmr_ident.doctor.rules import FORMULA, SECOND, TIE
 from ssmr_ident.doctor.second import FULL_KINDS, exchanged, paired, second
-from ssmr_ident.doctor.table import Row
+from ssmr_ident.doctor.table import Row, grain
 from ssmr_ident.estimate.baseline import baseline_fit
 from ssmr_ident.estimate.coarser import coarser
 from ssmr_ident.estimate.exact import polish
@@ -75,11 +76,12 @@ def searched(problem: Problem, budget: float = math.inf, progress: Progress | No
         if search.late:
             search.untried.append(member.name)
             continue
-        node = base.node.with_member(member)
-        short.append(polish(problem, node, Start(joined(node, base), carried(node, base)), SHORT))
+        short.append(beside(problem, base, member, SHORT))
     best = {f.node.name: f for f in sorted(short, key=lambda f: -f.cost)}  # of several starts of one
     for rank, fit in enumerate(sorted(best.values(), key=lambda f: f.cost)):
         search.add(finished(search, fit, base, paths) if rank < FULL_KINDS and not search.late else fit)
+    if alone:
+        shapes_again(search)
     offered_back(search)
     search = _with_white(search)
     named_along(search, say)
@@ -129,6 +131,8 @@ def _in_full(search: Search, whole: Problem, begins: Sequence[int], say: Progres
     base = next(f for f in search.fits if not f.node.members)
     reach = best.cost + max(2.0 * NEAR * share, FORMULA * (base.cost - best.cost))
     near = [r for r in rows if r.fit is not None and r.fit.cost < reach]
+    if not _pairs_matter(rows, FORMULA * (base.cost - best.cost)):
+        near = [r for r in near if len(r.ids) < 2]
     kept = near + [r for r in rows if r not in near and _judges(r, rows, near)]
     whole = in_stretches(whole, predictable(search.problem, best))
     chaotic = math.isfinite(whole.horizon)
@@ -164,7 +168,7 @@ def _ended(search: Search) -> None:
             if r.fit is not None
             and r.fit.promised > ENDED
             and gone[r.name] < ROUNDS
-            and r.log_evidence + r.fit.promised > best - TIE
+            and r.log_evidence + r.fit.promised > _wanted(r, search.rows(), best)
         ]
         if not open_rows:
             return
@@ -172,6 +176,22 @@ def _ended(search: Search) -> None:
         assert fit is not None
         better = search.add(further(search.problem, fit))
         gone[fit.node.name] += 1 if better.cost < fit.cost - ENDED else ROUNDS
+
+
+def _pairs_matter(rows: Sequence[Row], formula: float) -> bool:
+    """Whether two named effects may stand, or something leaves too little beside any law to be its formula."""
+    named = [r for r in rows if r.ids and not r.generic]
+    law = max((r.log_evidence for r in named if len(r.ids) == 1), default=-math.inf)
+    pair = max((r.log_evidence for r in named if len(r.ids) == 2), default=-math.inf)
+    return pair > law + max(SECOND, grain(rows)) or rows[0].log_evidence > law + max(TIE, 0.5 * formula)
+
+
+def _wanted(row: Row, rows: Sequence[Row], best: float) -> float:
+    """Log evidence from which a row matters: a tie with the best; of two named effects, what makes them stand."""
+    if len(row.ids) < 2 or row.generic:
+        return best - TIE
+    single = max((r.log_evidence for r in rows if len(r.ids) == 1 and not r.generic), default=-math.inf)
+    return max(best - TIE, single + SECOND)
 
 
 def _at_begins(fit: Fit, begins: Sequence[int]) -> Start:

@@ -6,17 +6,16 @@ import math
 from dataclasses import replace
 
 from ssmr_ident.doctor.decide import FRICTION
-from ssmr_ident.doctor.fitted import BEGUN, FULL, SHORT, Progress, Search, again, carried, joined, offered_back
+from ssmr_ident.doctor.fitted import BEGUN, FULL, SHORT, Progress, Search, again, beside, carried, offered_back
 from ssmr_ident.doctor.kinds import kinds
 from ssmr_ident.doctor.laws import Proposal, proposals
 from ssmr_ident.doctor.named import begun, named, named_along
 from ssmr_ident.doctor.rules import SECOND, TIE, UNIT
-from ssmr_ident.doctor.table import row_of
+from ssmr_ident.doctor.table import grain, row_of
 from ssmr_ident.estimate.exact import polish
 from ssmr_ident.estimate.generic import STATIC, memory, static
 from ssmr_ident.estimate.motion import motion
-from ssmr_ident.estimate.node import Member
-from ssmr_ident.estimate.values import Fit, Problem, Start
+from ssmr_ident.estimate.values import Fit, Start
 
 OVER_NOISE_SECOND = 1.25
 """What a first effect leaves, in sizes of white noise, from which a second one is looked for."""
@@ -54,15 +53,15 @@ def paired(search: Search, say: Progress) -> None:
     problem, rows = search.problem, search.rows()
     single = max((r.log_evidence for r in rows if len(r.ids) == 1 and not r.generic), default=-math.inf)
     shape = next((r for r in rows if len(r.ids) == 1 and r.generic), None)
-    if search.late or shape is None or shape.fit is None or shape.log_evidence < single + SECOND:
+    if search.late or shape is None or shape.fit is None or shape.log_evidence < single + max(SECOND, grain(rows)):
         return
     found = shape.fit
     paths = motion(problem, found)
     offers: dict[frozenset[str], Proposal] = {}
     firsts = {o.node.members[-1].id: o for o in reversed(proposals(problem, found, paths))}
     for first in firsts.values():
-        beside = replace(found, node=first.node, point=first.start.point, nuisances=carried(first.node, found))
-        for offer in proposals(problem, beside, paths, first.node.members):
+        led = replace(found, node=first.node, point=first.start.point, nuisances=carried(first.node, found))
+        for offer in proposals(problem, led, paths, first.node.members):
             names = frozenset(m.id for m in offer.node.members)
             if names not in offers or offer.promise > offers[names].promise:
                 offers[names] = offer
@@ -98,23 +97,24 @@ def exchanged(search: Search, say: Progress) -> None:
 
 def _best_pair(search: Search) -> Fit | None:
     """Two named effects, where these are certainly better than any model with fewer."""
-    pair = next((r.fit for r in search.rows() if len(r.ids) == 2 and not r.generic), None)
-    fewer = min(f.cost for f in search.fits if len(f.node.members) < 2)
-    return pair if pair is not None and pair.cost < fewer - 2.0 * SECOND else None
+    rows = search.rows()
+    pair = next((r for r in rows if len(r.ids) == 2 and not r.generic), None)
+    fewer = max(r.log_evidence for r in rows if len(r.ids) < 2)
+    return pair.fit if pair is not None and pair.log_evidence > fewer + max(SECOND, grain(rows)) else None
 
 
 def _beside(search: Search, say: Progress, first: Fit) -> None:
     """Every kind in any shape beside a named effect, and named ones along the best of these."""
-    law, problem = first.node.members[0], search.problem
+    law, problem, least = first.node.members[0], search.problem, grain(search.rows())
     paths = motion(problem, first)
     offers = kinds(problem, paths)
     own = [m for m in offers if m.tables and m.kind == law.kind]
     own += [static(problem, paths, law.variable)] if law.variable else []
     if law.id == FRICTION:
         own += [memory(problem, paths)] if law.kind == STATIC else [static(problem, paths, "v")]
-    shaped = [search.add(_near(problem, first, m, FULL)) for m in own]
-    alone, beside = row_of(first, problem), [row_of(f, problem) for f in shaped]
-    better = [r for r in beside if r.log_evidence > alone.log_evidence + TIE]
+    shaped = [search.add(beside(problem, first, m, FULL)) for m in own]
+    alone, rows = row_of(first, problem), [row_of(f, problem) for f in shaped]
+    better = [r for r in rows if r.log_evidence > alone.log_evidence + max(TIE, least)]
     short = []
     others = [m for m in offers if not (m.tables and m.kind == law.kind)]
     for index, member in enumerate(others):
@@ -122,10 +122,10 @@ def _beside(search: Search, say: Progress, first: Fit) -> None:
         if search.late:
             search.untried.append(f"{first.node.name} + {member.name}")
             continue
-        short.append(_near(problem, first, member, BEGUN if member.tables else SHORT))
+        short.append(beside(problem, first, member, BEGUN if member.tables else SHORT))
     short = [again(problem, f, SHORT) for f in sorted(short, key=lambda f: f.cost)[:FULL_KINDS]]
     gain = max((row_of(f, problem).log_evidence - alone.log_evidence for f in short), default=0.0)
-    if alone.over < OVER_NOISE_SECOND and not better and gain < UNIT:
+    if alone.over < OVER_NOISE_SECOND and not better and gain < max(UNIT, least):
         return
     full = [
         search.add(polish(problem, fit.node, Start(fit.point, fit.nuisances), FULL))
@@ -133,8 +133,3 @@ def _beside(search: Search, say: Progress, first: Fit) -> None:
     ]
     if not search.late:
         named_along(search, say, [law], [*full, *shaped, first])
-
-
-def _near(problem: Problem, fit: Fit, member: Member, steps: int) -> Fit:
-    node = fit.node.with_member(member)
-    return polish(problem, node, Start(joined(node, fit), carried(node, fit)), steps)

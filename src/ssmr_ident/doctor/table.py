@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from ssmr_ident.doctor.left import Left
-from ssmr_ident.doctor.rules import LOOP, SEEN
+from ssmr_ident.doctor.rules import GRAIN, LOOP, SEEN
 from ssmr_ident.estimate.node import MEMORY, Member
 from ssmr_ident.estimate.simulated import GEARS
 from ssmr_ident.estimate.values import Fit, Problem
@@ -44,6 +45,8 @@ class Row:
     heldout : float
         Error on what was kept back, in the metric; nan where nothing was, or it was not asked for.
     fit : Fit or None
+    kept : Fit or None
+        The same with starts and zeros of what was kept back.
     variables : tuple of str
         Of which alone each member is a function; empty where it is of several, or is no static force.
     equal : tuple of str
@@ -61,8 +64,15 @@ class Row:
     left: Left = field(default_factory=lambda: Left(math.inf))
     heldout: float = math.nan
     fit: Fit | None = None
+    kept: Fit | None = None
     variables: tuple[str, ...] = ()
     equal: tuple[str, ...] = ()
+
+
+def grain(rows: Sequence[Row]) -> float:
+    """Log evidence that is not to be believed: what ``GRAIN`` of the baseline's misfit amounts to."""
+    base = next(r for r in rows if not r.ids)
+    return 0.5 * GRAIN * max(base.chi2 - min(r.chi2 for r in rows if math.isfinite(r.chi2)), 0.0)
 
 
 def log_evidence(fit: Fit, samples: float) -> float:
@@ -74,7 +84,7 @@ def row_of(fit: Fit, problem: Problem, zero: float = 0.0) -> Row:
     members = fit.node.members
     return Row(
         tuple(_called(fit, m) for m in members), tuple(m.kind for m in members), fit.node.name, fit.node.generic,
-        log_evidence(fit, problem.samples) - zero, fit.chi2, problem.samples, over_noise(problem, fit), fit=fit,
+        log_evidence(fit, problem.samples) - zero, fit.left, problem.samples, over_noise(problem, fit), fit=fit,
         variables=tuple(m.variable for m in members), equal=_equal(fit, problem.size),
     )  # fmt: skip
 

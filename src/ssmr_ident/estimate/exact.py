@@ -144,7 +144,8 @@ def polish(problem: Problem, node: Node, start: Start, steps: int = 30, freeze: 
     covariance, dof = _decided(node, normal, precision, scales, free)
     prior = float(np.sum(precision * (point - mean) ** 2))
     nuisances = _each(local, counts)
-    return Fit(node, point, nuisances, covariance, tuple(residuals), chi2, prior, dof, stop, further, ahead)
+    left = float(normal[:, -1, -1].sum())
+    return Fit(node, point, nuisances, covariance, tuple(residuals), chi2, prior, dof, stop, further, ahead, left)
 
 
 def _each(local: Array, counts: Sequence[int]) -> tuple[Array, ...]:

@@ -106,6 +106,8 @@ class Fit:
         steps were used up.
     ahead : Start or None
         Where that straight line leads, without damping.
+    left : float
+        ``chi2`` without that logarithm.
     """
 
     node: Node
@@ -119,6 +121,7 @@ class Fit:
     stop: Stop = Stop.CONVERGED
     promised: float = 0.0
     ahead: Start | None = None
+    left: float = math.inf
 
     @property
     def cost(self) -> float:
