@@ -161,14 +161,14 @@ def _ended(search: Search) -> None:
     they lack, for valleys bend; in directions that the data hardly see too."""
     gone: Counter[str] = Counter()
     while not search.late:
-        best = search.rows()[0].log_evidence
+        rows = search.rows()
         open_rows = [
             r
-            for r in search.rows()
+            for r in rows
             if r.fit is not None
             and r.fit.promised > ENDED
             and gone[r.name] < ROUNDS
-            and r.log_evidence + r.fit.promised > _wanted(r, search.rows(), best)
+            and r.log_evidence + r.fit.promised > _wanted(r, rows)
         ]
         if not open_rows:
             return
@@ -186,12 +186,13 @@ def _pairs_matter(rows: Sequence[Row], formula: float) -> bool:
     return pair > law + max(SECOND, grain(rows)) or rows[0].log_evidence > law + max(TIE, 0.5 * formula)
 
 
-def _wanted(row: Row, rows: Sequence[Row], best: float) -> float:
+def _wanted(row: Row, rows: Sequence[Row]) -> float:
     """Log evidence from which a row matters: a tie with the best; of two named effects, what makes them stand."""
+    tie = rows[0].log_evidence - TIE
     if len(row.ids) < 2 or row.generic:
-        return best - TIE
+        return tie
     single = max((r.log_evidence for r in rows if len(r.ids) == 1 and not r.generic), default=-math.inf)
-    return max(best - TIE, single + SECOND)
+    return max(tie, single + SECOND)
 
 
 def _at_begins(fit: Fit, begins: Sequence[int]) -> Start:

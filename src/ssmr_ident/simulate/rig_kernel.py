@@ -341,6 +341,8 @@ def _along_speed(v, v_was, moved, kick, x, z, time, row, given, g, slopes, more_
         Force [N] that the kick at the end has besides; and that which, over the whole step, would have moved the rig as
         what came later did beyond what came before. Each with its slopes over both velocities, the later first, over
         the kick and over x; those over parameters in ``more_slopes`` and ``late_slopes``.
+    jump : float
+        Share of the change of the force over the step that is a jump.
     """
     mean_was, _, f_was, _, fv_was = _toward_rest(x, v_was, z, time, row, given, g, slopes, mean_slopes, False)
     low, high = -math.inf, math.inf

@@ -12,15 +12,15 @@ from ssmr_ident.core.errors import InputError
 from ssmr_ident.diagnose.formulas import other_formulas
 from ssmr_ident.diagnose.scan import promising, scan
 from ssmr_ident.doctor.decays.laws import LAST, SCREENED_S, begun_at, exact, loudest, on_whole, starts
-from ssmr_ident.doctor.decays.linear import LinearFit, fit_linear
-from ssmr_ident.doctor.decays.recordings import Decay, thinned
+from ssmr_ident.doctor.decays.linear import fit_linear
+from ssmr_ident.doctor.decays.linear_members import annealed, from_all_starts, offered_back, offered_down, simulated
+from ssmr_ident.doctor.decays.recordings import Decay
 from ssmr_ident.doctor.decide import certain
 from ssmr_ident.doctor.robots.answer import table
 from ssmr_ident.doctor.robots.cooled import (
     FAR_OFF,
     FURTHER,
     LAWS,
-    TRUSTED,
     Progress,
     Tried,
     cooled,
@@ -36,18 +36,6 @@ from ssmr_ident.identify.fitting.joint import JointFit, differentiate, evaluate
 from ssmr_ident.physics.effects import CATALOGUE
 
 Array = np.ndarray
-
-THIN_S, EVERY = 1.5, 2
-"""Of a decay, what starts of linear members are chosen on: its first part, every so many blocks."""
-
-TRIED, CLOSER, FULL = 3, 6, 12
-"""Steps of every start of a linear member, of the chosen ones, and of the best on whole recordings."""
-
-CHOSEN, LAST_ONES = 3, 2
-"""Starts of a linear member that go on, and of these to whole recordings."""
-
-OFFERED = 2
-"""Models, the best ones, that are offered to those below them."""
 
 SECOND_OVER = 1.25
 """RMS of whitened residuals of the best from which a second effect is looked for."""
@@ -91,7 +79,7 @@ def in_turn(search: Search, progress: Progress | None = None) -> Iterator[None]:
     has been fitted may be the answer, and goes on where that is not certain."""
     say = progress or _silent
     _linear_beside(search, search.baseline, say)
-    _offered_back(search)
+    offered_back(search)
     if search.over(search.best) <= NEAR and _compared(search, say):
         yield
     if search.over(search.best) <= SECOND_OVER:
@@ -102,7 +90,7 @@ def in_turn(search: Search, progress: Progress | None = None) -> Iterator[None]:
         yield
     for first in _firsts(search, linear=True):
         _linear_beside(search, first, say)
-    _offered_down(search)
+    offered_down(search)
     if _compared(search, say):
         yield
 
@@ -182,7 +170,7 @@ def begun(decays: Sequence[Decay], model: Model, progress: Progress | None = Non
     say = progress or _silent
     decays = [d.coarse() for d in decays]
     say("fitting the baseline", 0, 1)
-    fit = _annealed(decays, model)
+    fit = annealed(decays, model)
     if fit is None:
         raise InputError(
             "robot file", "describes a robot that falls over on its tires", "Check stiffness, mass and height"
@@ -190,17 +178,6 @@ def begun(decays: Sequence[Decay], model: Model, progress: Progress | None = Non
     search = Search(Found((), fit, exact(decays, fit, 1)), decays=tuple(decays), looked_at=len(KINDS))
     say("fitting the baseline", 1, 1)
     return search
-
-
-def _annealed(decays: Sequence[Decay], model: Model) -> LinearFit | None:
-    """The baseline from what is known: all that this leaves of the recordings counts as noise at first, then ever less,
-    or the robot would leave what is known to follow what no robot does."""
-    fit = fit_linear(decays, model, np.zeros(len(model.unknowns)), 0)
-    temper = 0.0 if fit is None else fit.chi2 / sum(d.trial.size for d in decays)
-    while fit is not None and temper > 1.0:
-        fit = fit_linear(decays, model, fit.point, temper=temper)
-        temper *= TRUSTED
-    return None if fit is None else fit_linear(decays, model, fit.point)
 
 
 def _firsts(search: Search, linear: bool = False) -> list[Found]:
@@ -225,11 +202,11 @@ def _members_beside(search: Search, first: Found) -> list[Member]:
 
 def _linear_beside(search: Search, first: Found, say: Progress) -> Found:
     """Linear members beside a fit, which is simulated for it."""
-    first = _simulated(search, first)
+    first = simulated(search, first)
     linear = [m for m in _members_beside(search, first) if m.linear]
     for index, name in enumerate(names := list(dict.fromkeys(m.id for m in linear))):
         say("linear members", index, len(names))
-        found = _linear(search, first, [m for m in linear if m.id == name])
+        found = from_all_starts(search, first, [m for m in linear if m.id == name])
         if found is not None:
             search.add(found)
     return first
@@ -271,42 +248,6 @@ def _something_is_certain(search: Search) -> bool:
     return any(certain(row, base) for row in rows)
 
 
-def _linear(search: Search, first: Found, ways: Sequence[Member]) -> Found | None:
-    """A linear member from all of its starts, beside a fit and beside what is known."""
-    thin = [thinned(d, THIN_S, EVERY) for d in search.decays]
-    count = len(first.model.physics)
-    starts = [first.point, np.concatenate([np.zeros(count), first.point[count:]])]
-    tried = [
-        (way, fit)
-        for way in ways
-        for start in starts
-        if (fit := fit_linear(thin, way.model, np.concatenate([start, way.own]), TRIED)) is not None
-    ]
-    led = [
-        (way, fit)
-        for way, begun in sorted(tried, key=lambda pair: pair[1].cost)[:CHOSEN]
-        if (fit := fit_linear(thin, way.model, begun.point, CLOSER)) is not None
-    ]
-    whole = [
-        (way, fit)
-        for way, begun in sorted(led, key=lambda pair: pair[1].cost)[:LAST_ONES]
-        if (fit := fit_linear(search.decays, way.model, begun.point, FULL)) is not None
-    ]
-    if not whole:
-        return None
-    way, fit = min(whole, key=lambda pair: pair[1].cost)
-    return Found((*first.members, way), fit, None)
-
-
-def _simulated(search: Search, found: Found) -> Found:
-    if found.fit is not None:
-        return found
-    assert found.linear is not None
-    simulated = replace(found, fit=exact(search.decays, found.linear, LAST))
-    search.found = [simulated if f is found else f for f in search.found]
-    return simulated
-
-
 def _settled(search: Search, say: Progress, found: Found | None = None) -> None:
     """A law to its end, the best model's if none is given."""
     best = found or search.best
@@ -330,34 +271,6 @@ def _other_formulas(search: Search, say: Progress) -> None:
         if np.isfinite(fit.rss):
             new = replace(member, form=form, model=model)
             search.add(Found((*best.members[:-1], new), None, descend(fit, FURTHER, plain=True)))
-
-
-def _offered_back(search: Search) -> None:
-    """What the best have found without their members, offered to the baseline."""
-    base = search.baseline
-    assert base.linear is not None
-    count = len(base.point)
-    for found in sorted(search.found, key=lambda f: f.cost)[:OFFERED]:
-        fit = fit_linear(search.decays, base.model, found.point[:count])
-        if fit is not None and fit.cost < base.linear.cost - 1.0:
-            base = Found((), fit, exact(search.decays, fit, 1))
-    search.baseline = base
-
-
-def _offered_down(search: Search) -> None:
-    """What the best two linear effects have found together, offered to each of them alone."""
-    pairs = [f for f in search.found if len(f.members) == 2 and f.linear is not None]
-    for pair in sorted(pairs, key=lambda f: f.cost)[:OFFERED]:
-        values = pair.model.split(pair.point)[1]
-        for member in pair.members:
-            single = next((f for f in search.found if [m.id for m in f.members] == [member.id]), None)
-            if single is None or single.linear is None:
-                continue
-            own = [c.unknown.scaled(values[c.effect][c.parameter.name]) for c in single.model.free]
-            point = np.concatenate([pair.point[: len(single.model.physics)], own])
-            fit = fit_linear(search.decays, single.model, point)
-            if fit is not None and fit.cost < single.linear.cost - 1.0:
-                search.found = [Found(single.members, fit, None) if f is single else f for f in search.found]
 
 
 def _parts(generic: Member, fit: JointFit, laws: Sequence[Member]) -> list[tuple[Member, JointFit]]:
@@ -386,7 +299,7 @@ def _finished(search: Search, say: Progress) -> None:
             search.add(replace(best, linear=fit))
     while (found := _nearest(search)) is not None:
         say("near the best", 0, 1)
-        _simulated(search, found)
+        simulated(search, found)
     base = search.baseline
     assert base.fit is not None
     search.baseline = replace(base, fit=descend(base.fit, LAST, plain=True))

@@ -1,0 +1,103 @@
+"""Members that are linear in motion: fitted in closed form from all of their starts, offered to their neighbours."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from ssmr_ident.doctor.decays.laws import LAST, exact
+from ssmr_ident.doctor.decays.linear import LinearFit, fit_linear
+from ssmr_ident.doctor.decays.recordings import Decay, thinned
+from ssmr_ident.doctor.robots.cooled import TRUSTED
+from ssmr_ident.doctor.robots.found import Found, Search
+from ssmr_ident.doctor.robots.members import Member
+from ssmr_ident.identify.fitting.coordinates import Model
+
+THIN_S, EVERY = 1.5, 2
+"""Of a decay, what starts of linear members are chosen on: its first part, every so many blocks."""
+
+TRIED, CLOSER, FULL = 3, 6, 12
+"""Steps of every start of a linear member, of the chosen ones, and of the best on whole recordings."""
+
+CHOSEN, LAST_ONES = 3, 2
+"""Starts of a linear member that go on, and of these to whole recordings."""
+
+OFFERED = 2
+"""Models, the best ones, that are offered to those below them."""
+
+
+def annealed(decays: Sequence[Decay], model: Model) -> LinearFit | None:
+    """The baseline from what is known: all that this leaves of the recordings counts as noise at first, then ever less,
+    or the robot would leave what is known to follow what no robot does."""
+    fit = fit_linear(decays, model, np.zeros(len(model.unknowns)), 0)
+    temper = 0.0 if fit is None else fit.chi2 / sum(d.trial.size for d in decays)
+    while fit is not None and temper > 1.0:
+        fit = fit_linear(decays, model, fit.point, temper=temper)
+        temper *= TRUSTED
+    return None if fit is None else fit_linear(decays, model, fit.point)
+
+
+def from_all_starts(search: Search, first: Found, ways: Sequence[Member]) -> Found | None:
+    """A linear member from all of its starts, beside a fit and beside what is known."""
+    thin = [thinned(d, THIN_S, EVERY) for d in search.decays]
+    count = len(first.model.physics)
+    starts = [first.point, np.concatenate([np.zeros(count), first.point[count:]])]
+    tried = [
+        (way, fit)
+        for way in ways
+        for start in starts
+        if (fit := fit_linear(thin, way.model, np.concatenate([start, way.own]), TRIED)) is not None
+    ]
+    led = [
+        (way, fit)
+        for way, begun in sorted(tried, key=lambda pair: pair[1].cost)[:CHOSEN]
+        if (fit := fit_linear(thin, way.model, begun.point, CLOSER)) is not None
+    ]
+    whole = [
+        (way, fit)
+        for way, begun in sorted(led, key=lambda pair: pair[1].cost)[:LAST_ONES]
+        if (fit := fit_linear(search.decays, way.model, begun.point, FULL)) is not None
+    ]
+    if not whole:
+        return None
+    way, fit = min(whole, key=lambda pair: pair[1].cost)
+    return Found((*first.members, way), fit, None)
+
+
+def simulated(search: Search, found: Found) -> Found:
+    if found.fit is not None:
+        return found
+    assert found.linear is not None
+    new = replace(found, fit=exact(search.decays, found.linear, LAST))
+    search.found = [new if f is found else f for f in search.found]
+    return new
+
+
+def offered_back(search: Search) -> None:
+    """What the best have found without their members, offered to the baseline."""
+    base = search.baseline
+    assert base.linear is not None
+    count = len(base.point)
+    for found in sorted(search.found, key=lambda f: f.cost)[:OFFERED]:
+        fit = fit_linear(search.decays, base.model, found.point[:count])
+        if fit is not None and fit.cost < base.linear.cost - 1.0:
+            base = Found((), fit, exact(search.decays, fit, 1))
+    search.baseline = base
+
+
+def offered_down(search: Search) -> None:
+    """What the best two linear effects have found together, offered to each of them alone."""
+    pairs = [f for f in search.found if len(f.members) == 2 and f.linear is not None]
+    for pair in sorted(pairs, key=lambda f: f.cost)[:OFFERED]:
+        values = pair.model.split(pair.point)[1]
+        for member in pair.members:
+            single = next((f for f in search.found if [m.id for m in f.members] == [member.id]), None)
+            if single is None or single.linear is None:
+                continue
+            own = [c.unknown.scaled(values[c.effect][c.parameter.name]) for c in single.model.free]
+            point = np.concatenate([pair.point[: len(single.model.physics)], own])
+            fit = fit_linear(search.decays, single.model, point)
+            if fit is not None and fit.cost < single.linear.cost - 1.0:
+                search.found = [Found(single.members, fit, None) if f is single else f for f in search.found]
