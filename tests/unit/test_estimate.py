@@ -85,12 +85,11 @@ def compiled(p: Problem, node: Node, point: np.ndarray):
 
 
 @pytest.mark.parametrize(
-    ("member", "finer", "agree", "slope"),
-    # where friction jumps within a step the kernel is nearer to the simulator's finer steps than to the same ones, and
-    # the share of the force that jumps has no slope over the rounding
-    [(cubic, 1, 1e-9, 4e-3), (lambda size: friction(5.0), 16, 1e-3, 2e-2)],
+    ("member", "finer", "agree"),
+    # where friction jumps within a step the kernel is nearer to the simulator's finer steps than to the same ones
+    [(cubic, 1, 1e-9), (lambda size: friction(5.0), 16, 1e-3)],
 )
-def test_kernel_is_the_simulator_and_its_slopes_are_differences(member, finer: int, agree: float, slope: float) -> None:
+def test_kernel_is_the_simulator_and_its_slopes_are_differences(member, finer: int, agree: float) -> None:
     own = driven(2e5, 0.0, seconds=2.0)
     p = problem(own)
     node = Node(p.baseline, (member(p.size),))
@@ -111,7 +110,9 @@ def test_kernel_is_the_simulator_and_its_slopes_are_differences(member, finer: i
         (other,) = simulate(compiled(p, node, moved), [start], [borders], [0.0])
         differences = (other.y - found.y)[:, 0] / 1e-5
         slopes = found.dy[:, 0, node.states + k]
-        assert np.abs(differences - slopes).max() < slope * np.abs(differences).max()
+        # the share of the force that jumps has no slope over the rounding
+        near = 2e-2 if node.coordinates[k].name == "rounding_m_s" else 4e-3
+        assert np.abs(differences - slopes).max() < near * np.abs(differences).max()
 
 
 @pytest.mark.parametrize(
@@ -227,11 +228,9 @@ def test_multiple_shooting_comes_from_far_away(stiff: float, damp: float) -> Non
     node = Node(p.baseline, (cubic(p.size),))
     paths = tuple(smoothed(own, p.frequency, p.size) for own in p.pieces)
     point = regressed(p, paths, node)
-    found = polish(p, node, shot(p, node, Start(point, paths=paths)))
-    # a mass that nothing but the force tells scales with its gain, to 2 %
-    assert found.value("mass_kg") == pytest.approx(MASS, rel=0.02)
-    assert found.value("stiffness_N_m") / found.value("mass_kg") == pytest.approx(STIFFNESS / MASS, rel=2e-3)
-    assert found.value("k3_N_m3") == pytest.approx(k3, rel=0.06)
+    found = further(p, polish(p, node, shot(p, node, Start(point, paths=paths))))
+    assert found.value("stiffness_N_m") == pytest.approx(STIFFNESS, rel=0.01)
+    assert found.value("k3_N_m3") == pytest.approx(k3, rel=0.02)
     assert found.value("damping_N_s_m") == pytest.approx(DAMPING, rel=0.1)
     assert found.chi2 / p.samples == pytest.approx(1.0, abs=0.25)
 
