@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Any
@@ -230,7 +231,9 @@ def _named(outcome: Outcome, fitted: Mapping[str, Mapping[str, Estimate]]) -> tu
 
 def _tried(outcome: Outcome) -> tuple[Tried, ...]:
     def row(e: Explanation) -> Tried:
-        return Tried(e.id, float(errors(predictions(e.kept)).mean()), float(outcome.found[e.id]))
+        burst = not np.isfinite(e.kept.rss)  # on recordings that it was not fitted to
+        error = math.inf if burst else float(errors(predictions(e.kept)).mean())
+        return Tried(e.id, error, float(outcome.found[e.id]))
 
     return tuple(sorted(side_by_side(row, outcome.tried), key=lambda t: -t.log_evidence))
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ssmr_ident.estimate.equations import solved_positive
 from ssmr_ident.identify.fitting.joint import JointFit
 
 Array = np.ndarray
@@ -60,7 +61,7 @@ class Curvature:
 
     def normal_equations(self) -> tuple[Array, Array]:
         """Matrix and right side in the shared coordinates, nuisances eliminated (Schur complement)."""
-        matrices, right = self._reduced(np.linalg.solve(self._damped(np.zeros(1)), self.sides))
+        matrices, right = self._reduced(solved_positive(self._damped(np.zeros(1)), self.sides))
         return matrices[0], right[0]
 
     def step(self, damping: float, shared: bool = True) -> tuple[Array, list[Array]]:
@@ -79,9 +80,9 @@ class Curvature:
         count, raised = len(self.point), np.asarray(dampings, float)
         moves, matrices = np.zeros((len(raised), count)), self._damped(raised)
         if not shared or not count:
-            found = np.linalg.solve(matrices, self.sides[:, :, count:])[..., 0]
+            found = solved_positive(matrices, self.sides[:, :, count:])[..., 0]
         else:
-            solved = np.linalg.solve(matrices, self.sides)
+            solved = solved_positive(matrices, self.sides)
             shares, right = self._reduced(solved)
             diagonal = np.einsum("dpp->dp", shares)
             diagonal *= 1.0 + raised[:, None]

@@ -107,7 +107,7 @@ def descend(
         Steps with corrected slopes after each with exact ones.
     """
     rung = 0
-    for _ in range(iterations):
+    for _ in range(iterations if np.isfinite(fit.rss) else 0):
         fit = differentiate(search_again(fit), shared)
         counted = fit.counted
         enough = max(settled, SLOW * float(counted.sum()))
