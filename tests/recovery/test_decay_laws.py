@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 from bank.decays import draw_decays
+from doctor.sources import drawn_by
 
 from ssmr_ident.doctor.decays import run, search
 
@@ -21,3 +22,19 @@ def test_hardening_is_fitted_down_to_the_noise(seed: int, monkeypatch: pytest.Mo
     search._laws_beside(found, found.baseline, lambda *_: None)
     search._settled(found, lambda *_: None)
     assert found.over(min(found.found, key=lambda f: f.cost)) < 1.2
+
+
+@pytest.mark.slow
+def test_a_stiffness_that_changes_over_each_recording_is_of_that_kind(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Beside hardening, which makes as much of it as a wrong law can."""
+    members = search.members
+    monkeypatch.setattr(search, "members", lambda fit: [m for m in members(fit) if m.id == "nonlinear_stiffness"])
+    drawn = drawn_by("bank/decays/missing/636009")
+    assert drawn.truth.formula == "a stiffness that changes over each recording"
+    setup, decays = run._prepared(drawn.campaign, drawn.campaign.parameters)
+    found = search.begun(decays, setup.model)
+    search._laws_beside(found, found.baseline, lambda *_: None)
+    search._settled(found, lambda *_: None)
+    best = found.best
+    assert [m.kind for m in best.members] == ["changing"]
+    assert found.over(best) < 1.1

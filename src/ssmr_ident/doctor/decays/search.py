@@ -28,7 +28,7 @@ from ssmr_ident.doctor.robots.cooled import (
     to_the_end,
 )
 from ssmr_ident.doctor.robots.found import Found, Search, cost_of
-from ssmr_ident.doctor.robots.members import GEOMETRY, KINDS, Member, any_static, members
+from ssmr_ident.doctor.robots.members import GEOMETRY, KINDS, Member, any_shape, members
 from ssmr_ident.doctor.rules import STATED
 from ssmr_ident.identify.fitting.coordinates import Model
 from ssmr_ident.identify.fitting.descent import descend
@@ -216,7 +216,7 @@ def _laws_beside(search: Search, first: Found, say: Progress) -> None:
     """Laws beside a fit."""
     assert first.fit is not None
     laws = _promising(search, first, [m for m in _members_beside(search, first) if not m.linear])
-    laws += [any_static(first.fit)] if laws and not first.members else []
+    laws += any_shape(first.fit) if laws and not first.members else []
     which = loudest(search.decays)
     loud, ended = [search.decays[index] for index in which], list[Tried]()
     trials = [d.trial.until(SCREENED_S[1]) for d in loud]

@@ -64,7 +64,8 @@ def answered(
     found = assembled(outcome(setup, search, rows, decision), known, seed)
     # what takes any shape is made of several laws' terms, and is none of them
     shown = [e for e in found.effects if decision.listed or e.id == "unlisted"]
-    named = tuple(replace(e, kind=BY_KIND[e.id], element=element_of(e.id, setup)) for e in shown)
+    kind = dict(zip(decision.chosen.ids, decision.chosen.kinds, strict=True)) if decision.chosen else {}
+    named = tuple(replace(e, kind=kind.get(e.id, BY_KIND[e.id]), element=element_of(e.id, setup)) for e in shown)
     kinds = tuple(
         KindShare(s.kind, element_of(s.row.ids[0], setup), float(s.share), float(s.log_evidence))
         for s in decision.kinds

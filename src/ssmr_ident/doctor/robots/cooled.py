@@ -131,7 +131,8 @@ def field(tried: Sequence[Tried], effects: int, most: float = math.inf) -> list[
     found: list[Tried] = []
     for member, fit in ranked:
         fits = member.generic or (member.id in names and cost_of(fit) < most)
-        if fits and sum(m.id == member.id and m.generic == member.generic for m, _ in found) < 2:
+        alike = [m for m, _ in found if (m.id, m.kind, m.generic) == (member.id, member.kind, member.generic)]
+        if fits and len(alike) < 2:
             found.append((member, fit))
     return found
 

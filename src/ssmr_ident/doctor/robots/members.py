@@ -143,6 +143,11 @@ def member_at(
     return Member(name, kind, form, new, own)
 
 
+def any_shape(fit: JointFit) -> list[Member]:
+    """Members of the tires along x and y that hold no law of the catalogue."""
+    return [any_static(fit), changing(fit)]
+
+
 def any_static(fit: JointFit) -> Member:
     """f(s, v) of the tires along x and y, smooth; linear in its coefficients, which begin at nought."""
     sizes = sizes_of(fit)
@@ -160,3 +165,12 @@ def any_static(fit: JointFit) -> Member:
             model, more = model.with_effect(name, begun, {n: 0.1 * value for n, value in at.items()})
             own = np.concatenate([own, more])
     return Member("unlisted", STATIC, ANY, model, own, True)
+
+
+def changing(fit: JointFit) -> Member:
+    """Stiffness and damping of the tires along x and y that change evenly over each recording, from nought."""
+    sizes = sizes_of(fit)
+    force, s, v, t = sizes["force"], sizes["deflection"], sizes["speed"], sizes["duration"]
+    scale = {"c_ts_N_m_s": 0.1 * force / (s * t), "c_tv_N_m": 0.1 * force / (v * t)}
+    model, own = fit.model.with_effect("unlisted", dict.fromkeys(scale, 0.0), scale)
+    return Member("unlisted", CHANGING, f"{ANY}, over time", model, own, True)
