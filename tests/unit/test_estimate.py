@@ -250,6 +250,19 @@ def test_duffing_oscillation_in_elliptic_functions() -> None:
     assert ratio * found.value("k3_N_m3") == pytest.approx(k3, rel=0.01)
 
 
+def test_what_holds_a_rig_at_rest_makes_no_sample_unsure() -> None:
+    """Else a law that follows nothing would be let off what it leaves."""
+    own = driven(0.0, 0.0, seconds=2.0)
+    p = problem(own)
+    root = Member("unlisted", "static_force", "sign(v) sqrt|v|", (Coordinate("c_root_v_N_s05_m05", 1e4),), law={},
+                  variable="v")  # fmt: skip
+    node = Node(p.baseline, (root,))
+    model = compiled(p, node, np.array([0.0, 0.03, 0.0, 1.0]))
+    (found,) = simulate(model, [np.zeros((1, node.states))], [np.array([0, len(own.y)])], [0.0])
+    assert np.sqrt(np.mean(found.y**2)) < 0.2 * own.y.std()
+    assert np.abs(found.unsure).max() < 0.01 * np.sqrt(np.mean((found.y - own.y) ** 2))
+
+
 def test_coulomb_decay_falls_by_four_lags_a_cycle() -> None:
     """Half cycles about a centre that the friction shifts by F/k (Den Hartog 1934)."""
     force, amplitude, omega = 4.0, 0.1, math.sqrt(STIFFNESS / MASS)

@@ -36,8 +36,9 @@ GRADES = 5
 """Parts of a velocity, each a quarter of the one before, in which a force that may jump at nought is averaged."""
 
 TIMED = 1e-3
-"""Of the size of the speed, how far that of a run is off where a force jumps, as a stiff solver tells: a tenth of it
-for dry friction of a fortieth of what drives, all of it where friction holds the rig for most of the time."""
+"""Of the largest speed within the last period or so, how far a run is off where a force jumps, as a stiff solver
+tells: a tenth of it for dry friction of a fortieth of what drives, all of it where friction holds the rig for most of
+the time."""
 
 VALUE, BY_SPEED, ALL = range(3)
 """What is wanted of a force: itself, its slope over speed, all its slopes."""
@@ -491,6 +492,7 @@ def run(
         for i in range(n_lin):
             moved_by[k] += transition[k, i] * kick[i]
     away_from, d_away = -aside, -d_aside
+    late_share = math.exp(-step * g[15] / (2.0 * math.pi * g[14]))  # of a speed that is a step old: 1/e after a period
     jumps = g[16][0] or g[3].shape[1] > 0 or g[4].shape[2] > 0  # what does not look at speed does not jump with it
     for stretch in range(starts.shape[0]):
         ds[:], dz[:], df[:] = 0.0, 0.0, 0.0
@@ -500,7 +502,7 @@ def run(
         for k in range(hidden):
             z[k] = starts[stretch, n_lin + k]
             dz[k, n_lin + k] = 1.0
-        f, fx, fv, x_was, v_was, f_was, rise = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+        f, fx, fv, x_was, v_was, f_was, rise, fastest = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
         first, after, last_row, driven_from, last = places[stretch]
         total = (after - first) * every
         for n in range(total + 1):
@@ -563,6 +565,7 @@ def run(
                         beyond[states + p] += more[3] * d_kick[p, 1]
                         later_on[states + p] += late[3] * d_kick[p, 1]
                 v_was = v
+                fastest = max(abs(v), late_share * fastest)
                 taken = half * kick[1]
                 share = 1.0 / (1.0 + taken * (fv + more[1]))
                 for j in range(columns):
@@ -616,7 +619,7 @@ def run(
                 row = first + n // every
                 apart = 0.0
                 if beside and jumps:
-                    off = TIMED * g[15]
+                    off = TIMED * fastest
                     above, _, _ = _force(s[0], v + off, z, time, row, given, g, slopes_now, VALUE)
                     below, _, _ = _force(s[0], v - off, z, time, row, given, g, slopes_now, VALUE)
                     apart = 0.5 * (above - below)
