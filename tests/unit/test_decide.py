@@ -207,3 +207,10 @@ def test_a_pair_stands_no_better_than_a_fallen_one_that_explains_more() -> None:
     other_way = replace(weaker, ids=weaker.ids[::-1], kinds=weaker.kinds[::-1], log_evidence=7489.0)
     assert decide([base, law, weaker, other_way]).confidence > 0.99
     assert decide([base, law, fallen, shape, weaker]).chosen is law
+
+
+def test_a_second_effect_that_makes_what_was_kept_back_worse_is_not_named() -> None:
+    law = replace(row("dry_friction", "static_force", 20_000.0, 9000.0, 1.34), heldout=1.80)
+    pair = row("dry_friction sensor_bandwidth", "static_force sensor_chain", 22_400.0, 5000.0, 1.0)
+    assert decide([BASE, law, replace(pair, heldout=1.85)]).chosen is law
+    assert decide([BASE, law, replace(pair, heldout=1.75)]).chosen.ids == pair.ids

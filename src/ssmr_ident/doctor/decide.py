@@ -137,7 +137,7 @@ def standing(rows: Sequence[Row]) -> list[Row]:
 def stands(row: Row, rows: Sequence[Row]) -> bool:
     """Whether each of two effects beats the other one in any shape, and halves what that leaves beyond white noise, or
     leaves nothing that goes with the motion or that another model explains, and ``FORMULA`` less; and both any one law,
-    by evidence in sizes of what they themselves leave."""
+    by evidence in sizes of what they themselves leave. Neither makes what was kept back worse."""
     if len(row.ids) < 2:
         return True
     found = [_alone(row, k, rows) for k in (0, 1)]
@@ -152,6 +152,8 @@ def stands(row: Row, rows: Sequence[Row]) -> bool:
         only_noise = explained and row.left.follows < FOLLOWS and row.left.uneven < UNEVEN
         takes = halved or (only_noise and row.chi2 < (1.0 - FORMULA) * best.chi2)
         if not takes or row.log_evidence < best.log_evidence + max(SECOND, grain(rows)):
+            return False
+        if row.heldout > min((r.heldout for r in alone if math.isfinite(r.heldout)), default=math.inf):
             return False
     return True
 

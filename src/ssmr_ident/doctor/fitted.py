@@ -43,13 +43,15 @@ NEAR_NOISE = 1.5
 
 @dataclass(eq=False)
 class Search:
-    """What has been fitted, and under which noise; ``far`` is what was left behind on fewer samples."""
+    """What has been fitted, and under which noise; ``far`` is what was left behind on fewer samples, ``offered`` what
+    was offered to its neighbours."""
 
     problem: Problem
     until: float = math.inf
     fits: list[Fit] = field(default_factory=list)
     untried: list[str] = field(default_factory=list)
     far: list[Row] = field(default_factory=list)
+    offered: set[Fit] = field(default_factory=set)
 
     @property
     def late(self) -> bool:
@@ -161,7 +163,8 @@ def offered_back(search: Search, count: int = OFFERED) -> None:
     member, or a part of its formula, dropped."""
     ranked = sorted(search.fits, key=lambda f: f.cost)
     pairs = [f for f in ranked[count:] if len(f.node.members) > 1 and not f.node.generic]
-    for fit in ranked[:count] + pairs[:1]:
+    for fit in [f for f in ranked[:count] + pairs[:1] if f not in search.offered]:
+        search.offered.add(fit)
         for member in fit.node.members:
             node = fit.node.without(member)
             poorer = next((f for f in search.fits if f.node.name == node.name), None)

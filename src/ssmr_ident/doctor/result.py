@@ -159,7 +159,7 @@ def exported(fit: Fit, known: ParameterSet) -> ParameterSet:
             continue
         changes[c.name] = replace(known[c.name], value=float(values[k]), std=float(of_baseline[k]), source=FITTED)
     known = with_further_bodies(fit, known.updated(changes))
-    place = {id(c): k for k, c in enumerate(node.coordinates)}
+    place, scaled = {id(c): k for k, c in enumerate(node.coordinates)}, _scaled_by_mass(fit, known)
     blocks: dict[str, dict[str, Estimate]] = {}
     bodies = riders(fit)
     held = [m for m in node.members if m not in bodies]
@@ -174,8 +174,9 @@ def exported(fit: Fit, known: ParameterSet) -> ParameterSet:
     for member in held:
         for c in member.coordinates if member.id in blocks and not member.tables else ():
             k = place[id(c)]
+            std = math.hypot(stds[k], scaled * values[k] if c.unit.startswith("N") else 0.0)
             blocks[member.id][c.name] = Estimate(
-                float(values[k]), float(stds[k]), c.unit, FITTED, at_bound=values[k] in (c.lower, c.upper)
+                float(values[k]), std, c.unit, FITTED, at_bound=values[k] in (c.lower, c.upper)
             )
     elements = {m.id: m.element for m in held if m.element}
     return replace(known, effects={at_element(i, elements.get(i, "")): block for i, block in blocks.items()})
@@ -202,11 +203,15 @@ def baseline_covariance(fit: Fit, known: ParameterSet) -> Array:
     node, count = fit.node, len(fit.node.baseline)
     slopes, values = node.slopes(fit.point)[:count], node.values(fit.point)[:count]
     covariance = fit.covariance[:count, :count] * np.outer(slopes, slopes)
-    mass = known[node.baseline[0].name]
-    if len(node.layout.bodies) == 1 and node.baseline[0].std < EXACTLY and mass.std and not mass.fixed:
-        share = mass.std / float(mass.value)
-        covariance = covariance + share**2 * np.outer(values, values)
-    return covariance
+    return np.asarray(covariance + _scaled_by_mass(fit, known) ** 2 * np.outer(values, values))
+
+
+def _scaled_by_mass(fit: Fit, known: ParameterSet) -> float:
+    """Relative standard deviation that all forces have from the mass, where no force was measured; else 0."""
+    first = fit.node.baseline[0]
+    mass = known[first.name]
+    alone = len(fit.node.layout.bodies) == 1 and first.std < EXACTLY
+    return mass.std / float(mass.value) if alone and mass.std and not mass.fixed else 0.0
 
 
 def named_effects(decision: Decision, chosen: Row, after: ParameterSet, problem: Problem) -> tuple[NamedEffect, ...]:
@@ -225,10 +230,10 @@ def named_effects(decision: Decision, chosen: Row, after: ParameterSet, problem:
         sentence = told(effect, values) if values else f"Something of the kind {kind} acts that no listed law makes."
         if further:
             sentence = f"A body that the file has not moves on {member.element}. {shapes_told(after)}"
+        values = values | _riding_mass(values, after) | _cubic_of_sine(values, after)
         found.append(
             NamedEffect(
-                effect, sentence, text, values | _riding_mass(values, after), min(decision.confidence, 1.0),
-                decision.ties, member.form,
+                effect, sentence, text, values, min(decision.confidence, 1.0), decision.ties, member.form,
                 kind=member.kind, element=element_of(member), curve=drawn or law_curve(problem, chosen.fit, member),
             )
         )  # fmt: skip
@@ -244,6 +249,18 @@ def _riding_mass(values: Mapping[str, Estimate], after: ParameterSet) -> dict[st
     mass = float(after[key].value)
     std = None if share.std is None else share.std * mass
     return {key: Estimate(share.value * mass, std, after[key].unit, "rider_share of the mass")}
+
+
+def _cubic_of_sine(values: Mapping[str, Estimate], after: ParameterSet) -> dict[str, Estimate]:
+    """The cubic with which a pendulum's sine begins: that of a test which swings no farther."""
+    share = values.get("sine_share")
+    if share is None:
+        return {}
+    spring = after["stiffness_N_m_rad"]
+    third = -float(spring.value) / 6.0
+    parts = (share.std or 0.0) * third, share.value * (spring.std or 0.0) / 6.0
+    std = math.hypot(*parts) if any(parts) else None
+    return {"k3_N_m3": Estimate(share.value * third, std, "N/m^3", "of the sine's series, -p K/6")}
 
 
 def element_of(member: Member) -> str:

@@ -16,16 +16,19 @@ from ssmr_ident.diagnose.arranged import arranged
 from ssmr_ident.diagnose.diagnosis import Diagnosis
 from ssmr_ident.diagnose.setup import keep_back
 from ssmr_ident.doctor.decide import MISSING, Decision, decide
+from ssmr_ident.doctor.fitted import SHORT
 from ssmr_ident.doctor.held import held_fit, interleaved
 from ssmr_ident.doctor.left import left
 from ssmr_ident.doctor.networks import also_at
 from ssmr_ident.doctor.result import Examined, answer, errors, predictions
 from ssmr_ident.doctor.search import searched
 from ssmr_ident.doctor.table import Row
+from ssmr_ident.estimate.exact import polish
+from ssmr_ident.estimate.finer import finer
 from ssmr_ident.estimate.network import network_problem
 from ssmr_ident.estimate.problem import problem_of
 from ssmr_ident.estimate.stretches import in_stretches
-from ssmr_ident.estimate.values import Problem
+from ssmr_ident.estimate.values import Fit, Problem, Start
 from ssmr_ident.experiments import EXPERIMENTS
 from ssmr_ident.experiments.campaign import Campaign, Measurement
 from ssmr_ident.physics.network import NETWORK
@@ -102,11 +105,8 @@ def examined(campaign: Campaign, known: ParameterSet, progress: Progress | None,
         )
     rows = search.rows()
     rows = tuple(_with_left(r, search.problem) if len(r.ids) != 1 and not r.generic else r for r in rows)
-    base = next(r for r in rows if not r.ids)
-    decision = decide(rows)
-    if kept is not None:
-        wanted = (*rows[:SHOWN], base, *([decision.chosen] if decision.chosen else []))
-        rows = _with_heldout(rows, {id(r) for r in wanted}, kept, known)
+    rows, decision = _decided(rows, kept, known)
+    rows, decision = _in_small_steps(rows, decision, search.problem, kept, known)
     if not alone:
         notes += _of_network(fitted, rows, decision)
     if search.untried:
@@ -156,12 +156,50 @@ def _with_left(row: Row, problem: Problem) -> Row:
     return replace(row, left=left(problem, row.fit))
 
 
-def _with_heldout(rows: Sequence[Row], wanted: set[int], kept: Problem, known: ParameterSet) -> tuple[Row, ...]:
-    found, near = [], None
-    for row in rows:
-        held = held_fit(kept, row.fit, near) if id(row) in wanted and row.fit is not None else None
-        if held is not None:
-            near = held
-            row = replace(row, kept=held, heldout=float(np.mean(errors(predictions(kept, held, known)))))
-        found.append(row)
-    return tuple(found)
+def _decided(rows: tuple[Row, ...], kept: Problem | None, known: ParameterSet) -> tuple[tuple[Row, ...], Decision]:
+    """The decision, once what is named, and what that is held against, has predicted what was kept back."""
+    asked: set[str] = set()
+    near: Fit | None = None
+    while True:
+        decision = decide(rows)
+        chosen = decision.chosen
+        shown = [r for k, r in enumerate(rows) if k < SHOWN or not r.ids or r is chosen or _alone_of(r, chosen)]
+        wanted = [r.name for r in shown if r.name not in asked] if kept is not None else []
+        if kept is None or not wanted:
+            return rows, decision
+        asked.update(wanted)
+        found = []
+        for row in rows:
+            found.append(_held(row, kept, known, near) if row.name in wanted else row)
+            near = found[-1].kept or near
+        rows = tuple(found)
+
+
+def _in_small_steps(
+    rows: tuple[Row, ...], decision: Decision, problem: Problem, kept: Problem | None, known: ParameterSet
+) -> tuple[tuple[Row, ...], Decision]:
+    """What was chosen, fitted and held against what was kept back once more in smaller steps."""
+    chosen = decision.chosen
+    small = finer(problem)
+    if chosen is None or chosen.fit is None or not chosen.fit.node.beside or small is problem:
+        return rows, decision
+    fit = polish(small, chosen.fit.node, Start(chosen.fit.point, chosen.fit.nuisances), SHORT)
+    if not fit.cost < chosen.fit.cost + problem.samples:
+        return rows, decision
+    new = replace(chosen, fit=fit)
+    if kept is not None and chosen.kept is not None:
+        new = _held(new, finer(kept), known, chosen.kept)
+    return tuple(new if r is chosen else r for r in rows), replace(decision, chosen=new)
+
+
+def _held(row: Row, kept: Problem, known: ParameterSet, near: Fit | None) -> Row:
+    """A row with its error on what was kept back."""
+    held = held_fit(kept, row.fit, near) if row.fit is not None else None
+    if held is None:
+        return row
+    return replace(row, kept=held, heldout=float(np.mean(errors(predictions(kept, held, known)))))
+
+
+def _alone_of(row: Row, chosen: Row | None) -> bool:
+    """Whether a row is one law of a pair that was chosen."""
+    return chosen is not None and len(row.ids) == 1 < len(chosen.ids) and row.ids[0] in chosen.ids and not row.generic

@@ -29,7 +29,7 @@ from ssmr_ident.doctor.kinds import kinds
 from ssmr_ident.doctor.named import named_along
 from ssmr_ident.doctor.networks import members_of_network
 from ssmr_ident.doctor.rules import FORMULA, SECOND, TIE
-from ssmr_ident.doctor.second import FULL_KINDS, exchanged, paired, second
+from ssmr_ident.doctor.second import FULL_KINDS, exchanged, in_other_formulas, paired, second
 from ssmr_ident.doctor.table import Row, grain
 from ssmr_ident.estimate.baseline import baseline_fit
 from ssmr_ident.estimate.coarser import coarser
@@ -92,6 +92,8 @@ def searched(problem: Problem, budget: float = math.inf, progress: Progress | No
         paired(search, say)
     offered_back(search)
     exchanged(search, say)
+    if alone:
+        in_other_formulas(search, say)
     if problem is not whole:
         return _in_full(search, whole, begins, say)
     _ended(search)
@@ -103,7 +105,7 @@ def _with_white(search: Search) -> Search:
     best = search.rows()[0].fit
     assert best is not None
     problem = left_white(search.problem, best)
-    return replace(search, problem=problem, fits=[again(problem, f, SHORT) for f in search.fits])
+    return replace(search, problem=problem, fits=[again(problem, f, SHORT) for f in search.fits], offered=set())
 
 
 def _with_own_noise(search: Search) -> Search:
@@ -117,7 +119,7 @@ def _with_own_noise(search: Search) -> Search:
         for f in search.fits
         if math.isfinite(f.cost)
     ]
-    new = replace(search, problem=problem, fits=fits)
+    new = replace(search, problem=problem, fits=fits, offered=set())
     offered_back(new)
     return new
 
@@ -143,7 +145,7 @@ def _in_full(search: Search, whole: Problem, begins: Sequence[int], say: Progres
         found = polish(whole, best.node, _at_begins(best, begins), FULL)
     problem = left_white(whole, found)
     problem = with_noises(problem, own_noise(problem, found))
-    new = replace(search, problem=problem, fits=[], far=[r for r in rows if r not in kept])
+    new = replace(search, problem=problem, fits=[], offered=set(), far=[r for r in rows if r not in kept])
     for index, row in enumerate(kept):
         say("every sample", index, len(kept))
         assert row.fit is not None

@@ -3,22 +3,20 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 
 from ssmr_ident.doctor.decide import FRICTION
 from ssmr_ident.doctor.fitted import BEGUN, FULL, SHORT, Progress, Search, again, beside, carried, offered_back
 from ssmr_ident.doctor.kinds import kinds
-from ssmr_ident.doctor.laws import Proposal, proposals
+from ssmr_ident.doctor.laws import FORMS, Proposal, proposals
 from ssmr_ident.doctor.named import begun, named, named_along
-from ssmr_ident.doctor.rules import SECOND, TIE, UNIT
-from ssmr_ident.doctor.table import grain, row_of
+from ssmr_ident.doctor.rules import SECOND, TIE
+from ssmr_ident.doctor.table import grain, log_evidence
 from ssmr_ident.estimate.exact import polish
 from ssmr_ident.estimate.generic import STATIC, memory, static
 from ssmr_ident.estimate.motion import motion
 from ssmr_ident.estimate.values import Fit, Start
-
-OVER_NOISE_SECOND = 1.25
-"""What a first effect leaves, in sizes of white noise, from which a second one is looked for."""
 
 FULL_KINDS = 4
 """Members that get a full fit, those that a short one has brought farthest."""
@@ -43,9 +41,6 @@ def second(search: Search, say: Progress) -> None:
         tried.add(row.ids)
         _beside(search, say, row.fit)
         offered_back(search)
-        best = search.rows()[0]
-        if row.over < OVER_NOISE_SECOND or (not best.generic and best.over < OVER_NOISE_SECOND):
-            return
 
 
 def paired(search: Search, say: Progress) -> None:
@@ -95,6 +90,24 @@ def exchanged(search: Search, say: Progress) -> None:
             offered_back(search)
 
 
+def in_other_formulas(search: Search, say: Progress) -> None:
+    """The laws of the best named model in the other formulas of their effects, where that in any shape is better."""
+    rows = search.rows()
+    best = next((r for r in rows if r.ids and not r.generic), None)
+    if best is None or best.fit is None or rows[0].log_evidence < best.log_evidence + TIE:
+        return
+    found = best.fit
+    paths, names = motion(search.problem, found), {f.node.name for f in search.fits}
+    for law in (m for m in found.node.members if m.law is not None):
+        beside = [m for m in found.node.members if m is not law]
+        forms = [form for form in FORMS if form.effect == law.id]
+        for offer in proposals(search.problem, found, paths, beside, forms):
+            if offer.node.name in names or search.late:
+                continue
+            say("other formulas", 0, 1)
+            search.add(again(search.problem, begun(search.problem, offer, found), FULL))
+
+
 def _best_pair(search: Search) -> Fit | None:
     """Two named effects, where these are certainly better than any model with fewer."""
     rows = search.rows()
@@ -105,7 +118,7 @@ def _best_pair(search: Search) -> Fit | None:
 
 def _beside(search: Search, say: Progress, first: Fit) -> None:
     """Every kind in any shape beside a named effect, and named ones along the best of these."""
-    law, problem, least = first.node.members[0], search.problem, grain(search.rows())
+    law, problem = first.node.members[0], search.problem
     paths = motion(problem, first)
     offers = kinds(problem, paths)
     own = [m for m in offers if m.tables and m.kind == law.kind]
@@ -113,8 +126,6 @@ def _beside(search: Search, say: Progress, first: Fit) -> None:
     if law.id == FRICTION:
         own += [memory(problem, paths)] if law.kind == STATIC else [static(problem, paths, "v")]
     shaped = [search.add(beside(problem, first, m, FULL)) for m in own]
-    alone, rows = row_of(first, problem), [row_of(f, problem) for f in shaped]
-    better = [r for r in rows if r.log_evidence > alone.log_evidence + max(TIE, least)]
     short = []
     others = [m for m in offers if not (m.tables and m.kind == law.kind)]
     for index, member in enumerate(others):
@@ -124,8 +135,7 @@ def _beside(search: Search, say: Progress, first: Fit) -> None:
             continue
         short.append(beside(problem, first, member, BEGUN if member.tables else SHORT))
     short = [again(problem, f, SHORT) for f in sorted(short, key=lambda f: f.cost)[:FULL_KINDS]]
-    gain = max((row_of(f, problem).log_evidence - alone.log_evidence for f in short), default=0.0)
-    if alone.over < OVER_NOISE_SECOND and not better and gain < max(UNIT, least):
+    if not _may_stand(search, first, [*shaped, *short]):
         return
     full = [
         search.add(polish(problem, fit.node, Start(fit.point, fit.nuisances), FULL))
@@ -133,3 +143,13 @@ def _beside(search: Search, say: Progress, first: Fit) -> None:
     ]
     if not search.late:
         named_along(search, say, [law], [*full, *shaped, first])
+
+
+def _may_stand(search: Search, first: Fit, pairs: Sequence[Fit]) -> bool:
+    """Whether any law beside a first one may be certainly better than the best one alone: it takes what a member of its
+    kind in any shape does at the most, and has one parameter at the least."""
+    samples, rows = search.problem.samples, search.rows()
+    single = max(log_evidence(r.fit, samples) for r in rows if len(r.ids) == 1 and not r.generic and r.fit is not None)
+    least = min(f.cost - f.promised for f in pairs)
+    most = -0.5 * least - 0.5 * (first.dof + 1.0) * math.log(samples)
+    return most > single + max(SECOND, grain(rows))

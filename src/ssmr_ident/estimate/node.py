@@ -155,7 +155,8 @@ class Node:
 
     @property
     def name(self) -> str:
-        return " + ".join(m.name for m in self.members) or "baseline"
+        """The same in whatever order members were found."""
+        return " + ".join(sorted(m.name for m in self.members)) or "baseline"
 
     @property
     def generic(self) -> bool:
