@@ -168,7 +168,6 @@ def offered_back(search: Search, count: int = OFFERED) -> None:
         for member in fit.node.members:
             node = fit.node.without(member)
             poorer = next((f for f in search.fits if f.node.name == node.name), None)
-            node = poorer.node if poorer else node
             found = polish(search.problem, node, Start(joined(node, fit), carried(node, fit)), SHORT)
             if poorer is None or found.cost < poorer.cost - UNIT:
                 search.add(polish(search.problem, found.node, Start(found.point, found.nuisances), FULL))

@@ -94,6 +94,7 @@ def searched(problem: Problem, budget: float = math.inf, progress: Progress | No
     exchanged(search, say)
     if alone:
         in_other_formulas(search, say)
+        offered_back(search)
     if problem is not whole:
         return _in_full(search, whole, begins, say)
     _ended(search)
