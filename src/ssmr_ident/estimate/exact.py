@@ -7,7 +7,6 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ssmr_ident.estimate.equations import LEAST_CURVATURE, on_diagonal, solved_evenly, solved_positive
 from ssmr_ident.estimate.node import Node
 from ssmr_ident.estimate.regression import starts_of
 from ssmr_ident.estimate.scales import bounded, nuisance_count, nuisance_scales, priors
@@ -17,8 +16,11 @@ from ssmr_ident.estimate.values import Fit, Problem, Start, Stop
 Array = np.ndarray
 
 
-BURST = 1e150
-"""Sum of squares, or of slopes, from which a simulation has burst: the square of it would overflow."""
+LEAST_CURVATURE = 1e-12
+"""That every coordinate has, in its own units: of what the data do not see, round-off alone is left."""
+
+BURST = 1e300
+"""Sum of squares, or of slopes, from which a simulation has burst: sums of them would overflow."""
 
 LEAST_GAIN, LEAST_SHARE = 0.02, 5e-6
 """Of the cost, a step that lowers it by less than their sum is the last: a hundredth of what a decision looks at."""
@@ -170,7 +172,7 @@ def _step(
     eliminated, last = solved[..., :-1], solved[..., -1]
     left = np.diag(precision + LEAST_CURVATURE) + _reduced(normal, cross, eliminated)
     right = -precision * (point - mean) - normal[:, k:-1, -1].sum(axis=0) + np.einsum("skp,sk->p", cross, last)
-    on_diagonal(left)[:] += damping * np.maximum(on_diagonal(left), 1e-12)
+    _on_diagonal(left)[:] += damping * np.maximum(_on_diagonal(left), 1e-12)
     step = np.zeros(len(point))
     step[free] = solved_evenly(left[np.ix_(free, free)], right[free])
     return step, -(eliminated @ step) - last, float(np.sum(line * last)) + float(right @ step)
@@ -182,14 +184,33 @@ def _reduced(normal: Array, cross: Array, eliminated: Array) -> Array:
     return np.asarray(normal[:, k:-1, k:-1].sum(axis=0) - np.tensordot(cross, eliminated, axes=([0, 1], [0, 1])))
 
 
+def _on_diagonal(square: Array) -> Array:
+    """Its diagonal, or those of several, to be written to."""
+    return np.einsum("...ii->...i", square)
+
+
 def _own(normal: Array, scales: Array, damping: float) -> Array:
     """Curvature of the pieces' nuisances with their priors."""
     k = scales.shape[1]
     own = normal[:, :k, :k].copy()
-    diagonal = on_diagonal(own)
+    diagonal = _on_diagonal(own)
     diagonal += 1.0 / scales**2
     diagonal *= 1.0 + damping
     return own
+
+
+def solved_evenly(left: Array, right: Array) -> Array:
+    """Symmetric equations, rows and columns first brought to one size."""
+    size = np.sqrt(np.maximum(np.diag(left), LEAST_CURVATURE))
+    return np.linalg.lstsq(left / np.outer(size, size), right / size, rcond=1e-13)[0] / size
+
+
+def solved_positive(left: Array, columns: Array) -> Array:
+    """Positive definite equations, rows and columns first brought to one size; what round-off alone decides stays."""
+    size = np.sqrt(_on_diagonal(left))[..., None]
+    even = left / (size * np.swapaxes(size, -1, -2))
+    _on_diagonal(even)[...] += LEAST_CURVATURE
+    return np.asarray(np.linalg.solve(even, columns / size) / size)
 
 
 def _decided(node: Node, normal: Array, precision: Array, scales: Array, free: Array) -> tuple[Array, float]:

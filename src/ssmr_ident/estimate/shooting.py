@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ssmr_ident.estimate.equations import solved_evenly
+from ssmr_ident.estimate.exact import solved_evenly
 from ssmr_ident.estimate.node import Node
 from ssmr_ident.estimate.scales import bounded, priors, state_sizes, zero_scales
 from ssmr_ident.estimate.shoot_kernel import eliminate

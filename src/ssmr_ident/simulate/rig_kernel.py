@@ -36,9 +36,12 @@ GRADES = 5
 """Parts of a velocity, each a quarter of the one before, in which a force that may jump at nought is averaged."""
 
 TIMED = 1e-3
-"""Of the largest speed within the last period or so, how far a run is off where a force jumps, as a stiff solver
-tells: a tenth of it for dry friction of a fortieth of what drives, all of it where friction holds the rig for most of
-the time."""
+"""Of the size of the speed, how far that of a run is off where a force jumps, as a stiff solver tells: a tenth of it
+for dry friction of a fortieth of what drives, all of it where friction holds the rig for most of the time."""
+
+HELD = 0.1
+"""Of that size, the largest speed within the last period or so below which it is that speed which counts: what holds a
+rig at rest leaves nothing unsure."""
 
 VALUE, BY_SPEED, ALL = range(3)
 """What is wanted of a force: itself, its slope over speed, all its slopes."""
@@ -619,7 +622,7 @@ def run(
                 row = first + n // every
                 apart = 0.0
                 if beside and jumps:
-                    off = TIMED * fastest
+                    off = TIMED * min(g[15], fastest / HELD)
                     above, _, _ = _force(s[0], v + off, z, time, row, given, g, slopes_now, VALUE)
                     below, _, _ = _force(s[0], v - off, z, time, row, given, g, slopes_now, VALUE)
                     apart = 0.5 * (above - below)

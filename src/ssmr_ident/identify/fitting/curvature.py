@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ssmr_ident.estimate.equations import solved_positive
 from ssmr_ident.identify.fitting.joint import JointFit
 
 Array = np.ndarray
@@ -61,7 +60,7 @@ class Curvature:
 
     def normal_equations(self) -> tuple[Array, Array]:
         """Matrix and right side in the shared coordinates, nuisances eliminated (Schur complement)."""
-        matrices, right = self._reduced(solved_positive(self._damped(np.zeros(1)), self.sides))
+        matrices, right = self._reduced(np.linalg.solve(self._damped(np.zeros(1)), self.sides))
         return matrices[0], right[0]
 
     def step(self, damping: float, shared: bool = True) -> tuple[Array, list[Array]]:
@@ -80,9 +79,9 @@ class Curvature:
         count, raised = len(self.point), np.asarray(dampings, float)
         moves, matrices = np.zeros((len(raised), count)), self._damped(raised)
         if not shared or not count:
-            found = solved_positive(matrices, self.sides[:, :, count:])[..., 0]
+            found = np.linalg.solve(matrices, self.sides[:, :, count:])[..., 0]
         else:
-            solved = solved_positive(matrices, self.sides)
+            solved = np.linalg.solve(matrices, self.sides)
             shares, right = self._reduced(solved)
             diagonal = np.einsum("dpp->dp", shares)
             diagonal *= 1.0 + raised[:, None]

@@ -35,6 +35,10 @@ ask for coarse steps it says nothing."""
 NUISANCE_STEP = 1e-4
 """Of differences in a nuisance, in units of its scale."""
 
+STEEPEST = 1e12
+"""Slope, in sizes of the noise over deviations of what is known, beyond which a simulation bursts: in its square
+nothing is left of what is known."""
+
 BURST = 1e30
 """Simulated number, in its SI unit, beyond which an integration has burst; its square would overflow."""
 
@@ -240,13 +244,13 @@ def differentiate(fit: JointFit, shared: bool = True) -> JointFit:
         whitened = trial.whitened(trial.runs(asked)) if asked else np.zeros((len(centre), 0))
         slopes = (whitened[:, : len(seen)] - centre[:, None]) / [moved[trial.coarse][column][0] for column in seen]
         # where a step leaves what can be simulated, the fit stays along this coordinate
-        columns[:, seen] = np.where(np.all(np.abs(slopes) < BURST, axis=0), slopes, 0.0)
+        columns[:, seen] = np.where(np.all(np.abs(slopes) < STEEPEST, axis=0), slopes, 0.0)
         found = iter(whitened[:, len(seen) :].T)
         for column in own_columns:
             ahead = next(found)
             even = trial.nuisances[column] in trial.even
             own[:, column] = (ahead - next(found)) / (2.0 * width) if even else (ahead - centre) / width
-        return Slopes(columns, np.where(np.abs(own) < BURST, own, 0.0))
+        return Slopes(columns, np.where(np.abs(own) < STEEPEST, own, 0.0))
 
     return replace(fit, slopes=tuple(over(fit.trials, one)), exact=shared)
 
