@@ -20,7 +20,7 @@ from ssmr_ident.doctor.fitted import (
 )
 from ssmr_ident.doctor.laws import Proposal, proposals, simpler
 from ssmr_ident.doctor.networks import laws_in_network
-from ssmr_ident.doctor.rules import HALVED, SECOND
+from ssmr_ident.doctor.rules import SECOND
 from ssmr_ident.estimate.exact import polish
 from ssmr_ident.estimate.latent_force import network_paths
 from ssmr_ident.estimate.motion import motion
@@ -43,8 +43,7 @@ def named_along(search: Search, say: Progress, beside: Sequence[Member] = (), be
     while not search.late:
         named(search, say, near, beside)
         best = min((f for f in search.fits if set(beside) <= set(f.node.members)), key=lambda f: f.cost, default=near)
-        excess = max(near.cost - search.problem.samples, 0.0)
-        if best.cost > near.cost - max(2.0 * SECOND, HALVED * excess):
+        if best.cost > near.cost - 2.0 * SECOND:
             return
         near = best
 
