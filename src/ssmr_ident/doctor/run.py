@@ -178,7 +178,8 @@ def _decided(rows: tuple[Row, ...], kept: Problem | None, known: ParameterSet) -
 def _in_small_steps(
     rows: tuple[Row, ...], decision: Decision, problem: Problem, kept: Problem | None, known: ParameterSet
 ) -> tuple[tuple[Row, ...], Decision]:
-    """What was chosen, fitted and held against what was kept back once more in smaller steps."""
+    """What was chosen, fitted and held against what was kept back once more in smaller steps; as it was where it then
+    leaves one size of the noise more, for it has lost its way."""
     chosen = decision.chosen
     small = finer(problem)
     if chosen is None or chosen.fit is None or not chosen.fit.node.beside or small is problem:

@@ -91,7 +91,7 @@ def exchanged(search: Search, say: Progress) -> None:
 
 
 def in_other_formulas(search: Search, say: Progress) -> None:
-    """The laws of the best named model in the other formulas of their effects, where that in any shape is better."""
+    """The laws of the best named model in the other formulas of their effects, where any shape is better."""
     rows = search.rows()
     best = next((r for r in rows if r.ids and not r.generic), None)
     if best is None or best.fit is None or rows[0].log_evidence < best.log_evidence + TIE:
@@ -101,10 +101,13 @@ def in_other_formulas(search: Search, say: Progress) -> None:
     for law in (m for m in found.node.members if m.law is not None):
         beside = [m for m in found.node.members if m is not law]
         forms = [form for form in FORMS if form.effect == law.id]
-        for offer in proposals(search.problem, found, paths, beside, forms):
-            if offer.node.name in names or search.late:
+        for index, offer in enumerate(proposals(search.problem, found, paths, beside, forms)):
+            if offer.node.name in names:
                 continue
-            say("other formulas", 0, 1)
+            if search.late:
+                search.untried.append(offer.node.name)
+                continue
+            say("other formulas", index, len(forms))
             search.add(again(search.problem, begun(search.problem, offer, found), FULL))
 
 
@@ -150,6 +153,6 @@ def _may_stand(search: Search, first: Fit, pairs: Sequence[Fit]) -> bool:
     kind in any shape does at the most, and has one parameter at the least."""
     samples, rows = search.problem.samples, search.rows()
     single = max(log_evidence(r.fit, samples) for r in rows if len(r.ids) == 1 and not r.generic and r.fit is not None)
-    least = min(f.cost - f.promised for f in pairs)
+    least = min((f.cost - f.promised for f in pairs), default=math.inf)
     most = -0.5 * least - 0.5 * (first.dof + 1.0) * math.log(samples)
     return most > single + max(SECOND, grain(rows))
