@@ -11,7 +11,7 @@ from ssmr_ident.doctor.fitted import BEGUN, FULL, SHORT, Progress, Search, again
 from ssmr_ident.doctor.kinds import kinds
 from ssmr_ident.doctor.laws import FORMS, Proposal, proposals
 from ssmr_ident.doctor.named import begun, named, named_along
-from ssmr_ident.doctor.rules import SECOND, TIE
+from ssmr_ident.doctor.rules import OVER_NOISE, SECOND, TIE
 from ssmr_ident.doctor.table import grain, log_evidence
 from ssmr_ident.estimate.exact import polish
 from ssmr_ident.estimate.generic import STATIC, memory, static
@@ -91,10 +91,13 @@ def exchanged(search: Search, say: Progress) -> None:
 
 
 def in_other_formulas(search: Search, say: Progress) -> None:
-    """The laws of the best named model in the other formulas of their effects, where any shape is better."""
+    """The laws of the best named model in the other formulas of their effects, where any shape is better or more than
+    noise is left."""
     rows = search.rows()
     best = next((r for r in rows if r.ids and not r.generic), None)
-    if best is None or best.fit is None or rows[0].log_evidence < best.log_evidence + TIE:
+    if best is None or best.fit is None:
+        return
+    if best.over < OVER_NOISE and rows[0].log_evidence < best.log_evidence + TIE:
         return
     found = best.fit
     paths, names = motion(search.problem, found), {f.node.name for f in search.fits}
