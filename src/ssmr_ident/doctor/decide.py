@@ -140,7 +140,7 @@ def stands(row: Row, rows: Sequence[Row]) -> bool:
     by evidence in sizes of what they themselves leave. Neither makes what was kept back worse."""
     if len(row.ids) < 2:
         return True
-    found = [_alone(row, k, rows) for k in (0, 1)]
+    found = [held_against(row, k, rows) for k in (0, 1)]
     single = [r.log_evidence for r in rows if len(r.ids) == 1 and not r.generic]
     if not found[0] or row.log_evidence < max(single, default=-math.inf) + SECOND * _temper(row):
         return False
@@ -158,9 +158,10 @@ def stands(row: Row, rows: Sequence[Row]) -> bool:
     return True
 
 
-def _alone(pair: Row, which: int, rows: Sequence[Row]) -> list[Row]:
-    """One effect of a pair without the other, in any shape: that of its kind; beside a second of the same kind, of its
-    own variable. Dry friction has two kinds: a steep function of speed, and a memory of micrometres."""
+def held_against(pair: Row, which: int, rows: Sequence[Row]) -> list[Row]:
+    """What a pair is held against, one effect of it without the other, in any shape: that of its kind; beside a second
+    of the same kind, of its own variable. Dry friction has two kinds: a steep function of speed, and a memory of
+    micrometres."""
     kind, law = pair.kinds[which], pair.ids[which]
     alike = pair.kinds[0] == pair.kinds[1] and not pair.generic
     own = pair.variables[which] if alike and pair.variables else ""

@@ -13,7 +13,7 @@ from ssmr_ident.estimate.scales import state_sizes
 from ssmr_ident.estimate.simulated import Compiled, batches, simulate_whole
 from ssmr_ident.estimate.values import Fit, Problem
 
-SEARCHED = 120.0
+SEARCHED = 60.0
 """Periods of motion, of all recordings together, that a search looks at."""
 
 STRETCH = 10.0

@@ -1,0 +1,136 @@
+"""The table again on every sample: what the decision may rest on."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import replace
+
+from ssmr_ident.doctor.decide import held_against
+from ssmr_ident.doctor.fitted import BEGUN, ENDED, FULL, Progress, Search, carried, further, offered_back, offered_up
+from ssmr_ident.doctor.rules import FORMULA, SECOND, TIE
+from ssmr_ident.doctor.table import Row
+from ssmr_ident.estimate.exact import polish
+from ssmr_ident.estimate.network import paths_of
+from ssmr_ident.estimate.noise import left_white, own_noise
+from ssmr_ident.estimate.shooting import shot
+from ssmr_ident.estimate.stretches import in_stretches, predictable
+from ssmr_ident.estimate.values import Fit, Problem, Start, with_noises
+
+NEAR = 200.0
+"""Log evidence, on every sample, by which a model may come out better than some samples foretell: means over several of
+them are a little off themselves."""
+
+ROUNDS = 4
+"""Fits, one after the other, by which a model that may still be the best goes to its end."""
+
+
+def on_every_sample(search: Search, whole: Problem, begins: Sequence[int], say: Progress) -> Search:
+    """The table on every sample, of what the decision may rest on."""
+    rows = search.rows()
+    best = rows[0].fit
+    assert best is not None
+    kept = decisive(rows, search.problem.samples, whole.samples)
+    whole = in_stretches(whole, predictable(search.problem, best))
+    chaotic = math.isfinite(whole.horizon)
+    if chaotic:  # what a start does to the motion is no longer linear: the best one's states begin all others
+        paths = paths_of(whole, best.node, best.point)
+        found = polish(whole, best.node, shot(whole, best.node, Start(best.point, paths=tuple(paths))), FULL)
+    else:
+        found = polish(whole, best.node, _at_begins(best, begins), FULL)
+    problem = left_white(whole, found)
+    problem = with_noises(problem, own_noise(problem, found))
+    new = replace(search, problem=problem, fits=[], offered=set(), far=[r for r in rows if r not in kept])
+    for index, row in enumerate(kept):
+        say("every sample", index, len(kept))
+        assert row.fit is not None
+        start = Start(row.fit.point, carried(row.fit.node, found)) if chaotic else _at_begins(row.fit, begins)
+        start = Start(found.point, found.nuisances) if row.fit is best else start
+        new.add(polish(problem, row.fit.node, start, BEGUN))
+    ended(new)
+    offered_back(new, 1)
+    offered_up(new)
+    return new
+
+
+def decisive(rows: Sequence[Row], samples: float, whole: float) -> list[Row]:
+    """Rows of a table on some samples on which the decision may rest on all of them, ``whole``: single effects near the
+    best, or that may be its formula, and the best of each kind; pairs that may stand, and what these are held against.
+    """
+    foretold = {id(r): _foretold(r, samples, whole) for r in rows}
+
+    def evidence(row: Row) -> float:
+        return foretold[id(row)].log_evidence
+
+    base = next(r for r in rows if not r.ids)
+    single = [r for r in rows if len(r.ids) == 1]
+    law = max((evidence(r) for r in single if not r.generic), default=-math.inf)
+    formula = FORMULA * (base.chi2 - rows[0].chi2)
+    kinds = [next(r for r in single if r.kinds == kinds) for kinds in dict.fromkeys(r.kinds for r in single)]
+    near = [r for r in single if evidence(r) > evidence(rows[0]) - NEAR or r.chi2 < rows[0].chi2 + formula]
+
+    def may_stand(row: Row) -> bool:
+        against = [held_against(row, which, rows) for which in (0, 1)]
+        most = [(1.0 - 0.5 * FORMULA) * max(own, key=evidence).chi2 for own in against if own]
+        return bool(against[0]) and evidence(row) > law + SECOND - NEAR and row.chi2 - _promised(row) < min(most)
+
+    named = [r for r in rows if len(r.ids) == 2 and not r.generic]
+    standing = [r for r in named if may_stand(r)]
+    pairs = [r for r in named for s in standing if set(r.ids) & set(s.ids) and evidence(r) > evidence(s) - NEAR]
+    for pair in standing:
+        for which in (0, 1):
+            pairs += sorted(held_against(pair, which, rows), key=evidence)[-2:]
+    top = max((r for r in [*single, *standing] if not r.generic), key=evidence, default=base)
+    if top.chi2 > rows[0].chi2 + 0.5 * formula:  # whether its effect is there in another formula
+        pairs += [r for r in rows if r.generic and len(r.ids) == 2 and r.ids[:1] == top.ids[:1]]
+    wanted = {id(r) for r in (base, rows[0], *kinds, *near, *pairs)}
+    return [r for r in rows if id(r) in wanted]
+
+
+def _promised(row: Row) -> float:
+    return row.fit.promised if row.fit is not None else 0.0
+
+
+def _foretold(row: Row, samples: float, whole: float) -> Row:
+    """A row as it is on every sample, if these are like the others."""
+    fit = row.fit
+    assert fit is not None
+    cost = (fit.cost - fit.promised) * whole / samples
+    return replace(row, log_evidence=-0.5 * cost - 0.5 * fit.dof * math.log(whole))
+
+
+def ended(search: Search) -> None:
+    """Models that may still come within a tie of the best go on until they have ended: those that promise half of what
+    they lack, for valleys bend; in directions that the data hardly see too."""
+    gone: Counter[str] = Counter()
+    while not search.late:
+        rows = search.rows()
+        open_rows = [
+            r
+            for r in rows
+            if r.fit is not None
+            and r.fit.promised > ENDED
+            and gone[r.name] < ROUNDS
+            and r.log_evidence + r.fit.promised > _wanted(r, rows)
+        ]
+        if not open_rows:
+            return
+        fit = open_rows[0].fit
+        assert fit is not None
+        better = search.add(further(search.problem, fit))
+        gone[fit.node.name] += 1 if better.cost < fit.cost - ENDED else ROUNDS
+
+
+def _wanted(row: Row, rows: Sequence[Row]) -> float:
+    """Log evidence from which a row matters: a tie with the best; of two named effects, what makes them stand."""
+    tie = rows[0].log_evidence - TIE
+    if len(row.ids) < 2 or row.generic:
+        return tie
+    single = max((r.log_evidence for r in rows if len(r.ids) == 1 and not r.generic), default=-math.inf)
+    return max(tie, single + SECOND)
+
+
+def _at_begins(fit: Fit, begins: Sequence[int]) -> Start:
+    """A fit's point with its nuisances at the begins of the recordings."""
+    return Start(fit.point, tuple(fit.nuisances[k] for k in begins))
