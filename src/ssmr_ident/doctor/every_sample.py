@@ -32,6 +32,8 @@ def on_every_sample(search: Search, whole: Problem, begins: Sequence[int], say: 
     best = rows[0].fit
     assert best is not None
     kept = decisive(rows, search.problem.samples, whole.samples)
+    base = next(r for r in rows if not r.ids)
+    far = [_scaled(r, base, search.problem.samples, whole.samples) for r in rows if r not in kept]
     whole = in_stretches(whole, predictable(search.problem, best))
     chaotic = math.isfinite(whole.horizon)
     if chaotic:  # what a start does to the motion is no longer linear: the best one's states begin all others
@@ -41,7 +43,7 @@ def on_every_sample(search: Search, whole: Problem, begins: Sequence[int], say: 
         found = polish(whole, best.node, _at_begins(best, begins), FULL)
     problem = left_white(whole, found)
     problem = with_noises(problem, own_noise(problem, found))
-    new = replace(search, problem=problem, fits=[], offered=set(), far=[r for r in rows if r not in kept])
+    new = replace(search, problem=problem, fits=[], offered=set(), far=far)
     for index, row in enumerate(kept):
         say("every sample", index, len(kept))
         assert row.fit is not None
@@ -56,18 +58,16 @@ def on_every_sample(search: Search, whole: Problem, begins: Sequence[int], say: 
 
 def decisive(rows: Sequence[Row], samples: float, whole: float) -> list[Row]:
     """Rows of a table on some samples on which the decision may rest on all of them, ``whole``: single effects near the
-    best, or that may be its formula, and the best of each kind; pairs that may stand, and what these are held against.
-    """
+    best, or that may be its formula; pairs that may stand, and what these are held against."""
     foretold = {id(r): _foretold(r, samples, whole) for r in rows}
 
     def evidence(row: Row) -> float:
-        return foretold[id(row)].log_evidence
+        return foretold[id(row)] + 0.5 * _promised(row) * whole / samples
 
     base = next(r for r in rows if not r.ids)
     single = [r for r in rows if len(r.ids) == 1]
     law = max((evidence(r) for r in single if not r.generic), default=-math.inf)
     formula = FORMULA * (base.chi2 - rows[0].chi2)
-    kinds = [next(r for r in single if r.kinds == kinds) for kinds in dict.fromkeys(r.kinds for r in single)]
     near = [r for r in single if evidence(r) > evidence(rows[0]) - NEAR or r.chi2 < rows[0].chi2 + formula]
 
     def may_stand(row: Row) -> bool:
@@ -77,14 +77,16 @@ def decisive(rows: Sequence[Row], samples: float, whole: float) -> list[Row]:
 
     named = [r for r in rows if len(r.ids) == 2 and not r.generic]
     standing = [r for r in named if may_stand(r)]
-    pairs = [r for r in named for s in standing if set(r.ids) & set(s.ids) and evidence(r) > evidence(s) - NEAR]
-    for pair in standing:
+    best = max(standing, key=evidence, default=base)
+    pairs = [r for r in named if set(r.ids) & set(best.ids) and evidence(r) > evidence(best) - NEAR]
+    for pair in [r for r in standing if evidence(r) > evidence(best) - NEAR]:
+        pairs.append(pair)
         for which in (0, 1):
             pairs += sorted(held_against(pair, which, rows), key=evidence)[-2:]
     top = max((r for r in [*single, *standing] if not r.generic), key=evidence, default=base)
     if top.chi2 > rows[0].chi2 + 0.5 * formula:  # whether its effect is there in another formula
         pairs += [r for r in rows if r.generic and len(r.ids) == 2 and r.ids[:1] == top.ids[:1]]
-    wanted = {id(r) for r in (base, rows[0], *kinds, *near, *pairs)}
+    wanted = {id(r) for r in (base, rows[0], *near, *pairs)}
     return [r for r in rows if id(r) in wanted]
 
 
@@ -92,12 +94,18 @@ def _promised(row: Row) -> float:
     return row.fit.promised if row.fit is not None else 0.0
 
 
-def _foretold(row: Row, samples: float, whole: float) -> Row:
-    """A row as it is on every sample, if these are like the others."""
-    fit = row.fit
-    assert fit is not None
-    cost = (fit.cost - fit.promised) * whole / samples
-    return replace(row, log_evidence=-0.5 * cost - 0.5 * fit.dof * math.log(whole))
+def _foretold(row: Row, samples: float, whole: float) -> float:
+    """A row's log evidence on every sample, if these are like the others."""
+    assert row.fit is not None
+    return -0.5 * row.fit.cost * whole / samples - 0.5 * row.fit.dof * math.log(whole)
+
+
+def _scaled(row: Row, base: Row, samples: float, whole: float) -> Row:
+    """A row as it is on every sample, if these are like the others, and as far as it was followed."""
+    assert row.fit is not None
+    evidence = _foretold(row, samples, whole) - _foretold(base, samples, whole)
+    fit = replace(row.fit, promised=0.0)
+    return replace(row, log_evidence=evidence, chi2=row.chi2 * whole / samples, samples=whole, fit=fit)
 
 
 def ended(search: Search) -> None:

@@ -43,8 +43,8 @@ NEAR_NOISE = 1.5
 
 @dataclass(eq=False)
 class Search:
-    """What has been fitted, and under which noise; ``far`` is what was left behind on fewer samples, ``offered`` what
-    was offered to its neighbours."""
+    """What has been fitted, and under which noise; ``far`` is what was left behind on fewer samples, as it would be on
+    these; ``offered`` what was offered to its neighbours."""
 
     problem: Problem
     until: float = math.inf
@@ -62,6 +62,12 @@ class Search:
         zero = row_of(base, self.problem).log_evidence
         rows = [row_of(f, self.problem, zero) for f in self.fits if math.isfinite(f.cost)]
         return tuple(sorted(rows, key=lambda r: -r.log_evidence))
+
+    def table(self) -> tuple[Row, ...]:
+        """Rows, and of kinds without a single effect among them the best one that was left behind."""
+        rows = self.rows()
+        alone = {r.kinds: r for r in (*reversed(self.far), *reversed(rows)) if len(r.ids) == 1}
+        return tuple(sorted({*rows, *alone.values()}, key=lambda r: -r.log_evidence))
 
     def add(self, fit: Fit) -> Fit:
         """Keep the better of two fits of one node."""

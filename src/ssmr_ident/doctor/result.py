@@ -80,7 +80,8 @@ def answer(found: Examined) -> Diagnosis:
     after_file = exported(chosen.fit, found.known) if named else before_file
     effects = named_effects(decision, chosen, after_file, found.search.problem) if named else ()
     conflicts = conflicting(base.fit)
-    rows = (*found.rows, *found.search.far)
+    names = {r.name for r in found.rows}
+    rows = (*found.rows, *(r for r in found.search.far if r.name not in names))
     tried = tuple(Tried("+".join(r.ids) or "baseline", r.heldout, r.log_evidence, r.name) for r in rows)
     shown = training if math.isnan(heldout.before) else heldout
     slow = _wandering(found.search.problem, chosen)

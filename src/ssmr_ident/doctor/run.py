@@ -103,8 +103,7 @@ def examined(campaign: Campaign, known: ParameterSet, progress: Progress | None,
             f"the motion is chaotic: after {horizon:.2g} periods a start no longer tells where it is, so that the "
             "recordings were fitted in stretches of that length, each with a start of its own"
         )
-    rows = search.rows()
-    rows = tuple(_with_left(r, search.problem) if len(r.ids) != 1 and not r.generic else r for r in rows)
+    rows = tuple(_with_left(r, search.problem) if len(r.ids) != 1 and not r.generic else r for r in search.table())
     rows, decision = _decided(rows, kept, known)
     rows, decision = _in_small_steps(rows, decision, search.problem, kept, known)
     if not alone:

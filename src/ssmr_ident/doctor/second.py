@@ -29,7 +29,7 @@ FIRSTS = 2
 
 
 def second(search: Search, say: Progress) -> None:
-    """A second effect beside the best named ones, where something in any shape is certainly better than these."""
+    """A second effect beside the best named ones; beside the best alone, where nothing adds to that or is better."""
     tried: set[tuple[str, ...]] = set()
     while len(tried) < FIRSTS and not search.late:
         rows = search.rows()
@@ -39,8 +39,10 @@ def second(search: Search, say: Progress) -> None:
         row = firsts[0]
         assert row.fit is not None
         tried.add(row.ids)
-        _beside(search, say, row.fit)
+        adds = _beside(search, say, row.fit)
         offered_back(search)
+        if not adds and search.rows()[0].log_evidence < row.log_evidence + TIE:
+            return
 
 
 def paired(search: Search, say: Progress) -> None:
@@ -122,8 +124,8 @@ def _best_pair(search: Search) -> Fit | None:
     return pair.fit if pair is not None and pair.log_evidence > fewer + max(SECOND, grain(rows)) else None
 
 
-def _beside(search: Search, say: Progress, first: Fit) -> None:
-    """Every kind in any shape beside a named effect, and named ones along the best of these."""
+def _beside(search: Search, say: Progress, first: Fit) -> bool:
+    """Every kind in any shape beside a named effect, and named ones along the best of these; whether any may stand."""
     law, problem = first.node.members[0], search.problem
     paths = motion(problem, first)
     offers = kinds(problem, paths)
@@ -142,13 +144,14 @@ def _beside(search: Search, say: Progress, first: Fit) -> None:
         short.append(beside(problem, first, member, BEGUN if member.tables else SHORT))
     short = [again(problem, f, SHORT) for f in sorted(short, key=lambda f: f.cost)[:FULL_KINDS]]
     if not _may_stand(search, first, [*shaped, *short]):
-        return
+        return False
     full = [
         search.add(polish(problem, fit.node, Start(fit.point, fit.nuisances), FULL))
         for fit in sorted(short, key=lambda f: f.cost)[:2]
     ]
     if not search.late:
         named_along(search, say, [law], [*full, *shaped, first])
+    return True
 
 
 def _may_stand(search: Search, first: Fit, pairs: Sequence[Fit]) -> bool:
