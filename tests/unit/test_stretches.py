@@ -87,9 +87,10 @@ def test_chaos_is_fitted_in_stretches() -> None:
         paths = tuple(smoothed(own, p.frequency, p.size) for own in p.pieces)
         return polish(p, node, shot(p, node, Start(regressed(p, paths, node), paths=paths)))
 
-    search, begins = sampled(whole)
+    search, begins, share = sampled(whole)
     assert sum(len(p.y) for p in search.pieces) * HZ / 100.0 == pytest.approx(SEARCHED, rel=0.1)
     assert [search.pieces[k].time[0] for k in begins] == [0.0]
+    assert sum(len(p.y) for p in search.pieces) / len(whole.pieces[0].y) == pytest.approx(share, rel=0.05)
     short = found(search)
     horizon = predictable(search, short)
     assert horizon < 45.0 * HZ

@@ -26,14 +26,23 @@ ROUNDS = 4
 """Fits, one after the other, by which a model that may still be the best goes to its end."""
 
 
-def on_every_sample(search: Search, whole: Problem, begins: Sequence[int], say: Progress) -> Search:
-    """The table on every sample, of what the decision may rest on."""
+def on_every_sample(search: Search, whole: Problem, begins: Sequence[int], share: float, say: Progress) -> Search:
+    """The table on every sample, of what the decision may rest on.
+
+    Parameters
+    ----------
+    search : Search
+    whole : Problem
+    begins : sequence of int
+        The piece of the search's problem that is at the begin of each of the whole one's.
+    share : float
+        Of the motion, that the search looked at.
+    say : callable
+    """
     rows = search.rows()
     best = rows[0].fit
     assert best is not None
-    kept = decisive(rows, search.problem.samples, whole.samples)
-    base = next(r for r in rows if not r.ids)
-    far = [_scaled(r, base, search.problem.samples, whole.samples) for r in rows if r not in kept]
+    kept = decisive(rows, share, whole.samples)
     whole = in_stretches(whole, predictable(search.problem, best))
     chaotic = math.isfinite(whole.horizon)
     if chaotic:  # what a start does to the motion is no longer linear: the best one's states begin all others
@@ -43,7 +52,7 @@ def on_every_sample(search: Search, whole: Problem, begins: Sequence[int], say: 
         found = polish(whole, best.node, _at_begins(best, begins), FULL)
     problem = left_white(whole, found)
     problem = with_noises(problem, own_noise(problem, found))
-    new = replace(search, problem=problem, fits=[], offered=set(), far=far)
+    new = replace(search, problem=problem, fits=[], offered=set(), far=[])
     for index, row in enumerate(kept):
         say("every sample", index, len(kept))
         assert row.fit is not None
@@ -53,16 +62,17 @@ def on_every_sample(search: Search, whole: Problem, begins: Sequence[int], say: 
     ended(new)
     offered_back(new, 1)
     offered_up(new)
+    new.far = _scaled([r for r in rows if r not in kept], rows, new.rows())
     return new
 
 
-def decisive(rows: Sequence[Row], samples: float, whole: float) -> list[Row]:
-    """Rows of a table on some samples on which the decision may rest on all of them, ``whole``: single effects near the
-    best, or that may be its formula; pairs that may stand, and what these are held against."""
-    foretold = {id(r): _foretold(r, samples, whole) for r in rows}
+def decisive(rows: Sequence[Row], share: float, samples: float) -> list[Row]:
+    """Rows of a table on a share of the motion on which the decision may rest on all of it, ``samples``: single effects
+    near the best, or that may be its formula; pairs that may stand, and what these are held against."""
+    foretold = {id(r): _foretold(r, share, samples) for r in rows}
 
     def evidence(row: Row) -> float:
-        return foretold[id(row)] + 0.5 * _promised(row) * whole / samples
+        return foretold[id(row)] + 0.5 * _promised(row) / share
 
     base = next(r for r in rows if not r.ids)
     single = [r for r in rows if len(r.ids) == 1]
@@ -94,18 +104,27 @@ def _promised(row: Row) -> float:
     return row.fit.promised if row.fit is not None else 0.0
 
 
-def _foretold(row: Row, samples: float, whole: float) -> float:
-    """A row's log evidence on every sample, if these are like the others."""
+def _foretold(row: Row, share: float, samples: float) -> float:
+    """A row's log evidence on every sample, if the rest of the motion is like the share that it was fitted to."""
     assert row.fit is not None
-    return -0.5 * row.fit.cost * whole / samples - 0.5 * row.fit.dof * math.log(whole)
+    return -0.5 * row.fit.cost / share - 0.5 * row.fit.dof * math.log(samples)
 
 
-def _scaled(row: Row, base: Row, samples: float, whole: float) -> Row:
-    """A row as it is on every sample, if these are like the others, and as far as it was followed."""
-    assert row.fit is not None
-    evidence = _foretold(row, samples, whole) - _foretold(base, samples, whole)
-    fit = replace(row.fit, promised=0.0)
-    return replace(row, log_evidence=evidence, chi2=row.chi2 * whole / samples, samples=whole, fit=fit)
+def _scaled(left_behind: Sequence[Row], were: Sequence[Row], now: Sequence[Row]) -> list[Row]:
+    """Rows of one table in another one's scale, in which the baseline and the best of those that are in both are given."""
+    names = {r.name for r in now}
+    old, new = ([r for r in rows if r.name in names or not r.ids] for rows in (were, now))
+    best = old[0]
+    same = next(r for r in new if r.name == best.name)
+    base, after = (next(r for r in rows if not r.ids) for rows in (old, new))
+    scale = (same.chi2 - after.chi2) / (best.chi2 - base.chi2) if best.chi2 < base.chi2 else 1.0
+    return [
+        replace(
+            row, log_evidence=same.log_evidence + scale * (row.log_evidence - best.log_evidence),
+            chi2=same.chi2 + scale * (row.chi2 - best.chi2), samples=same.samples,
+        )
+        for row in left_behind
+    ]  # fmt: skip
 
 
 def ended(search: Search) -> None:

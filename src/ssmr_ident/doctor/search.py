@@ -44,7 +44,7 @@ def searched(problem: Problem, budget: float = math.inf, progress: Progress | No
     """
     say = progress or (lambda stage, done, total: None)
     whole = problem
-    problem, begins = sampled(coarser(whole))
+    problem, begins, share = sampled(coarser(whole))
     search = Search(problem, time.monotonic() + budget)
     say("fitting the baseline", 0, 1)
     base = search.add(baseline_fit(problem))
@@ -78,7 +78,7 @@ def searched(problem: Problem, budget: float = math.inf, progress: Progress | No
         in_other_formulas(search, say)
         offered_back(search)
     if problem is not whole:
-        return on_every_sample(search, whole, begins, say)
+        return on_every_sample(search, whole, begins, share, say)
     ended(search)
     return search
 

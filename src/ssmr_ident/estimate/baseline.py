@@ -40,7 +40,7 @@ def fitted_baseline(problem: Problem) -> tuple[Problem, Fit]:
 
     It begins, as a search does, with means of several samples and with stretches of long recordings.
     """
-    few, begins = sampled(coarser(problem))
+    few, begins, _ = sampled(coarser(problem))
     return under_own_noise(problem, on_every_sample(problem, baseline_fit(few), begins))
 
 

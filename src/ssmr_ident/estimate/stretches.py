@@ -39,8 +39,9 @@ def moving(piece: Piece) -> int:
     return int((loud[-1] + 1) * width) if len(loud) else 0
 
 
-def sampled(problem: Problem) -> tuple[Problem, tuple[int, ...]]:
-    """Stretches spread evenly over where the recordings move, and the number of each recording's first one.
+def sampled(problem: Problem) -> tuple[Problem, tuple[int, ...], float]:
+    """Stretches spread evenly over where the recordings move, the number of each recording's first one, and what share
+    of the motion they are.
 
     The problem itself where its motion is short enough.
     """
@@ -49,7 +50,7 @@ def sampled(problem: Problem) -> tuple[Problem, tuple[int, ...]]:
     periods = [span * fastest / p.rate for span, p in zip(spans, problem.pieces, strict=True)]
     share = SEARCHED / max(sum(periods), 1.0)
     if share >= 1.0:
-        return problem, tuple(range(len(problem.pieces)))
+        return problem, tuple(range(len(problem.pieces))), 1.0
     pieces: list[Piece] = []
     noises, first = [], []
     for piece, noise, span, own in zip(problem.pieces, problem.noises, spans, periods, strict=True):
@@ -59,7 +60,7 @@ def sampled(problem: Problem) -> tuple[Problem, tuple[int, ...]]:
         for begin in np.linspace(0, max(span - length, 0), count).astype(int):
             pieces.append(cut(piece, begin, min(begin + length, len(piece.y))))
             noises.append(noise)
-    return replace(problem, pieces=tuple(pieces), noises=tuple(noises)), tuple(first)
+    return replace(problem, pieces=tuple(pieces), noises=tuple(noises)), tuple(first), share
 
 
 def in_stretches(problem: Problem, horizon: float) -> Problem:

@@ -30,7 +30,7 @@ def with_friction(problem: Problem, fit: Fit) -> tuple[Problem, Fit, list[str]] 
     fit : Fit
         The baseline's.
     """
-    few, begins = sampled(coarser(problem))
+    few, begins, _ = sampled(coarser(problem))
     base = baseline_fit(few)
     form = next(f for f in FORMS if f.effect == FRICTION and f.kind == STATIC)
     # along the baseline's own motion the baseline leaves no force at all
