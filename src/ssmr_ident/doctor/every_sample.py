@@ -111,7 +111,7 @@ def _foretold(row: Row, share: float, samples: float) -> float:
 
 
 def _scaled(left_behind: Sequence[Row], were: Sequence[Row], now: Sequence[Row]) -> list[Row]:
-    """Rows of one table in another one's scale, in which the baseline and the best of those that are in both are given."""
+    """Rows of one table in the scale of another one, by the baseline and the best of those that are in both."""
     names = {r.name for r in now}
     old, new = ([r for r in rows if r.name in names or not r.ids] for rows in (were, now))
     best = old[0]
