@@ -20,10 +20,10 @@ def test_a_loop_of_exponent_one_follows_the_exponentials_of_its_shape(shape: flo
     c, back = shape + 0.5, shape - 0.5
     s = reach * np.arange(1, parts + 1) / parts
     out = width / c * (1.0 - np.exp(-c * s / width))
-    assert way[:parts] == pytest.approx(out, rel=1e-5)
+    assert way[:parts] == pytest.approx(out, rel=1e-9)
     returned = width / back * (1.0 + (back / width * out[-1] - 1.0) * np.exp(back * s / width))
     pressed = returned > 0.0
-    assert np.array(way[parts:])[pressed] == pytest.approx(returned[pressed], abs=1e-4 * width)
+    assert np.array(way[parts:])[pressed] == pytest.approx(returned[pressed], abs=1e-9 * width)
 
 
 def test_the_exact_loop_and_the_general_one_meet_at_their_border() -> None:

@@ -37,7 +37,7 @@ FINEST = 60
 STEPS = 60
 """Least integration steps a period: forces that jump and such that remember err by their square."""
 
-STRAIGHT, FINER = 0.25, 4
+STRAIGHT, FINER = 0.5, 4
 """Radians of a drive's fastest part in a step: what ``line_corners`` leaves is their fourth power over 90; and at most
 so many steps a sample, for a blow goes up to half the rate."""
 

@@ -22,8 +22,8 @@ def force(s, z, stiffness, alpha):
 def advance(z, v, step, yield_m, exponent, shape):
     """dz/dt = v (1 - |z/y|ⁿ (γ + ½ sign(v z))) over one step at constant v.
 
-    Exactly for n = 2, γ = ½ (dz/dt = v (1 - (z/y)²) while |z| grows, dz/dt = v while it shrinks), else by the
-    midpoint rule over a tenth of the yield deflection at a time.
+    Exactly for n = 1, and for n = 2, γ = ½ (dz/dt = v (1 - (z/y)²) while |z| grows, dz/dt = v while it shrinks), else
+    by the midpoint rule over a tenth of the yield deflection at a time.
 
     Parameters
     ----------
@@ -43,6 +43,9 @@ def advance(z, v, step, yield_m, exponent, shape):
         ratio = min(max(z / yield_m, -1.0), 1.0)
         grown = math.tanh(travel / yield_m)
         return yield_m * (ratio + grown) / (1.0 + ratio * grown)
+    if exponent == 1.0:
+        way = 1.0 if travel > 0.0 else -1.0
+        return way * yield_m * _by_share(way * z / yield_m, abs(travel) / yield_m, shape)
     count = min(1 + int(10.0 * abs(travel) / yield_m), MOST_PARTS)
     part, u = travel / yield_m / count, z / yield_m
     growing = shape + 0.5
@@ -55,11 +58,26 @@ def advance(z, v, step, yield_m, exponent, shape):
 
 
 @kernel
+def _by_share(u, travel, shape):
+    """u = z/y after a travel onward, in yield deflections, for n = 1: du/ds is linear in u on either side of nought."""
+    back, on = shape - 0.5, -(shape + 0.5)
+    if u < 0.0:
+        slope = 1.0 + back * u
+        whole = -u if back == 0.0 else -math.log(slope) / back if slope > 0.0 else math.inf
+        if travel < whole:
+            u += travel if back == 0.0 else slope * math.expm1(back * travel) / back
+            return max(u, 1.0 / on) if on < 0.0 else u
+        u, travel = 0.0, travel - whole
+    u += travel if on == 0.0 else (1.0 + on * u) * math.expm1(on * travel) / on
+    return min(u, -1.0 / on) if on < 0.0 else u
+
+
+@kernel
 def _slope(u, direction, exponent, shape):
     """dz/ds at u = z/y."""
     turned = 0.5 if u * direction >= 0.0 else -0.5
     size = abs(u)
-    power = size if exponent == 1.0 else size * size if exponent == 2.0 else size**exponent
+    power = size * size if exponent == 2.0 else size**exponent
     return 1.0 - power * (shape + turned)
 
 
