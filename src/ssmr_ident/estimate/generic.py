@@ -28,6 +28,9 @@ CELLS = 400
 KNOTS, SHAPES = 15, 10
 """Of the spline over deflection, and how many of its smoothest shapes are taken."""
 
+DENSER = 0.5
+"""Share of the knots that stand where the motion is, the others evenly."""
+
 STEEP = (0.01, 0.05, 0.25)
 """Widths of steps in velocity, in the largest: the narrowest is as sharp as a law without memory can be seen."""
 
@@ -186,9 +189,16 @@ def _smooth_shapes(grid: Array, where: Array) -> Array:
     inner = np.linspace(-1.0, 1.0, KNOTS)
     knots = np.concatenate([[-1.0] * 3, inner, [1.0] * 3])
     count = len(knots) - 4
-    basis = BSpline(knots, np.eye(count), 3)
+    spline = BSpline(knots, np.eye(count), 3)
     density = np.histogram(where, bins=len(grid) - 1, range=(-1.0, 1.0))[0] / len(where)
     centres = 0.5 * (grid[1:] + grid[:-1])
+    even = 0.5 * (density + density[::-1])
+    denser = DENSER * np.cumsum(even) / even.sum() + (1.0 - DENSER) * 0.5 * (grid[1:] + 1.0)
+    at = 2.0 * np.concatenate([[0.0], denser]) - 1.0
+
+    def basis(x: Array) -> Array:
+        return np.asarray(spline(np.clip(np.interp(x, grid, at), -1.0, 1.0)))
+
     density = density + 1e-4
     own = basis(centres)
     straight = np.column_stack([np.ones(len(centres)), centres])
@@ -196,7 +206,7 @@ def _smooth_shapes(grid: Array, where: Array) -> Array:
     weighted = own * np.sqrt(density)[:, None]
     weighted -= q @ (q.T @ weighted)
     size = weighted.T @ weighted
-    bend = np.diff(basis(grid), 2, axis=0)
+    bend = np.diff(np.asarray(spline(grid)), 2, axis=0)
     values, vectors = eigh(bend.T @ bend + 1e-12 * np.eye(count), size + 1e-9 * np.trace(size) * np.eye(count))
     shapes = vectors[:, np.argsort(values)]
     line = np.linalg.lstsq(straight * np.sqrt(density)[:, None], own * np.sqrt(density)[:, None], rcond=None)[0]
