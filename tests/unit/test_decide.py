@@ -188,6 +188,20 @@ def test_where_the_first_ones_variable_leaves_noise_alone_a_second_law_of_it_is_
     assert found.chosen is first
 
 
+def test_two_listed_laws_of_one_variable_are_both_there_though_any_shape_of_it_holds_both() -> None:
+    law = row("nonlinear_stiffness", "static_force", 20_000.0, 9500.0, 1.4, variables=("x",))
+    play = row("free_play", "static_force", 18_000.0, 14_000.0, 1.7, variables=("x",))
+    pair = row(
+        "free_play nonlinear_stiffness", "static_force static_force", 22_400.0, 5000.0, 1.0, variables=("x", "x")
+    )
+    shape = row("nonlinear_stiffness unlisted", "static_force static_force", 22_360.0, 4985.0, 0.999, True, ("x", "x"))
+    assert decide([BASE, law, play, pair, shape]).chosen is pair
+    formula = replace(shape, log_evidence=22_395.0)
+    assert decide([BASE, law, play, pair, formula]).chosen is not pair
+    hardly = replace(law, chi2=5060.0, over=1.0, log_evidence=22_380.0)
+    assert decide([BASE, hardly, play, pair, shape]).chosen is hardly
+
+
 def test_friction_that_never_slides_is_a_loop_by_another_name() -> None:
     law = replace(row("dry_friction", "memory", 22_500.0, 5000.0), equal=("hysteresis",))
     found = decide([BASE, law])

@@ -10,6 +10,7 @@ from ssmr_ident.doctor.rules import CERTAIN, FOLLOWS, FORMULA, HALVED, OVER_NOIS
 from ssmr_ident.doctor.table import FRICTION, Row, grain
 
 STATIC, MEMORY, GEOMETRY = "static_force", "memory", "geometry"
+UNLISTED = "unlisted"
 MISSING, NOTHING, UNDETERMINED = "missing_physics", "nothing_missing", "undetermined"
 
 
@@ -137,7 +138,8 @@ def standing(rows: Sequence[Row]) -> list[Row]:
 def stands(row: Row, rows: Sequence[Row]) -> bool:
     """Whether each of two effects beats the other one in any shape, and halves what that leaves beyond white noise, or
     leaves nothing that goes with the motion or that another model explains, and ``FORMULA`` less; and both any one law,
-    by evidence in sizes of what they themselves leave. Neither makes what was kept back worse."""
+    by evidence in sizes of what they themselves leave. Neither makes what was kept back worse. Of two functions of one
+    variable any shape of it holds both: there it is beaten by evidence, and the law alone leaves that much more."""
     if len(row.ids) < 2:
         return True
     found = [held_against(row, k, rows) for k in (0, 1)]
@@ -145,15 +147,20 @@ def stands(row: Row, rows: Sequence[Row]) -> bool:
     if not found[0] or row.log_evidence < max(single, default=-math.inf) + SECOND * _temper(row):
         return False
     for alone in (rows for rows in found if rows):
-        best = max(alone, key=lambda r: r.log_evidence)
-        least = min(r.over for r in alone)
+        if row.log_evidence < max(r.log_evidence for r in alone) + max(SECOND, grain(rows)):
+            return False
+        if row.heldout > min((r.heldout for r in alone if math.isfinite(r.heldout)), default=math.inf):
+            return False
+        apart = without_both(row, alone)
+        if not apart:
+            continue
+        best = max(apart, key=lambda r: r.log_evidence)
+        least = min(r.over for r in apart)
         halved = least > 1.0 and row.over**2 - 1.0 < HALVED * (least**2 - 1.0)
         explained = HALVED * row.over**2 < min(r.over for r in rows if math.isfinite(r.over)) ** 2
         only_noise = explained and row.left.follows < FOLLOWS and row.left.uneven < UNEVEN
         takes = halved or (only_noise and row.chi2 < (1.0 - FORMULA) * best.chi2)
-        if not takes or row.log_evidence < best.log_evidence + max(SECOND, grain(rows)):
-            return False
-        if row.heldout > min((r.heldout for r in alone if math.isfinite(r.heldout)), default=math.inf):
+        if not takes:
             return False
     return True
 
@@ -177,6 +184,13 @@ def held_against(pair: Row, which: int, rows: Sequence[Row]) -> list[Row]:
         return (r.generic or not others) and all(shape(r, i) for i in others)
 
     return [r for r in rows if r is not pair and r.ids and belongs(r)]
+
+
+def without_both(pair: Row, rows: Sequence[Row]) -> list[Row]:
+    """Rows that cannot hold both of two listed effects: of functions of one variable, any shape of it does."""
+    of_one = pair.kinds[0] == pair.kinds[1] and len(set(pair.variables)) == 1 and all(pair.variables)
+    listed = not pair.generic and UNLISTED not in pair.ids
+    return [r for r in rows if not (r.generic and of_one and listed)]
 
 
 def kind_shares(rows: Sequence[Row], base: Row) -> tuple[Share, ...]:

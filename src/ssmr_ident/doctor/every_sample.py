@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
 
-from ssmr_ident.doctor.decide import held_against
+from ssmr_ident.doctor.decide import held_against, without_both
 from ssmr_ident.doctor.fitted import BEGUN, ENDED, FULL, Progress, Search, carried, further, offered_back, offered_up
 from ssmr_ident.doctor.rules import FORMULA, SECOND, TIE
 from ssmr_ident.doctor.table import Row
@@ -82,8 +82,13 @@ def decisive(rows: Sequence[Row], share: float, samples: float) -> list[Row]:
 
     def may_stand(row: Row) -> bool:
         against = [held_against(row, which, rows) for which in (0, 1)]
-        most = [(1.0 - 0.5 * FORMULA) * max(own, key=evidence).chi2 for own in against if own]
-        return bool(against[0]) and evidence(row) > law + SECOND - NEAR and row.chi2 - _promised(row) < min(most)
+        apart = [without_both(row, own) for own in against]
+        most = [(1.0 - 0.5 * FORMULA) * max(own, key=evidence).chi2 for own in apart if own]
+        return (
+            bool(against[0])
+            and evidence(row) > law + SECOND - NEAR
+            and row.chi2 - _promised(row) < min(most, default=math.inf)
+        )
 
     named = [r for r in rows if len(r.ids) == 2 and not r.generic]
     standing = [r for r in named if may_stand(r)]
@@ -92,7 +97,8 @@ def decisive(rows: Sequence[Row], share: float, samples: float) -> list[Row]:
     for pair in [r for r in standing if evidence(r) > evidence(best) - NEAR]:
         pairs.append(pair)
         for which in (0, 1):
-            pairs += sorted(held_against(pair, which, rows), key=evidence)[-2:]
+            against = sorted(held_against(pair, which, rows), key=evidence)
+            pairs += [*against[-2:], *sorted(against, key=lambda r: r.chi2 - _promised(r))[:1]]
     top = max((r for r in [*single, *standing] if not r.generic), key=evidence, default=base)
     if top.chi2 > rows[0].chi2 + 0.5 * formula:  # whether its effect is there in another formula
         pairs += [r for r in rows if r.generic and len(r.ids) == 2 and r.ids[:1] == top.ids[:1]]
