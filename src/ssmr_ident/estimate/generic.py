@@ -29,7 +29,7 @@ KNOTS, SHAPES = 15, 10
 """Of the spline over deflection, and how many of its smoothest shapes are taken."""
 
 DENSER = 0.5
-"""Share of the knots that stand where the motion is, the others evenly."""
+"""Share of the knots that stand where a decay is for most of the time, which is near rest; the others evenly."""
 
 STEEP = (0.01, 0.05, 0.25)
 """Widths of steps in velocity, in the largest: the narrowest is as sharp as a law without memory can be seen."""
@@ -60,7 +60,8 @@ def static(problem: Problem, paths: Sequence[Array], variable: str = "") -> Memb
     low = 0.5 * STEEP[0] * fastest
     top = float(np.arcsinh(1.1 * fastest / low))
     grid = np.linspace(-1.0, 1.0, CELLS + 1)
-    by_x = _smooth_shapes(grid, x / reach)
+    driven = any(p.driven for p in problem.pieces)
+    by_x = _smooth_shapes(grid, x / reach, 0.0 if driven else DENSER)
     u = low * np.sinh(top * grid) / fastest
     by_v = np.column_stack([*(np.tanh(u / width) for width in STEEP), u * np.abs(u), u**3, np.abs(u), u**2])
     by_v = _without(by_v, np.column_stack([u]), np.interp(np.arcsinh(v / low) / top, grid, np.arange(CELLS + 1.0)))
@@ -181,7 +182,7 @@ def _member(effect: str, kind: str, tables: Tables, problem: Problem) -> Member:
     return Member(effect, kind, ANY, coordinates, tables)
 
 
-def _smooth_shapes(grid: Array, where: Array) -> Array:
+def _smooth_shapes(grid: Array, where: Array, denser: float) -> Array:
     """Smoothest shapes over the grid that are no straight line where the motion is, each of unit size there.
 
     Demmler and Reinsch (1975): eigenvectors of a spline's roughness against its size.
@@ -192,9 +193,9 @@ def _smooth_shapes(grid: Array, where: Array) -> Array:
     spline = BSpline(knots, np.eye(count), 3)
     density = np.histogram(where, bins=len(grid) - 1, range=(-1.0, 1.0))[0] / len(where)
     centres = 0.5 * (grid[1:] + grid[:-1])
-    even = 0.5 * (density + density[::-1])
-    denser = DENSER * np.cumsum(even) / even.sum() + (1.0 - DENSER) * 0.5 * (grid[1:] + 1.0)
-    at = 2.0 * np.concatenate([[0.0], denser]) - 1.0
+    even = density + density[::-1]
+    share = denser * np.cumsum(even) / even.sum() + (1.0 - denser) * 0.5 * (grid[1:] + 1.0)
+    at = 2.0 * np.concatenate([[0.0], share]) - 1.0
 
     def basis(x: Array) -> Array:
         return np.asarray(spline(np.clip(np.interp(x, grid, at), -1.0, 1.0)))
