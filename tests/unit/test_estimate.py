@@ -311,6 +311,26 @@ def test_any_shape_is_steep_on_one_side_alone() -> None:
     assert left(plain, columns[:, :-products]) > 0.4
 
 
+def test_any_shape_over_deflection_is_fine_where_a_decay_is_for_most_of_the_time() -> None:
+    """Play of a thirtieth of the first swing, its corners soft, beside knots that stand evenly."""
+    time = np.arange(4000) / 400.0
+    swing = np.exp(-0.6 * time) * np.cos(12.0 * math.pi * time)
+    path = np.column_stack([swing, np.gradient(swing, time), -((12.0 * math.pi) ** 2) * swing])
+    width, half = 0.01, 0.03
+    force = width * (np.logaddexp(0.0, (swing - half) / width) - np.logaddexp(0.0, (-swing - half) / width))
+
+    def left(own: Piece) -> float:
+        member = static(problem(own), [path], "x")
+        assert member.tables is not None
+        columns = member.tables.along(path, np.zeros((len(path), 0)), 1.0)
+        design = np.column_stack([columns, swing, np.ones(len(swing))])
+        return float(np.std(force - design @ np.linalg.lstsq(design, force, rcond=None)[0]))
+
+    free = left(piece(time, swing, "position", 1e-3))
+    assert free < 1e-3
+    assert free < 0.2 * left(piece(time, swing, "position", 1e-3, drive=np.zeros(len(time) + 1)))
+
+
 def test_the_fastest_part_of_a_force() -> None:
     time = np.arange(4000) / 400.0
     force = np.sin(2.0 * math.pi * 3.0 * time) + 0.1 * np.sin(2.0 * math.pi * 28.0 * time)

@@ -213,8 +213,9 @@ def _smooth_shapes(grid: Array, where: Array, denser: float) -> Array:
     line = np.linalg.lstsq(straight * np.sqrt(density)[:, None], own * np.sqrt(density)[:, None], rcond=None)[0]
     table = basis(grid) @ shapes - np.column_stack([np.ones(len(grid)), grid]) @ (line @ shapes)
     rms = np.sqrt(np.sum(density[:, None] * ((table[1:] + table[:-1]) / 2.0) ** 2, axis=0))
-    good = rms > 1e-3 * rms.max()
-    return np.ascontiguousarray((table[:, good] / rms[good])[:, 2 : SHAPES + 2])
+    bent = np.einsum("ki,kl,li->i", shapes, size, shapes) > 0.5  # straight lines have no size
+    good = bent & (rms > 1e-3 * rms[bent].max())
+    return np.ascontiguousarray((table[:, good] / rms[good])[:, :SHAPES])
 
 
 def _without(table: Array, lines: Array, places: Array) -> Array:
