@@ -40,22 +40,19 @@ def on_every_sample(search: Search, whole: Problem, begins: Sequence[int], share
     say : callable
     """
     rows = search.rows()
-    best = rows[0].fit
-    assert best is not None
     kept = decisive(rows, share, whole.samples)
-    whole = in_stretches(whole, predictable(search.problem, best))
-    chaotic = math.isfinite(whole.horizon)
-    if chaotic:  # what a start does to the motion is no longer linear: the best one's states begin all others
-        paths = paths_of(whole, best.node, best.point)
-        found = polish(whole, best.node, shot(whole, best.node, Start(best.point, paths=tuple(paths))), FULL)
-    else:
-        found = polish(whole, best.node, _at_begins(best, begins), FULL)
+    for best in (r.fit for r in rows if r.fit is not None):  # one may burst where only others were looked at
+        stretched, found = _followed(search.problem, whole, best, begins)
+        if math.isfinite(found.cost):
+            break
+    whole, chaotic = stretched, math.isfinite(stretched.horizon)
     problem = left_white(whole, found)
     problem = with_noises(problem, own_noise(problem, found))
     new = replace(search, problem=problem, fits=[], offered=set(), far=[])
     for index, row in enumerate(kept):
         say("every sample", index, len(kept))
         assert row.fit is not None
+        # in chaos the best one's states begin all others
         start = Start(row.fit.point, carried(row.fit.node, found)) if chaotic else _at_begins(row.fit, begins)
         start = Start(found.point, found.nuisances) if row.fit is best else start
         new.add(polish(problem, row.fit.node, start, BEGUN))
@@ -64,6 +61,15 @@ def on_every_sample(search: Search, whole: Problem, begins: Sequence[int], share
     offered_up(new)
     new.far = _scaled([r for r in rows if r not in kept], rows, new.rows())
     return new
+
+
+def _followed(search: Problem, whole: Problem, fit: Fit, begins: Sequence[int]) -> tuple[Problem, Fit]:
+    """A fit on every sample, in stretches that its motion can be foretold over."""
+    whole = in_stretches(whole, predictable(search, fit))
+    if math.isfinite(whole.horizon):  # what a start does to the motion is no longer linear
+        paths = paths_of(whole, fit.node, fit.point)
+        return whole, polish(whole, fit.node, shot(whole, fit.node, Start(fit.point, paths=tuple(paths))), FULL)
+    return whole, polish(whole, fit.node, _at_begins(fit, begins), FULL)
 
 
 def decisive(rows: Sequence[Row], share: float, samples: float) -> list[Row]:
@@ -119,10 +125,9 @@ def _foretold(row: Row, share: float, samples: float) -> float:
 def _scaled(left_behind: Sequence[Row], were: Sequence[Row], now: Sequence[Row]) -> list[Row]:
     """Rows of one table in the scale of another one, by the baseline and the best of those that are in both."""
     names = {r.name for r in now}
-    old, new = ([r for r in rows if r.name in names or not r.ids] for rows in (were, now))
-    best = old[0]
-    same = next(r for r in new if r.name == best.name)
-    base, after = (next(r for r in rows if not r.ids) for rows in (old, new))
+    best = next(r for r in were if r.name in names)
+    same = next(r for r in now if r.name == best.name)
+    base, after = (next(r for r in rows if not r.ids) for rows in (were, now))
     scale = (same.chi2 - after.chi2) / (best.chi2 - base.chi2) if best.chi2 < base.chi2 else 1.0
     return [
         replace(

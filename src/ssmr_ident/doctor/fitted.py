@@ -64,9 +64,10 @@ class Search:
         return tuple(sorted(rows, key=lambda r: -r.log_evidence))
 
     def table(self) -> tuple[Row, ...]:
-        """Rows, and of kinds without a single effect among them the best one that was left behind."""
+        """Rows, and of kinds without a single effect among them the best one that was left behind, without its fit."""
         rows = self.rows()
-        alone = {r.kinds: r for r in (*reversed(self.far), *reversed(rows)) if len(r.ids) == 1}
+        behind = [replace(r, fit=None) for r in self.far if len(r.ids) == 1]
+        alone = {r.kinds: r for r in (*reversed(behind), *reversed(rows)) if len(r.ids) == 1}
         return tuple(sorted({*rows, *alone.values()}, key=lambda r: -r.log_evidence))
 
     def add(self, fit: Fit) -> Fit:

@@ -81,6 +81,7 @@ def answer(found: Examined) -> Diagnosis:
     effects = named_effects(decision, chosen, after_file, found.search.problem) if named else ()
     conflicts = conflicting(base.fit)
     names = {r.name for r in found.rows}
+    fits = {r.name: r.fit for r in (*found.search.far, *found.rows) if r.fit is not None}
     rows = (*found.rows, *(r for r in found.search.far if r.name not in names))
     tried = tuple(Tried("+".join(r.ids) or "baseline", r.heldout, r.log_evidence, r.name) for r in rows)
     shown = training if math.isnan(heldout.before) else heldout
@@ -119,9 +120,9 @@ def answer(found: Examined) -> Diagnosis:
         ),
         evidence=Evidence(overlays=drawn),
         kinds=tuple(
-            KindShare(s.kind, element_of(s.row.fit.node.members[0]), float(s.share), float(s.log_evidence))
+            KindShare(s.kind, element_of(fits[s.row.name].node.members[0]), float(s.share), float(s.log_evidence))
             for s in decision.kinds
-            if s.row.fit is not None
+            if s.row.name in fits
         ),
     )
 
