@@ -7,10 +7,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ssmr_ident.doctor.rules import CERTAIN, FOLLOWS, FORMULA, HALVED, OVER_NOISE, SECOND, STATED, TIE, UNEVEN
-from ssmr_ident.doctor.table import FRICTION, Row, grain
+from ssmr_ident.doctor.table import FRICTION, UNLISTED, Row, grain
 
 STATIC, MEMORY, GEOMETRY = "static_force", "memory", "geometry"
-UNLISTED = "unlisted"
 MISSING, NOTHING, UNDETERMINED = "missing_physics", "nothing_missing", "undetermined"
 
 

@@ -9,6 +9,7 @@ from functools import partial
 
 import numpy as np
 
+from ssmr_ident.doctor.table import UNLISTED
 from ssmr_ident.estimate.along_kernel import force_along
 from ssmr_ident.estimate.coordinate import Coordinate
 from ssmr_ident.estimate.generic import MEMORY, STATIC
@@ -28,8 +29,6 @@ FINER = (0.5, 0.25, 0.12)
 
 LEAST = 1e-3
 """Of an amplitude's usual size, what a coordinate's unit is at the least: of less data would seem to know nothing."""
-
-UNLISTED = "unlisted"
 
 SINE = "sine"
 """Of what turns alone."""

@@ -14,7 +14,7 @@ from ssmr_ident.estimate.node import MEMORY, Member
 from ssmr_ident.estimate.simulated import GEARS
 from ssmr_ident.estimate.values import Fit, Problem
 
-FRICTION = "dry_friction"
+FRICTION, UNLISTED = "dry_friction", "unlisted"
 SHARE = "c"
 """Of the load, in the friction of gears."""
 

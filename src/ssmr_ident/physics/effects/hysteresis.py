@@ -45,7 +45,7 @@ def advance(z, v, step, yield_m, exponent, shape):
         return yield_m * (ratio + grown) / (1.0 + ratio * grown)
     if exponent == 1.0:
         way = 1.0 if travel > 0.0 else -1.0
-        return way * yield_m * _by_share(way * z / yield_m, abs(travel) / yield_m, shape)
+        return way * yield_m * _of_exponent_one(way * z / yield_m, abs(travel) / yield_m, shape)
     count = min(1 + int(10.0 * abs(travel) / yield_m), MOST_PARTS)
     part, u = travel / yield_m / count, z / yield_m
     growing = shape + 0.5
@@ -58,7 +58,7 @@ def advance(z, v, step, yield_m, exponent, shape):
 
 
 @kernel
-def _by_share(u, travel, shape):
+def _of_exponent_one(u, travel, shape):
     """u = z/y after a travel onward, in yield deflections, for n = 1: du/ds is linear in u on either side of nought."""
     back, on = shape - 0.5, -(shape + 0.5)
     if u < 0.0:
