@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -13,10 +14,18 @@ from ssmr_ident.compare.outcome import Prediction
 from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.core.recording import Channel, Provenance, Recording
 from ssmr_ident.diagnose.assemble import hidden_by_jolts
-from ssmr_ident.diagnose.worth import grows_with_motion, noise_floor, over_any_noise, without_jolts, worth
+from ssmr_ident.diagnose.worth import (
+    grows_with_motion,
+    noise_floor,
+    over_any_noise,
+    reddest,
+    without_jolts,
+    worth,
+)
 from ssmr_ident.experiments.campaign import Measurement
 from ssmr_ident.identify.trials.pull import pull_trial
 from ssmr_ident.session import Entry
+from ssmr_ident.signals.noise import background_noise
 
 RATE, SLACK = 100.0, 0.8  # Hz, s
 
@@ -77,6 +86,25 @@ def test_the_floor_is_what_noise_and_mains_leave_of_the_metric(rate: float, hum:
     logged = motion + hum * line + 0.02 * random.standard_normal(len(time))
     prediction = Prediction(time, ("ax",), ("m/s^2",), logged[:, None], motion[:, None], low_pass_hz=50.0)
     assert noise_floor(prediction) == pytest.approx(measure(prediction)[0], rel=0.1)
+
+
+def test_the_floor_of_noise_whose_colour_is_known() -> None:
+    """Three quarters of it below 10 Hz, of which differences see nothing."""
+    random = np.random.default_rng(8)
+    time = np.arange(20_000) / 1000.0
+    motion = 2.0 * np.exp(-0.2 * time) * np.sin(2.0 * np.pi * 5.0 * time)
+    slow = lfilter([1.0], [1.0, -0.94], random.standard_normal((6, len(time))), axis=1)
+    noises = 0.02 * (random.standard_normal(slow.shape) + np.sqrt(3.0) * slow / slow.std())
+    model = background_noise(list(noises.reshape(6, -1, 5).mean(axis=2)), 8)
+    whole = [
+        Prediction(time, ("ax",), ("m/s^2",), (motion + rest)[:, None], motion[:, None], low_pass_hz=20.0)
+        for rest in noises
+    ]
+    known = [replace(one, noises=(model,), block=5) for one in whole]
+    left = np.mean([measure(one)[0] for one in whole])
+    assert np.mean([noise_floor(one) for one in whole]) < 0.6 * left
+    assert np.mean([noise_floor(one) for one in known]) == pytest.approx(left, rel=0.05)
+    assert reddest(known) == 1.0
 
 
 @pytest.mark.parametrize(("missed", "told"), [(0.0, False), (0.05, True)])

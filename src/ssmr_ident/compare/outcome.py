@@ -10,6 +10,7 @@ import numpy as np
 from ssmr_ident.core.shown import Shown
 from ssmr_ident.signals.band import passed
 from ssmr_ident.signals.filters import ORDER
+from ssmr_ident.signals.noise import AutoregressiveNoise
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,6 +32,9 @@ class Prediction(Shown):
         Of the metric; None as logged.
     high_pass_hz : float
         Of the metric, where a recording is judged in a band.
+    noises : tuple of AutoregressiveNoise
+        Of the channels' means over ``block`` samples, where its colour is known.
+    block : int
     """
 
     time: np.ndarray
@@ -42,6 +46,8 @@ class Prediction(Shown):
     low_pass_hz: float | None = 50.0
     nuisances: Mapping[str, float] = field(default_factory=dict)
     high_pass_hz: float = 0.0
+    noises: tuple[AutoregressiveNoise, ...] = ()
+    block: int = 1
 
     @property
     def sample_rate(self) -> float:

@@ -112,7 +112,7 @@ def assembled(outcome: Outcome, parameters: ParameterSet, seed: int) -> Diagnosi
         if heldout.before > UNEXPLAINED * heldout.noise_floor and kept.before < UNEXPLAINED * kept.noise_floor:
             jolts = (JOLTS.format(kept.before / kept.noise_floor),)
         follows = grows_with_motion([*settled[0], *settled[1]]) < BY_CHANCE
-        most = reddest([*settled[0], *settled[1]])
+        most = max(reddest([*settled[0], *settled[1]]), UNEXPLAINED)
         verdict = UNDETERMINED if left > most or (left > UNEXPLAINED and follows) else NOTHING
         # a pull may be left in a local minimum of its own; one release in which wheels lift may be all that shows it
         over = np.zeros(1) if slides(base.fit) else over_any_noise([*settled[0], *settled[1]])

@@ -9,6 +9,7 @@ import numpy as np
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.arranged import loudness
+from ssmr_ident.diagnose.noise_at_rest import coloured, colours_at_rest
 from ssmr_ident.experiments import EXPERIMENTS
 from ssmr_ident.experiments.campaign import Campaign, Measurement
 from ssmr_ident.identify.body.builder import GAINS
@@ -131,8 +132,10 @@ def set_up(campaign: Campaign, parameters: ParameterSet) -> Setup:
             f"the baseline comes from {len(calibration)} calibration recordings; the question is what the others have "
             "that they have not"
         )
-    before = tuple(make(m) for m in calibration)
-    return Setup(campaign, tuple(fitted), tuple(halves), model, known, by_us, tuple(notes), before)
+    before = [make(m) for m in calibration]
+    colours = colours_at_rest([*fitted, *before])
+    told, kept, known_before = (tuple(coloured(t, colours) for t in trials) for trials in (fitted, halves, before))
+    return Setup(campaign, told, kept, model, known, by_us, tuple(notes), known_before)
 
 
 def keep_back(targets: list[Measurement]) -> tuple[list[Measurement], list[Measurement]]:

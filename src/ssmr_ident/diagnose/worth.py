@@ -36,14 +36,23 @@ BY_CHANCE = 1e-3
 LONGEST = 3000
 """Points of an overlay."""
 
+GRID = 500
+"""Frequencies at which a spectrum is summed."""
+
 
 def predictions(fit: JointFit) -> list[Prediction]:
     """Every recording of a fit, sample by sample; of a recording that is split in time, the part that counts."""
     values, effects = fit.model.split(fit.point)
     found = []
     for trial, nuisance in zip(fit.trials, fit.nuisances, strict=True):
-        found.append(_counted(trial, predicted(trial, values, effects, nuisance)))
+        found.append(_with_noise(trial, _counted(trial, predicted(trial, values, effects, nuisance))))
     return found
+
+
+def _with_noise(trial: Trial, prediction: Prediction) -> Prediction:
+    if not any(noise.order for noise in trial.noises):
+        return prediction
+    return replace(prediction, noises=trial.noises, block=max(round(trial.step * prediction.sample_rate), 1))
 
 
 def without_jolts(fit: JointFit, found: Sequence[Prediction]) -> list[Prediction]:
@@ -75,7 +84,8 @@ def _where(prediction: Prediction, inside: Array) -> Prediction:
 
 
 def noise_floor(prediction: Prediction) -> float:
-    """The metric that white noise, rounding and hum alone would leave, from what a prediction leaves at its fastest.
+    """The metric that noise, rounding and hum alone would leave: noise of its known colour; else white noise, from what
+    a prediction leaves at its fastest.
 
     Second differences see white noise and hardly any motion; the noise below the metric's low-pass is taken to be as
     dense as above it, and in a band as dense as its own. Mains lines pass the low-pass by its gain at theirs.
@@ -89,11 +99,23 @@ def noise_floor(prediction: Prediction) -> float:
     power = 0.5 * np.sum(np.repeat(prediction.gain(lines), 2)[:, None] ** 2 * waves**2, axis=0)
     scale = np.ones(measured.shape[1]) if len(set(prediction.units)) == 1 else measured.std(axis=0)
     noise = 0.0
-    for column, logged, own, size in zip(clean.T, prediction.measured.T, power, scale, strict=True):
+    coloured = _coloured_variances(prediction)
+    for c, (column, logged, own, size) in enumerate(zip(clean.T, prediction.measured.T, power, scale, strict=True)):
         # a tail that rests within one step of the converter has no differences
-        noise += (share * white_noise(column, rounding(logged)).std ** 2 + own) / size**2
+        random = coloured[c] if coloured else share * white_noise(column, rounding(logged)).std ** 2
+        noise += (random + own) / size**2
     signal = float(np.sum(((measured - measured.mean(axis=0)) / scale).var(axis=0)))
     return 100.0 * float(np.sqrt(noise / signal))
+
+
+def _coloured_variances(prediction: Prediction) -> list[float]:
+    """What noise of known colour leaves of each channel, the metric's filter behind it."""
+    step = prediction.block / prediction.sample_rate
+    frequency = (np.arange(GRID) + 0.5) * (0.5 / step / GRID)
+    turn = np.pi * frequency / prediction.sample_rate
+    mean = np.sin(prediction.block * turn) / (prediction.block * np.sin(turn))  # a block's gain, taken back
+    share = (prediction.gain(frequency) / mean) ** 2
+    return [float(np.mean(share * noise.density(frequency, step)) * 0.5 / step) for noise in prediction.noises]
 
 
 def passed(prediction: Prediction) -> float:
@@ -102,12 +124,13 @@ def passed(prediction: Prediction) -> float:
 
 
 def reddest(found: Sequence[Prediction]) -> float:
-    """Error over the noise floor that noise reads at the most, of which a share of at least ``WHITE`` is white.
+    """Error over the noise floor that noise reads at the most, of which a share of at least ``WHITE`` is white; 1 where
+    its colour is known.
 
     The rest of it all lies below the low-pass, where the floor, taken at the fastest, sees nothing of it.
     """
-    shares = np.array([passed(prediction) for prediction in found])
-    return float(np.max(np.sqrt((1.0 - WHITE + WHITE * shares) / (WHITE * shares))))
+    shares = np.array([passed(prediction) for prediction in found if not prediction.noises])
+    return float(np.max(np.sqrt((1.0 - WHITE + WHITE * shares) / (WHITE * shares)), initial=1.0))
 
 
 def over_any_noise(found: Sequence[Prediction]) -> Array:

@@ -65,7 +65,7 @@ class Decay:
     def coarse(self) -> Decay:
         """The same, simulated in steps twice as long."""
         shorten = self.trial.shorten
-        return self if shorten is None else replace(self, trial=shorten(1e6))
+        return self if shorten is None else replace(self, trial=shorten(1e6).with_noises(self.trial.noises))
 
     def whitened(self, columns: Array) -> Array:
         """(n, k) to (c, n', k), through each channel's noise, its zero and mains lines taken out."""

@@ -63,6 +63,9 @@ WANDER = 0.02
 """m/s^2 by which a zero may drift within a recording, evenly or in an arc (standard deviations): 2 mg, chosen as what
 the benchmark's sensors do at most. What drifts further counts as motion; with no limit creep would not."""
 
+SHORTEST_REST = 64
+"""Blocks behind a decay that is over from which they show the noise alone."""
+
 LONGEST_QUIET = 0.35
 """Share of a record's end from which the noise is taken."""
 
@@ -110,9 +113,10 @@ def decay_trial(measurement: Measurement, builder: RobotBuilder, decoupled: bool
     model = PureRotation(names[0]) if decoupled else None
     since = np.linspace(-1.0, 1.0, len(rest))
     drift = WANDER * np.column_stack([since, since**2])
+    after = rest[kept:] if len(rest) - kept >= SHORTEST_REST else rest[:0]
     shows = np.array([recording.channel(name).shows(sensor.range_m_s2) for name in names])
     facts = _Facts(measurement.name, measurement.entry.motion or "", names, shows, STEP, builder, model, whole, drift)
-    return _trial(replace(decay, noises=noises), kept, facts)
+    return replace(_trial(replace(decay, noises=noises), kept, facts), at_rest=after)
 
 
 @dataclass(frozen=True, eq=False)

@@ -105,6 +105,8 @@ class Trial:
         The same recording of a robot that is not alike left and right, where this one takes it to be.
     abreast : bool
         ``many`` of a few costs hardly more than one.
+    at_rest : (m, c) float or None
+        Logged when the motion was over, on the same grid, zeros taken out: noise alone. Nothing is fitted to it.
     """
 
     name: str
@@ -137,6 +139,7 @@ class Trial:
     drift: Array | None = None
     uneven: Trial | None = None
     abreast: bool = False
+    at_rest: Array | None = None
 
     @property
     def step(self) -> float:

@@ -4,6 +4,7 @@ Every other room reads noise here; ``tests/contract/test_one_noise_model.py`` ho
 """
 
 from ssmr_ident.signals.noise.autoregressive import AutoregressiveNoise, fit_noise, quiet_noise, white_noise
+from ssmr_ident.signals.noise.background import background_noise
 from ssmr_ident.signals.noise.colour import (
     independent_samples,
     long_run_variance,
@@ -35,6 +36,7 @@ __all__ = [
     "AutoregressiveNoise",
     "Blocks",
     "any_mains_lines",
+    "background_noise",
     "block_noises",
     "fit_noise",
     "force_noise",

@@ -139,8 +139,7 @@ def fit_noise(samples: Array, largest_order: int = 24, spent: int = 0) -> Autore
 
     Notes
     -----
-    Levinson's recursion on the biased autocovariance, whose filter is always stable. Source: Priestley,
-    Spectral Analysis and Time Series (1981), section 5.4.
+    By the biased autocovariance, whose filter is always stable.
     """
     count = len(samples)
     largest_order = max(0, min(largest_order, count // 10))
@@ -149,9 +148,28 @@ def fit_noise(samples: Array, largest_order: int = 24, spent: int = 0) -> Autore
     covariance = np.fft.irfft(np.abs(spectrum) ** 2, size)[: largest_order + 1] / count
     if covariance[0] <= 0:
         return AutoregressiveNoise(np.ones(1), 1e-300)
+    coefficients, variance = schwarz_order(covariance, count)
+    freedom = max(count - spent - len(coefficients) + 1, 1)
+    return AutoregressiveNoise(coefficients, float(np.sqrt(variance * count / freedom)))
+
+
+def schwarz_order(covariance: Array, count: int) -> tuple[Array, float]:
+    """Whitening filter and innovation variance of an autocovariance, of the order that Schwarz's criterion prefers.
+
+    Parameters
+    ----------
+    covariance : (p + 1,) float
+        At lags 0, 1, … p, the largest order; positive definite.
+    count : int
+        Samples that it was taken from.
+
+    Notes
+    -----
+    Levinson's recursion. Source: Priestley, Spectral Analysis and Time Series (1981), section 5.4.
+    """
     best, best_score = (np.ones(1), float(covariance[0])), count * np.log(covariance[0])
     coefficients, variance = np.ones(1), float(covariance[0])
-    for order in range(1, largest_order + 1):
+    for order in range(1, len(covariance)):
         reflection = -float(coefficients @ covariance[order:0:-1]) / variance
         extended = np.append(coefficients, 0.0)
         coefficients = extended + reflection * extended[::-1]
@@ -161,5 +179,4 @@ def fit_noise(samples: Array, largest_order: int = 24, spent: int = 0) -> Autore
         score = count * np.log(variance) + order * np.log(count)
         if score < best_score:
             best, best_score = (coefficients, variance), score
-    freedom = max(count - spent - len(best[0]) + 1, 1)
-    return AutoregressiveNoise(best[0], float(np.sqrt(best[1] * count / freedom)))
+    return best

@@ -1,0 +1,34 @@
+"""Noise of recordings that go on after the motion is over: its colour is seen there, before anything is fitted."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from ssmr_ident.identify.trials import Trial
+from ssmr_ident.signals.noise import AutoregressiveNoise, background_noise
+
+LARGEST_ORDER = 8
+"""Of the autoregressive noise of block averages."""
+
+ENOUGH = 1000
+"""Samples at rest, of all recordings together, that tell the noise's colour: seven windows, thirteen that overlap."""
+
+
+def colours_at_rest(trials: Sequence[Trial]) -> dict[str, AutoregressiveNoise]:
+    """Noise by channel in sizes of what its differences show, for one sensor logged all recordings; none where they
+    are too short to tell its colour."""
+    found: dict[str, list[np.ndarray]] = {}
+    for trial in trials:
+        if trial.at_rest is not None and len(trial.at_rest):
+            for name, noise, rest in zip(trial.channels, trial.noises, trial.at_rest.T, strict=True):
+                found.setdefault(name, []).append(rest / noise.std)
+    enough = {name: rests for name, rests in found.items() if sum(map(len, rests)) >= ENOUGH}
+    return {name: background_noise(rests, LARGEST_ORDER) for name, rests in enough.items()}
+
+
+def coloured(white: Trial, colours: Mapping[str, AutoregressiveNoise]) -> Trial:
+    """A recording whose noise has the colours that are known, as large as its own differences show."""
+    own = zip(white.channels, white.noises, strict=True)
+    return white.with_noises(tuple(colours[c].louder(noise.std) if c in colours else noise for c, noise in own))
