@@ -10,6 +10,7 @@ from bank.truth import BankSession
 from ssmr_ident.diagnose.setup import set_up
 from ssmr_ident.diagnose.sizes import sizes_of
 from ssmr_ident.doctor.robots.calibrated import baseline_of
+from ssmr_ident.physics.effect import Site
 from ssmr_ident.physics.effects import CATALOGUE
 from ssmr_ident.workflows.diagnose import diagnose
 
@@ -52,3 +53,18 @@ def test_pulls_have_no_gravity_to_read() -> None:
     sizes = sizes_of(baseline_of(setup.fitted, setup.model))
     assert np.isnan(sizes["weight"])
     assert np.isnan(sizes["beyond_weight"])
+
+
+def test_an_axis_that_carries_gravity_has_another_range_than_level_ones() -> None:
+    """A range below what an axis reads at rest would leave one number of it."""
+    time = np.linspace(0.0, 1.0, 500)
+    swing = 2.0 * np.exp(-time) * np.sin(40.0 * time)
+    clip = CATALOGUE["sensor_saturation"].acts[Site.OUTPUT]
+    assert clip is not None
+    limits = dict.fromkeys(("range_N", "range_m", "range_m_s", "range_rad", "range_rad_s"), np.inf)
+    clipped = clip(time, {"ax": swing, "az": 9.81 + swing}, range_m_s2=1.3, **limits)
+    assert np.abs(clipped["ax"]).max() == 1.3
+    assert np.array_equal(clipped["az"], 9.81 + swing)
+    beside = clip(time, {"ax": swing, "az": 9.81 + swing}, range_m_s2=10.3, **limits)
+    assert beside["az"].max() == 10.3
+    assert np.array_equal(beside["ax"], swing)

@@ -63,6 +63,7 @@ def sizes_of(fit: JointFit) -> dict[str, float]:
         "weight": weight,
         "beyond_weight": beyond,
         "reading": largest if math.isnan(weight) else math.nan,
+        "level_reading": math.nan if math.isnan(weight) else _level(fit),
         "deflection": deflection,
         "stiffness": stiffness,
         "force": stiffness * deflection,
@@ -107,6 +108,18 @@ def _gravity(fit: JointFit) -> tuple[float, float]:
             swing = float(np.max(math.copysign(1.0, rest) * (trial.target[:, column] - trial.target[:, column].mean())))
             if name in ACCELERATIONS and abs(rest) > swing and not swing <= largest[1]:
                 largest = abs(rest), swing
+    return largest
+
+
+def _level(fit: JointFit) -> float:
+    """The most that an axis reads which carries no gravity [m/s^2]; NaN where there is none."""
+    largest = math.nan
+    for trial, simulated in zip(fit.trials, fit.simulated, strict=True):
+        for column, name in enumerate(trial.channels):
+            reads = float(np.max(np.abs(trial.target[:, column])))
+            carries = abs(float(np.mean(simulated[:, column]))) > float(np.std(trial.target[:, column]))
+            if name in ACCELERATIONS and not carries and not reads <= largest:
+                largest = reads
     return largest
 
 

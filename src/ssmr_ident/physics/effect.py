@@ -53,7 +53,8 @@ class Sized:
         [N/m] (the most that a pull reads over how far it goes), ``reach`` [m]
         and ``slope`` [N/m] (deflection and stiffness in the direction that goes farthest), ``weight`` and
         ``beyond_weight`` [m/s^2] (what an accelerometer reads of gravity at rest, and how far the largest reading goes
-        beyond it), ``reading`` [m/s^2] (``acceleration`` where no axis reads gravity), ``mass`` [kg], ``height`` [m]
+        beyond it), ``reading`` [m/s^2] (``acceleration`` where no axis reads gravity), ``level_reading`` (the most of
+        an axis that does not, where one does), ``mass`` [kg], ``height`` [m]
         (of a robot's centre of mass over the floor), ``swing`` [s] (one radian of the mass on its springs, across the
         robot), or a combination as in ``force/deflection^3``.
     above : str

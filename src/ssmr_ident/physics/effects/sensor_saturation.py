@@ -32,9 +32,16 @@ def change(
     range_rad: float,
     range_rad_s: float,
 ) -> dict[str, np.ndarray]:
-    """Clip each channel at the range of its quantity; channels : (n,) float [SI]."""
+    """Clip each channel at the range of its quantity; channels : (n,) float [SI].
+
+    An accelerometer's axis that reads more than the range for half of the time, as one that carries gravity does, has
+    another range.
+    """
     ranges = (range_m_s2, range_N, range_m, range_m_s, range_rad, range_rad_s)
     limits = {name: limit for names, limit in zip(RANGES.values(), ranges, strict=True) for name in names}
+    for name, samples in channels.items():
+        if name in ACCELERATIONS and np.median(np.abs(samples)) > limits[name]:
+            limits[name] = math.inf
     return {name: np.clip(s, -limits[name], limits[name]) if name in limits else s for name, s in channels.items()}
 
 
@@ -61,6 +68,8 @@ EFFECT = Effect(
         # an axis that carries gravity clips beside it, and what clips below that reads one number all the time
         {"range_m_s2": Sized(0.8, "beyond_weight", above="weight")},
         {"range_m_s2": Sized(0.4, "beyond_weight", above="weight")},
+        {"range_m_s2": Sized(0.99, "level_reading")},
+        {"range_m_s2": Sized(0.9, "level_reading")},
         {"range_N": Sized(0.99, "load")},
     ),
     sudden=True,
