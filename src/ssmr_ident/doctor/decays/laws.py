@@ -20,7 +20,7 @@ from ssmr_ident.identify.fitting.coordinates import Model
 from ssmr_ident.identify.fitting.descent import descend
 from ssmr_ident.identify.fitting.joint import JointFit, evaluate
 from ssmr_ident.identify.trials.decay import SCALES, STATES
-from ssmr_ident.physics.extended import BODY
+from ssmr_ident.physics.extended import BODY, SLOW
 
 Array = np.ndarray
 
@@ -123,10 +123,10 @@ def nuisance_of(state: Array, model: Model) -> Array:
 def exact(decays: Sequence[Decay], fit: LinearFit, steps: int) -> JointFit:
     """A linear fit led on by the simulator, in which nothing is small.
 
-    There branches hold a share of what the release is displaced by; in closed form anything, so that its states at the
-    release are no begin.
+    There branches hold a share of what the release is displaced by, and a slow sensor lags by a share of the first
+    acceleration; in closed form by anything, so that its states at the release are no begin.
     """
     trials, nuisances = [d.trial for d in decays], [nuisance_of(x, fit.model) for x in fit.states]
-    branches = "viscoelastic_relaxation" in fit.model.held
-    begun = released(decays, fit.model, fit.point) if branches else evaluate(trials, fit.model, fit.point, nuisances)
-    return descend(begun, steps, plain=True)
+    if {"viscoelastic_relaxation", SLOW} & set(fit.model.held):
+        return descend(released(decays, fit.model, fit.point), steps, plain=True)
+    return descend(evaluate(trials, fit.model, fit.point, nuisances), steps, plain=True)

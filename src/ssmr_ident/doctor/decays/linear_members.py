@@ -11,9 +11,11 @@ from ssmr_ident.doctor.decays.laws import LAST, exact
 from ssmr_ident.doctor.decays.linear import LinearFit, fit_linear
 from ssmr_ident.doctor.decays.recordings import Decay, thinned
 from ssmr_ident.doctor.robots.cooled import TRUSTED
-from ssmr_ident.doctor.robots.found import Found, Search
+from ssmr_ident.doctor.robots.found import Found, Search, cost_of
 from ssmr_ident.doctor.robots.members import Member
 from ssmr_ident.identify.fitting.coordinates import Model
+from ssmr_ident.identify.fitting.descent import descend
+from ssmr_ident.identify.fitting.joint import evaluate
 
 THIN_S, EVERY = 1.5, 2
 """Of a decay, what starts of linear members are chosen on: its first part, every so many blocks."""
@@ -67,10 +69,20 @@ def from_all_starts(search: Search, first: Found, ways: Sequence[Member]) -> Fou
 
 
 def simulated(search: Search, found: Found) -> Found:
+    """A linear model by the simulator, in which the states at the release are fewer: begun from the model without its
+    last member where that follows the recordings better."""
     if found.fit is not None:
         return found
     assert found.linear is not None
-    new = replace(found, fit=exact(search.decays, found.linear, LAST))
+    fit = exact(search.decays, found.linear, LAST)
+    poorer = next((f.fit for f in search.all if f.members == found.members[:-1]), None)
+    if poorer is not None and cost_of(poorer) < cost_of(fit):
+        own = found.point[len(poorer.point) :], found.members[-1].own
+        begun = [
+            evaluate(poorer.trials, found.model, np.concatenate([poorer.point, at]), poorer.nuisances) for at in own
+        ]
+        fit = min(fit, descend(min(begun, key=cost_of), LAST, plain=True), key=cost_of)
+    new = replace(found, fit=fit)
     search.found = [new if f is found else f for f in search.found]
     return new
 

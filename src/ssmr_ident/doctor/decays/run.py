@@ -12,18 +12,10 @@ from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.diagnose.arranged import arranged
 from ssmr_ident.diagnose.diagnosis import Diagnosis
 from ssmr_ident.diagnose.setup import Setup, set_up
+from ssmr_ident.doctor.decays.linear_members import simulated
 from ssmr_ident.doctor.decays.recordings import Decay, decay_of
-from ssmr_ident.doctor.decays.search import (
-    FORMULA_OVER,
-    MATTERS,
-    NEAR,
-    SECOND_OVER,
-    begun,
-    completed,
-    in_turn,
-    promised_beside,
-)
-from ssmr_ident.doctor.decide import MISSING, certain, decide
+from ssmr_ident.doctor.decays.search import MATTERS, MORE_OVER, NEAR, begun, completed, in_turn, promised_beside
+from ssmr_ident.doctor.decide import MISSING, Decision, certain, decide
 from ssmr_ident.doctor.robots.answer import GROWS, answered, table
 from ssmr_ident.doctor.robots.calibrated import informed
 from ssmr_ident.doctor.robots.found import Found, Search
@@ -36,6 +28,9 @@ from ssmr_ident.physics.extended import BRANCH, LINEAR
 from ssmr_ident.physics.slots import effect_values
 
 Progress = Callable[[str, int, int], None]
+
+PREDICTS = 1.25
+"""Error over the noise floor up to which a law's answer may be given before all others have been tried."""
 
 
 def diagnose(
@@ -65,19 +60,29 @@ def diagnose(
             if found is not None:
                 return found
         completed(search, progress)
+        rows, decision = _decided(search)
+        return answered(setup, search, rows, decision, known, seed)
+
+
+def _decided(search: Search) -> tuple[list[tuple[Row, Found]], Decision]:
+    """Table and decision, once what is chosen is simulated."""
+    while True:
         rows = table(search)
-        return answered(setup, search, rows, decide([row for row, _ in rows]), known, seed)
+        decision = decide([row for row, _ in rows])
+        chosen = next((found for row, found in rows if row is decision.chosen), None)
+        if chosen is None or chosen.fit is not None:
+            return rows, decision
+        simulated(search, chosen)
 
 
 def _certain(setup: Setup, search: Search, known: ParameterSet, seed: int) -> Diagnosis | None:
     """The answer that a search has so far; None where it may be another one."""
-    rows = table(search)
-    decision = decide([row for row, _ in rows])
+    rows, decision = _decided(search)
     if decision.verdict != MISSING or not decision.listed or decision.chosen is None:
         return None
     chosen = next(found for row, found in rows if row is decision.chosen)
     linear = all(m.linear for m in chosen.members)
-    if search.over(chosen) > (NEAR if linear else SECOND_OVER) or _imitates(search, chosen):
+    if search.over(chosen) > (NEAR if linear else MORE_OVER) or _imitates(search, chosen):
         return None
     if not alone(decision.chosen, [row for row, _ in rows]):
         return None
@@ -87,7 +92,7 @@ def _certain(setup: Setup, search: Search, known: ParameterSet, seed: int) -> Di
     most = GROWS if set(decision.chosen.kinds) == {GEOMETRY} else MATTERS
     qualities = (found.training, found.heldout)
     falls = all(q.after < most * q.before for q in qualities)
-    follows = linear or all(q.after < SECOND_OVER * q.noise_floor for q in qualities)
+    follows = linear or all(q.after < PREDICTS * q.noise_floor for q in qualities)
     return found if falls and follows else None
 
 
@@ -115,7 +120,7 @@ def _imitates(search: Search, chosen: Found) -> bool:
     where no law was fitted and more than noise is left."""
     relaxes = any(m.id == BRANCH for m in chosen.members)
     compared = search.over(search.baseline) < NEAR or search.has_laws
-    return relaxes and (len(chosen.members) > 1 or not (compared or search.over(chosen) < FORMULA_OVER))
+    return relaxes and (len(chosen.members) > 1 or not (compared or search.over(chosen) < MORE_OVER))
 
 
 def takes(campaign: Campaign, known: ParameterSet) -> bool:

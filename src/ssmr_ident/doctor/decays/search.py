@@ -9,11 +9,18 @@ from dataclasses import replace
 import numpy as np
 
 from ssmr_ident.core.errors import InputError
-from ssmr_ident.diagnose.formulas import other_formulas
 from ssmr_ident.diagnose.scan import promising, scan
-from ssmr_ident.doctor.decays.laws import LAST, SCREENED_S, begun_at, exact, loudest, on_whole, starts
+from ssmr_ident.doctor.decays.formulas import in_other_formulas, parts_of
+from ssmr_ident.doctor.decays.laws import LAST, SCREENED_S, begun_at, exact, loudest, on_whole, released, starts
 from ssmr_ident.doctor.decays.linear import fit_linear
-from ssmr_ident.doctor.decays.linear_members import annealed, from_all_starts, offered_back, offered_down, simulated
+from ssmr_ident.doctor.decays.linear_members import (
+    OFFERED,
+    annealed,
+    from_all_starts,
+    offered_back,
+    offered_down,
+    simulated,
+)
 from ssmr_ident.doctor.decays.recordings import Decay
 from ssmr_ident.doctor.decide import certain
 from ssmr_ident.doctor.robots.answer import table
@@ -24,24 +31,22 @@ from ssmr_ident.doctor.robots.cooled import (
     Progress,
     Tried,
     cooled,
+    cooled_alone,
     field,
     to_the_end,
 )
 from ssmr_ident.doctor.robots.found import Found, Search, cost_of
 from ssmr_ident.doctor.robots.members import GEOMETRY, KINDS, Member, any_shape, members
-from ssmr_ident.doctor.rules import STATED
+from ssmr_ident.doctor.rules import FORMULA, STATED
 from ssmr_ident.identify.fitting.coordinates import Model
 from ssmr_ident.identify.fitting.descent import descend
-from ssmr_ident.identify.fitting.joint import JointFit, differentiate, evaluate
+from ssmr_ident.identify.fitting.joint import differentiate, evaluate
 from ssmr_ident.physics.effects import CATALOGUE
 
 Array = np.ndarray
 
-SECOND_OVER = 1.25
-"""RMS of whitened residuals of the best from which a second effect is looked for."""
-
-FORMULA_OVER = 1.1
-"""The same from which a law is tried in other formulas."""
+MORE_OVER = 1.03
+"""RMS of whitened residuals from which more than noise is left: noise is known to 2 %."""
 
 NEAR = 1.5
 """RMS of the baseline's whitened residuals up to which a law's releases are taken to be the baseline's."""
@@ -49,8 +54,11 @@ NEAR = 1.5
 MATTERS = 0.95
 """Factor on the error, noise included, below which an effect makes it that matters on what it was not fitted to."""
 
-TINY = 1e-9
-"""What has one sign begins at, where a member of any shape holds none of it."""
+RELEASED = 3
+"""Times that a law's states at the release are looked for anew, at the most."""
+
+ALIKE = 1.2
+"""Factor on the cost of an effect's best formula up to which its second one goes on to all recordings, too."""
 
 REACH, SHARE = 50.0, 0.02
 """Cost above the least, of what is linear too, and share of the baseline's misfit, up to which a linear model is led on
@@ -82,12 +90,14 @@ def in_turn(search: Search, progress: Progress | None = None) -> Iterator[None]:
     offered_back(search)
     if search.over(search.best) <= NEAR and _compared(search, say):
         yield
-    if search.over(search.best) <= SECOND_OVER:
+    if search.over(search.best) <= MORE_OVER:
         return
-    if search.over(search.baseline) > NEAR:
+    if not search.has_laws:
         _single_laws(search, say)
         _finished(search, say)
         yield
+    if not _leaves_a_second(search):
+        return
     for first in _firsts(search, linear=True):
         _linear_beside(search, first, say)
     offered_down(search)
@@ -100,10 +110,11 @@ def completed(search: Search, progress: Progress | None = None) -> None:
     say = progress or _silent
     if not search.has_laws:
         _single_laws(search, say)
-    if search.best is not search.baseline and search.over(search.best) > SECOND_OVER:
+    if search.best is not search.baseline and _leaves_a_second(search):
         for first in _firsts(search):
             _beside(search, first, say)
         _settled(search, say)
+        _offered_to_each(search)
     _finished(search, say)
 
 
@@ -112,10 +123,13 @@ def _silent(stage: str, done: int, total: int) -> None:
 
 
 def _single_laws(search: Search, say: Progress) -> None:
-    """Laws beside the baseline, the best of them to its end and in other formulas."""
+    """Laws beside the baseline, the best of them to its end and in other formulas; where any shape is better, too."""
     _laws_beside(search, search.baseline, say)
     _settled(search, say)
-    _other_formulas(search, say)
+    for _ in range(2):
+        if (law := _best_law(search)) is not None and search.over(law) > MORE_OVER:
+            _settled(search, say, law)
+            _other_formulas(search, law, say)
     _settled(search, say)
 
 
@@ -140,6 +154,13 @@ def _best_law(search: Search) -> Found | None:
 def _matters(search: Search) -> bool:
     """Whether the best model leaves less than the baseline, noise included."""
     return search.over(search.best) < MATTERS * search.over(search.baseline)
+
+
+def _leaves_a_second(search: Search) -> bool:
+    """Whether the best model leaves more beyond noise than a formula may leave of what it takes."""
+    best, base = search.best, search.baseline
+    beyond = best.chi2 - search.samples
+    return search.over(best) > MORE_OVER and beyond > FORMULA * (base.chi2 - best.chi2)
 
 
 def _displaced(search: Search) -> bool:
@@ -223,9 +244,9 @@ def _laws_beside(search: Search, first: Found, say: Progress) -> None:
     for start in starts(search.decays, which, first, search.over(first) < NEAR):
         tried = [(way, begun_at(start, loud, way)) for way in laws]
         ended += cooled(tried, trials, say)
-    ended += [pair for member, fit in ended if member.generic for pair in _parts(member, fit, laws)]
+    ended += [pair for member, fit in ended if member.generic for pair in parts_of(member, fit, laws)]
     least = min((cost_of(f) for _, f in ended), default=math.inf)
-    for index, (member, fit) in enumerate(going := field(ended, LAWS, FAR_OFF * least)):
+    for index, (member, fit) in enumerate(going := field(ended, LAWS, FAR_OFF * least, ALIKE)):
         say("laws on whole recordings", index, len(going))
         search.add(Found((*first.members, member), None, on_whole(search.decays, fit, first.fit.nuisances)))
 
@@ -249,45 +270,40 @@ def _something_is_certain(search: Search) -> bool:
 
 
 def _settled(search: Search, say: Progress, found: Found | None = None) -> None:
-    """A law to its end, the best model's if none is given."""
+    """A law to its end, the best model's if none is given; where more than noise is left, from other states at the
+    release, in one of which it may be caught."""
     best = found or search.best
-    if best.fit is not None and best.members:
-        say("the best law to its end", 0, 1)
-        search.add(replace(best, fit=to_the_end(best.fit)))
-
-
-def _other_formulas(search: Search, say: Progress) -> None:
-    """The best law in other formulas of its effect, begun where it is."""
-    best = search.best
-    if best.fit is None or not best.members or best.members[-1].generic or search.over(best) < FORMULA_OVER:
+    if best.fit is None or not best.members:
         return
-    member = best.members[-1]
-    for index, (model, point) in enumerate(forms := list(other_formulas(best.fit, member.id))):
+    say("the best law to its end", 0, 1)
+    best = replace(best, fit=to_the_end(best.fit))
+    for _ in range(RELEASED):
+        anew = released(search.decays, best.model, best.point)
+        if search.over(best) < MORE_OVER or not cost_of(anew) < best.cost - 1.0:
+            break
+        best = replace(best, fit=min(anew, to_the_end(cooled_alone(anew)), key=cost_of))
+    search.add(best)
+
+
+def _offered_to_each(search: Search) -> None:
+    """What the best two pairs have found, offered to each of their effects alone."""
+    pairs = [f for f in search.found if len(f.members) == 2 and f.fit is not None]
+    for pair in sorted(pairs, key=lambda f: f.cost)[:OFFERED] if search.best in pairs else []:
+        assert pair.fit is not None
+        for member, other in (pair.members, pair.members[::-1]):
+            model, keep = pair.model.without_effect(other.id)
+            begun = evaluate(pair.fit.trials, model, pair.point[keep], pair.fit.nuisances)
+            if np.isfinite(begun.rss):
+                fit = to_the_end(cooled_alone(begun))
+                search.add(Found((replace(member, model=model),), None, fit))
+
+
+def _other_formulas(search: Search, law: Found, say: Progress) -> None:
+    """A law in other formulas of its effect, begun where it is."""
+    assert law.fit is not None
+    for index, (member, fit) in enumerate(forms := in_other_formulas(law.members[-1], law.fit)):
         say("other formulas", index, len(forms))
-        fit = evaluate(best.fit.trials, model, point, best.fit.nuisances)
-        held = {n: v for n, v in model.held[member.id].items() if v != best.model.held[member.id].get(n)}
-        free = [c.parameter.name for c in model.free if c.effect == member.id]
-        form = ", ".join([*free, *(f"{n} = {v:g}" for n, v in held.items() if n not in free)])
-        if np.isfinite(fit.rss):
-            new = replace(member, form=form, model=model)
-            search.add(Found((*best.members[:-1], new), None, descend(fit, FURTHER, plain=True)))
-
-
-def _parts(generic: Member, fit: JointFit, laws: Sequence[Member]) -> list[tuple[Member, JointFit]]:
-    """Laws that are a part of a member of any shape, begun where that has come to."""
-    count, values = len(fit.model.physics), fit.model.split(fit.point)[1]
-    there = {(c.effect, c.parameter.name) for c in fit.model.free}
-    found = {}
-    for law in (m for m in laws if not m.generic and m.kind == generic.kind):
-        own = {c: (c.effect, c.parameter.name) for c in law.model.free}
-        if not own or not set(own.values()) <= there or law.form in found:
-            continue
-        at = [c.unknown.scaled(max(values[e][n], TINY) if c.unknown.logarithmic else values[e][n])
-              for c, (e, n) in own.items()]  # fmt: skip
-        begun = evaluate(fit.trials, law.model, np.concatenate([fit.point[:count], at]), fit.nuisances)
-        if np.isfinite(begun.rss):
-            found[law.form] = (law, descend(begun, FURTHER, plain=True))
-    return list(found.values())
+        search.add(Found((*law.members[:-1], member), None, descend(fit, FURTHER, plain=True)))
 
 
 def _finished(search: Search, say: Progress) -> None:

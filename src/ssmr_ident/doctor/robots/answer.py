@@ -16,9 +16,10 @@ from ssmr_ident.diagnose.outcome import Outcome
 from ssmr_ident.diagnose.setup import Setup
 from ssmr_ident.diagnose.weigh import Explanation
 from ssmr_ident.doctor.decays.linear import fit_linear
-from ssmr_ident.doctor.decide import MISSING, Decision
+from ssmr_ident.doctor.decide import MISSING, Decision, held_against
 from ssmr_ident.doctor.robots.found import Found, Search
 from ssmr_ident.doctor.robots.members import BY_KIND, EXTRA, GEOMETRY, SENSOR
+from ssmr_ident.doctor.rules import FORMULA
 from ssmr_ident.doctor.table import Row
 from ssmr_ident.identify.fitting.curvature import Curvature
 from ssmr_ident.identify.fitting.descent import descend
@@ -103,7 +104,29 @@ def table(search: Search) -> list[tuple[Row, Found]]:
         kinds = tuple(m.kind for m in found.members)
         return Row(names, kinds, forms, generic, gain, found.chi2 / temper, samples, search.over(found))
 
-    return [(row(found), found) for found in search.all]
+    return told_apart([(row(found), found) for found in search.all])
+
+
+def told_apart(table: list[tuple[Row, Found]]) -> list[tuple[Row, Found]]:
+    """Without members of any shape that a law of their kind follows the recordings better than, for they do not hold
+    it; and without pairs of which, where no such member is left, one effect takes what a formula of the other may
+    leave: ``FORMULA`` of the baseline's misfit."""
+    laws: dict[str, float] = {}
+    for row in (r for r, _ in table if len(r.ids) == 1 and not r.generic):
+        laws[row.kinds[0]] = min(laws.get(row.kinds[0], math.inf), row.chi2)
+    table = [
+        (r, f) for r, f in table if not (r.generic and len(r.ids) == 1 and r.chi2 > laws.get(r.kinds[0], math.inf))
+    ]
+    rows = [row for row, _ in table]
+    formula = FORMULA * (next(r.chi2 for r in rows if not r.ids) - min(r.chi2 for r in rows if math.isfinite(r.chi2)))
+
+    def stands(row: Row) -> bool:
+        found = [held_against(row, k, rows) for k in (0, 1)] if len(row.ids) > 1 else []
+        return all(
+            any(r.generic for r in alone) or row.chi2 < min(r.chi2 for r in alone) - formula for alone in found if alone
+        )
+
+    return [(row, found) for row, found in table if stands(row)]
 
 
 def _of_places(search: Search, found: Found, temper: float) -> float:
@@ -141,18 +164,18 @@ def outcome(setup: Setup, search: Search, rows: Sequence[tuple[Row, Found]], dec
         alike = [found for row, found in simulated if set(row.ids) - own and set(row.ids) - own <= ties]
         rivals = [_shown(setup, found) for found in alike[:SHOWN]]
         tried += [chosen, *rivals]
-        if _harms(chosen, base):
+        if _harms(chosen, base, GROWS if set(decision.chosen.kinds) == {GEOMETRY} else 1.0):
             rivals, chosen, withdrawn = [], base, chosen.id
     return Outcome(
         setup, base, tuple(tried), chosen, tuple(rivals), _evidence(rows, tried), search.looked_at, withdrawn
     )
 
 
-def _harms(chosen: Explanation, base: Explanation) -> bool:
+def _harms(chosen: Explanation, base: Explanation, grows: float) -> bool:
     """Whether an answer predicts recordings, fitted or kept back, worse than the baseline, as they are compared: jolts
     of cables by their share, teeth by their sizes."""
     fitted, kept = chosen.fit.rss / base.fit.rss, chosen.kept.rss / base.kept.rss
-    return not (fitted < GROWS**2 and kept < GROWS**2)
+    return not (fitted < grows**2 and kept < grows**2)
 
 
 def _evidence(rows: Sequence[tuple[Row, Found]], tried: Sequence[Explanation]) -> dict[str, float]:

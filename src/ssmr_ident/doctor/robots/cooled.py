@@ -123,16 +123,16 @@ def fewer(tried: Sequence[Tried], rung: int, reach: float) -> list[Tried]:
     return field(tried, LAWS, FAR_OFF * least) if rung else field(tried, len(BY_KIND), reach * least)
 
 
-def field(tried: Sequence[Tried], effects: int, most: float = math.inf) -> list[Tried]:
-    """Of every effect the two best formulas or starts, up to a cost; of all the first effects, and what takes any
-    shape."""
+def field(tried: Sequence[Tried], effects: int, most: float = math.inf, beside: float = math.inf) -> list[Tried]:
+    """Of every effect the two best formulas or starts, up to a cost, the second up to a factor on the first one's; of
+    all the first effects, and what takes any shape."""
     ranked = sorted(tried, key=lambda pair: cost_of(pair[1]))
     names = list(dict.fromkeys(m.id for m, _ in ranked if not m.generic))[:effects]
     found: list[Tried] = []
     for member, fit in ranked:
         fits = member.generic or (member.id in names and cost_of(fit) < most)
-        alike = [m for m, _ in found if (m.id, m.kind, m.generic) == (member.id, member.kind, member.generic)]
-        if fits and len(alike) < 2:
+        alike = [cost_of(f) for m, f in found if (m.id, m.kind, m.generic) == (member.id, member.kind, member.generic)]
+        if fits and (not alike or (len(alike) < 2 and cost_of(fit) < beside * alike[0])):
             found.append((member, fit))
     return found
 
