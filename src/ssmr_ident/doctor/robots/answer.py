@@ -44,7 +44,7 @@ TEMPERED = 3
 
 GROWS = 1.02
 """Factor by which an error may grow that a displaced place, which the baseline has made good elsewhere, leaves as it
-was."""
+was; and one of pulls, no two of which slide alike."""
 
 SHOWN = 2
 """Models that fit alike and are brought to the page at the most."""
@@ -108,9 +108,9 @@ def table(search: Search) -> list[tuple[Row, Found]]:
 
 
 def told_apart(table: list[tuple[Row, Found]]) -> list[tuple[Row, Found]]:
-    """Without members of any shape that a law of their kind follows the recordings better than, for they do not hold
-    it; and without pairs of which, where no such member is left, one effect takes what a formula of the other may
-    leave: ``FORMULA`` of the baseline's misfit."""
+    """Without members of any shape that a law of their kind follows better than they do, for they do not hold it; and
+    without pairs of which, where no such member is left, one effect takes what a formula of the other may leave:
+    ``FORMULA`` of the baseline's misfit."""
     laws: dict[str, float] = {}
     for row in (r for r, _ in table if len(r.ids) == 1 and not r.generic):
         laws[row.kinds[0]] = min(laws.get(row.kinds[0], math.inf), row.chi2)
@@ -164,7 +164,8 @@ def outcome(setup: Setup, search: Search, rows: Sequence[tuple[Row, Found]], dec
         alike = [found for row, found in simulated if set(row.ids) - own and set(row.ids) - own <= ties]
         rivals = [_shown(setup, found) for found in alike[:SHOWN]]
         tried += [chosen, *rivals]
-        if _harms(chosen, base, GROWS if set(decision.chosen.kinds) == {GEOMETRY} else 1.0):
+        of_decays = search.decays and set(decision.chosen.kinds) != {GEOMETRY}
+        if _harms(chosen, base, 1.0 if of_decays else GROWS):
             rivals, chosen, withdrawn = [], base, chosen.id
     return Outcome(
         setup, base, tuple(tried), chosen, tuple(rivals), _evidence(rows, tried), search.looked_at, withdrawn
