@@ -1,4 +1,5 @@
-"""Noise of recordings that go on after the motion is over: its colour is seen there, before anything is fitted."""
+"""Colour of noise: from where recordings go on after the motion is over, before anything is fitted; else from what a
+model leaves that follows them."""
 
 from __future__ import annotations
 
@@ -6,6 +7,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from ssmr_ident.identify.fitting.joint import JointFit
 from ssmr_ident.identify.trials import Trial
 from ssmr_ident.signals.noise import AutoregressiveNoise, background_noise
 
@@ -26,6 +28,15 @@ def colours_at_rest(trials: Sequence[Trial]) -> dict[str, AutoregressiveNoise]:
                 found.setdefault(name, []).append(rest / noise.std)
     enough = {name: rests for name, rests in found.items() if sum(map(len, rests)) >= ENOUGH}
     return {name: background_noise(rests, LARGEST_ORDER) for name, rests in enough.items()}
+
+
+def colours_left(fit: JointFit) -> dict[str, AutoregressiveNoise]:
+    """The same of what a fit leaves."""
+    found: dict[str, list[np.ndarray]] = {}
+    for trial, modelled in zip(fit.trials, fit.simulated, strict=True):
+        for name, noise, rest in zip(trial.channels, trial.noises, trial.colour(modelled).T, strict=True):
+            found.setdefault(name, []).append(rest / noise.std)
+    return {name: background_noise(rests, LARGEST_ORDER) for name, rests in found.items()}
 
 
 def coloured(white: Trial, colours: Mapping[str, AutoregressiveNoise]) -> Trial:

@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from ssmr_ident.core.errors import InputError
+from ssmr_ident.diagnose.noise_at_rest import coloured, colours_at_rest, colours_left
 from ssmr_ident.diagnose.scan import promising, scan
 from ssmr_ident.doctor.decays.formulas import in_other_formulas, parts_of
 from ssmr_ident.doctor.decays.laws import LAST, SCREENED_S, begun_at, exact, loudest, on_whole, released, starts
@@ -189,6 +190,7 @@ def begun(decays: Sequence[Decay], model: Model, progress: Progress | None = Non
         The robot as the file has it falls over.
     """
     say = progress or _silent
+    known = colours_at_rest([d.trial for d in decays])
     decays = [d.coarse() for d in decays]
     say("fitting the baseline", 0, 1)
     fit = annealed(decays, model)
@@ -197,8 +199,20 @@ def begun(decays: Sequence[Decay], model: Model, progress: Progress | None = Non
             "robot file", "describes a robot that falls over on its tires", "Check stiffness, mass and height"
         )
     search = Search(Found((), fit, exact(decays, fit, 1)), decays=tuple(decays), looked_at=len(KINDS))
+    if not known and search.over(search.baseline) < NEAR:
+        search = _heard(search)
     say("fitting the baseline", 1, 1)
     return search
+
+
+def _heard(search: Search) -> Search:
+    """The baseline under noise of the colour that it leaves."""
+    base = search.baseline
+    assert base.fit is not None
+    colours = colours_left(base.fit)
+    decays = tuple(replace(d, trial=coloured(d.trial, colours)) for d in search.decays)
+    fit = fit_linear(decays, base.model, base.point)
+    return search if fit is None else replace(search, baseline=Found((), fit, exact(decays, fit, 1)), decays=decays)
 
 
 def _firsts(search: Search, linear: bool = False) -> list[Found]:
