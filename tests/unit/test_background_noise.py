@@ -33,6 +33,16 @@ def test_noise_is_white_through_its_own_filter(share: float, corner_hz: float) -
     assert (model.order == 0) is (share == 0.0)
 
 
+def test_few_windows_know_the_size_without_bias() -> None:
+    """Nine stretches of little more than a window, a hundred times, by noise that was not looked at."""
+    random = np.random.default_rng(3)
+    sizes = []
+    for _ in range(100):
+        model = background_noise([s[:170] for s in noise_of(0.0, 10.0, random)], 8)
+        sizes.append(np.mean([model.whiten(s).var() for s in noise_of(0.0, 10.0, random)]))
+    assert np.mean(sizes) == pytest.approx(1.0, abs=0.03)
+
+
 def test_what_most_windows_hold_beside_it_is_no_noise() -> None:
     """A decaying line ten times as loud as the noise where it begins."""
     random = np.random.default_rng(2)

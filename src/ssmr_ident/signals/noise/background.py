@@ -34,7 +34,7 @@ def background_noise(stretches: Sequence[Array], largest_order: int) -> Autoregr
     taper = np.hanning(width + 2)[1:-1]
     parts = np.array([s[at : at + width] for s in stretches for at in range(0, len(s) - width + 1, max(width // 2, 1))])
     power = np.abs(np.fft.rfft(parts * taper, axis=1)) ** 2 / float(taper @ taper)
-    density = np.quantile(power, QUANTILE, axis=0) / -math.log1p(-QUANTILE)
+    density = np.quantile(power, QUANTILE, axis=0) / _expected(len(parts))
     density[0] = density[1]  # a zero is not noise
     covariance = np.fft.irfft(density, width)[: min(largest_order, width // 8) + 1]
     if not covariance[0] > 0.0:
@@ -43,3 +43,16 @@ def background_noise(stretches: Sequence[Array], largest_order: int) -> Autoregr
     efficiency = math.log1p(-QUANTILE) ** 2 * (1.0 - QUANTILE) / QUANTILE
     coefficients, variance = schwarz_order(covariance, round(efficiency * sum(map(len, stretches))))
     return AutoregressiveNoise(coefficients, math.sqrt(variance))
+
+
+def _begins(length: int, width: int) -> list[int]:
+    """Where windows begin that cover a stretch and overlap by half at the least."""
+    count = 1 + math.ceil(2 * (length - width) / width)
+    return [int(at) for at in np.linspace(0, length - width, count)]
+
+
+def _expected(count: int) -> float:
+    """Mean of the quantile of so many exponential numbers of mean 1: between two of them in order, of which the k-th
+    has Σ 1/(n − j), j < k (Rényi 1953)."""
+    ordered = np.cumsum(1.0 / np.arange(count, 0, -1))
+    return float(np.quantile(ordered, QUANTILE))
