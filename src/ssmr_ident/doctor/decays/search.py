@@ -12,7 +12,17 @@ from ssmr_ident.core.errors import InputError
 from ssmr_ident.diagnose.noise_at_rest import coloured, colours_at_rest, colours_left
 from ssmr_ident.diagnose.scan import promising, scan
 from ssmr_ident.doctor.decays.formulas import in_other_formulas, parts_of
-from ssmr_ident.doctor.decays.laws import LAST, SCREENED_S, begun_at, exact, loudest, on_whole, released, starts
+from ssmr_ident.doctor.decays.laws import (
+    LAST,
+    SCREENED_S,
+    begun_at,
+    exact,
+    left_known,
+    loudest,
+    on_whole,
+    released,
+    starts,
+)
 from ssmr_ident.doctor.decays.linear import fit_linear
 from ssmr_ident.doctor.decays.linear_members import (
     OFFERED,
@@ -268,9 +278,9 @@ def _laws_beside(search: Search, first: Found, say: Progress) -> None:
 
 def _promising(search: Search, first: Found, laws: list[Member]) -> list[Member]:
     """Laws that a score test beside a fit that follows the recordings speaks for, and those that begin at a threshold,
-    of which it says nothing; all beside a fit that does not follow them, and where another effect is as good as
-    certain, which is then held against all."""
-    if first.fit is None or search.over(first) > NEAR or _something_is_certain(search):
+    of which it says nothing; all beside a fit that does not follow them or has left what is known to do so, and where
+    another effect is as good as certain, which is then held against all."""
+    if first.fit is None or search.over(first) > NEAR or left_known(first.fit) or _something_is_certain(search):
         return laws
     asked = [CATALOGUE[name] for name in dict.fromkeys(m.id for m in laws)]
     found = scan(differentiate(first.fit), [effect for effect in asked if not effect.sudden])
