@@ -74,38 +74,42 @@ def _followed(search: Problem, whole: Problem, fit: Fit, begins: Sequence[int]) 
 
 def decisive(rows: Sequence[Row], share: float, samples: float) -> list[Row]:
     """Rows of a table on a share of the motion on which the decision may rest on all of it, ``samples``: single effects
-    near the best, or that may be its formula; pairs that may stand, and what these are held against."""
+    near the best, or that may be its formula; pairs that may stand, and what these are held against. What a straight
+    line promises a row counts for it, and not against others."""
     foretold = {id(r): _foretold(r, share, samples) for r in rows}
 
-    def evidence(row: Row) -> float:
+    def as_it_is(row: Row) -> float:
+        return foretold[id(row)]
+
+    def at_best(row: Row) -> float:
         return foretold[id(row)] + 0.5 * _promised(row) / share
 
     base = next(r for r in rows if not r.ids)
     single = [r for r in rows if len(r.ids) == 1]
-    law = max((evidence(r) for r in single if not r.generic), default=-math.inf)
+    law = max((as_it_is(r) for r in single if not r.generic), default=-math.inf)
     formula = FORMULA * (base.chi2 - rows[0].chi2)
-    near = [r for r in single if evidence(r) > evidence(rows[0]) - NEAR or r.chi2 < rows[0].chi2 + formula]
+    near = [r for r in single if at_best(r) > as_it_is(rows[0]) - NEAR or r.chi2 < rows[0].chi2 + formula]
 
     def may_stand(row: Row) -> bool:
         against = [held_against(row, which, rows) for which in (0, 1)]
         apart = [without_both(row, own) for own in against]
-        most = [(1.0 - 0.5 * FORMULA) * max(own, key=evidence).chi2 for own in apart if own]
+        most = [(1.0 - 0.5 * FORMULA) * max(own, key=as_it_is).chi2 for own in apart if own]
         return (
             bool(against[0])
-            and evidence(row) > law + SECOND - NEAR
+            and at_best(row) > law + SECOND - NEAR
             and row.chi2 - _promised(row) < min(most, default=math.inf)
         )
 
     named = [r for r in rows if len(r.ids) == 2 and not r.generic]
     standing = [r for r in named if may_stand(r)]
-    best = max(standing, key=evidence, default=base)
-    pairs = [r for r in named if set(r.ids) & set(best.ids) and evidence(r) > evidence(best) - NEAR]
-    for pair in [r for r in standing if evidence(r) > evidence(best) - NEAR]:
+    best = max(standing, key=as_it_is, default=base)
+    pairs = [r for r in named if set(r.ids) & set(best.ids) and at_best(r) > as_it_is(best) - NEAR]
+    for pair in [r for r in standing if at_best(r) > as_it_is(best) - NEAR]:
         pairs.append(pair)
         for which in (0, 1):
-            against = sorted(held_against(pair, which, rows), key=evidence)
+            against = sorted(held_against(pair, which, rows), key=at_best)
             pairs += [*against[-2:], *sorted(against, key=lambda r: r.chi2 - _promised(r))[:1]]
-    top = max((r for r in [*single, *standing] if not r.generic), key=evidence, default=base)
+    top = max((r for r in [*single, *standing] if not r.generic), key=as_it_is, default=base)
     if top.chi2 > rows[0].chi2 + 0.5 * formula:  # whether its effect is there in another formula
         pairs += [r for r in rows if r.generic and len(r.ids) == 2 and r.ids[:1] == top.ids[:1]]
     wanted = {id(r) for r in (base, rows[0], *near, *pairs)}
