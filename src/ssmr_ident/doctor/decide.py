@@ -6,11 +6,25 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from ssmr_ident.doctor.rules import CERTAIN, FOLLOWS, FORMULA, HALVED, OVER_NOISE, SECOND, STATED, TIE, UNEVEN
+import numpy as np
+
+from ssmr_ident.doctor.rules import (
+    BY_CHANCE,
+    CERTAIN,
+    FOLLOWS,
+    FORMULA,
+    HALVED,
+    OVER_NOISE,
+    SECOND,
+    STATED,
+    TIE,
+    UNEVEN,
+)
 from ssmr_ident.doctor.table import FRICTION, UNLISTED, Row, grain
 
 STATIC, MEMORY, GEOMETRY = "static_force", "memory", "geometry"
 MISSING, NOTHING, UNDETERMINED = "missing_physics", "nothing_missing", "undetermined"
+TINY = 1e-300
 
 
 @dataclass(frozen=True)
@@ -138,7 +152,7 @@ def stands(row: Row, rows: Sequence[Row]) -> bool:
     """Whether each of two effects beats the other one in any shape, and halves what that leaves beyond white noise, or
     leaves nothing that goes with the motion or that another model explains, and ``FORMULA`` less; and both any one law,
     by evidence in sizes of what they themselves leave. Neither makes what was kept back worse. Of two functions of one
-    variable any shape of it holds both: there it is beaten by evidence, and the law alone leaves that much more."""
+    variable any shape of it holds both: there it is beaten by evidence, and the law alone leaves more than a formula."""
     if len(row.ids) < 2:
         return True
     found = [held_against(row, k, rows) for k in (0, 1)]
@@ -148,7 +162,8 @@ def stands(row: Row, rows: Sequence[Row]) -> bool:
     for alone in (rows for rows in found if rows):
         if row.log_evidence < max(r.log_evidence for r in alone) + max(SECOND, grain(rows)):
             return False
-        if row.heldout > min((r.heldout for r in alone if math.isfinite(r.heldout)), default=math.inf):
+        foretold = [r for r in alone if math.isfinite(r.heldout)]
+        if foretold and worse(row, min(foretold, key=lambda r: r.heldout)):
             return False
         apart = without_both(row, alone)
         if not apart:
@@ -159,9 +174,34 @@ def stands(row: Row, rows: Sequence[Row]) -> bool:
         explained = HALVED * row.over**2 < min(r.over for r in rows if math.isfinite(r.over)) ** 2
         only_noise = explained and row.left.follows < FOLLOWS and row.left.uneven < UNEVEN
         takes = halved or (only_noise and row.chi2 < (1.0 - FORMULA) * best.chi2)
-        if not takes:
+        if not takes or (_of_one_variable(row) and best.chi2 - row.chi2 < _a_formula(rows)):
             return False
     return True
+
+
+def _a_formula(rows: Sequence[Row]) -> float:
+    """What a law's formula may leave, in chi2."""
+    base = next(r for r in rows if not r.ids)
+    return FORMULA * (base.chi2 - min(r.chi2 for r in rows if math.isfinite(r.chi2)))
+
+
+def _of_one_variable(pair: Row) -> bool:
+    return pair.kinds[0] == pair.kinds[1] and len(set(pair.variables)) == 1 and all(pair.variables)
+
+
+def worse(row: Row, other: Row) -> bool:
+    """Whether a row's error on what was kept back is larger than another one's by more than noise makes of it: two models
+    that differ by d leave sums of squares that differ by chance by 2 d in sizes of the noise."""
+    if not row.heldout > other.heldout:
+        return False
+    if row.kept is None or other.kept is None:
+        return True
+    more, square = 0.0, 0.0
+    for own, less in zip(row.kept.residuals, other.kept.residuals, strict=True):
+        size = np.sqrt(np.mean(less**2, axis=0)) + TINY
+        more += float(np.sum((own / size) ** 2 - (less / size) ** 2))
+        square += float(np.sum(((own - less) / size) ** 2))
+    return more > BY_CHANCE * 2.0 * math.sqrt(square)
 
 
 def held_against(pair: Row, which: int, rows: Sequence[Row]) -> list[Row]:
@@ -188,9 +228,8 @@ def held_against(pair: Row, which: int, rows: Sequence[Row]) -> list[Row]:
 
 def without_both(pair: Row, rows: Sequence[Row]) -> list[Row]:
     """Rows that cannot hold both of two listed effects: of functions of one variable, any shape of it does."""
-    of_one = pair.kinds[0] == pair.kinds[1] and len(set(pair.variables)) == 1 and all(pair.variables)
     listed = not pair.generic and UNLISTED not in pair.ids
-    return [r for r in rows if not (r.generic and of_one and listed)]
+    return [r for r in rows if not (r.generic and _of_one_variable(pair) and listed)]
 
 
 def kind_shares(rows: Sequence[Row], base: Row) -> tuple[Share, ...]:

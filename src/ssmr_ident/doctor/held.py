@@ -48,6 +48,22 @@ def interleaved(problem: Problem) -> tuple[Problem, Problem | None]:
     return _of(problem, fitted), _of(problem, kept)
 
 
+def with_motion(kept: Problem, fitted: Problem) -> Problem | None:
+    """What moves above the noise that a fit of other recordings left, up to where it comes to rest; None where nothing
+    does: there is nothing to foretell."""
+    density: dict[str, float] = {}
+    for piece in fitted.pieces:
+        for name, white in zip(piece.channels, piece.white / math.sqrt(piece.rate), strict=True):
+            density[name] = max(density.get(name, 0.0), float(white))
+    parts = []
+    for piece in kept.pieces:
+        known = np.array([density[name] * math.sqrt(piece.rate) for name in piece.channels])
+        span = len(piece.y) if piece.driven else moving(replace(piece, white=known))
+        if span:
+            parts.append(piece if span == len(piece.y) else cut(piece, 0, span))
+    return _of(kept, parts) if parts else None
+
+
 def _of(problem: Problem, pieces: list[Piece]) -> Problem:
     noise = dict(zip((id(p.white) for p in problem.pieces), problem.noises, strict=True))
     return replace(problem, pieces=tuple(pieces), noises=tuple(noise[id(p.white)] for p in pieces))

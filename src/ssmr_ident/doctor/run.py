@@ -17,7 +17,7 @@ from ssmr_ident.diagnose.diagnosis import Diagnosis
 from ssmr_ident.diagnose.setup import keep_back
 from ssmr_ident.doctor.decide import MISSING, Decision, decide
 from ssmr_ident.doctor.fitted import SHORT
-from ssmr_ident.doctor.held import held_fit, interleaved
+from ssmr_ident.doctor.held import held_fit, interleaved, with_motion
 from ssmr_ident.doctor.left import left
 from ssmr_ident.doctor.networks import also_at
 from ssmr_ident.doctor.result import Examined, answer, errors, predictions
@@ -96,6 +96,10 @@ def examined(campaign: Campaign, known: ParameterSet, progress: Progress | None,
     if alone and any("acceleration_2" in m.recording for m in campaign.measurements):
         notes.append("acceleration_2 was not compared: a rig of one mass moves as one, a network has several bodies")
     search = searched(fitted, budget, progress)
+    if heldout and kept is not None:
+        kept = with_motion(kept, search.problem)
+        if kept is None:
+            notes.append(f"nothing moves in {', '.join(m.name for m in heldout)}: no error on unseen data is given")
     horizon = search.problem.horizon
     if math.isfinite(horizon):
         kept = in_stretches(kept, horizon) if kept is not None else None

@@ -238,13 +238,13 @@ def pieces_of(
         y = y - foot
     band = _within(measurement, rate)
     found = []
+    rounded = np.array([rounding(column) for column in y.T])  # by all of it: a part that stands still holds one value
     driven = bool(drive_name) or course is not None
     for first, after in stretches(y, rate, frequency) if not driven else [(0, len(y))]:
         part, force, block = y[first:after], drive[first:after], blocks_of(rate, FINEST * frequency, band)
         judged = [_single(column) for column in part.T]
         counts = ~np.column_stack([wild for wild, _ in judged])
         part = np.where(counts, part, np.column_stack([smooth for _, smooth in judged]))
-        least = np.array([rounding(column) for column in part.T]) / math.sqrt(block)
         if math.isfinite(bandwidth_hz):
             slow = np.flatnonzero(orders == 2).tolist()
             part[:, slow] = before_low_pass(part[:, slow], rate, bandwidth_hz)
@@ -262,7 +262,7 @@ def pieces_of(
             at = 0.5 * (block - 1) + np.arange(len(averaged) * every + 1) * (block / every)
             given = given_of(course, at)
         fine = _between(force, block, every, len(averaged)) if driven else np.zeros(2)
-        white = np.maximum(white_of(averaged, rate / block, band), least)
+        white = np.maximum(white_of(averaged, rate / block, band), rounded / math.sqrt(block))
         middle = even.start + (first + np.arange(len(averaged)) * block + 0.5 * (block - 1)) / rate
         found.append(
             Piece(
