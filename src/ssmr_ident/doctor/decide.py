@@ -152,7 +152,7 @@ def stands(row: Row, rows: Sequence[Row]) -> bool:
     """Whether each of two effects beats the other one in any shape, and halves what that leaves beyond white noise, or
     leaves nothing that goes with the motion or that another model explains, and ``FORMULA`` less; and both any one law,
     by evidence in sizes of what they themselves leave. Neither makes what was kept back worse. Of two functions of one
-    variable any shape of it holds both: there it is beaten by evidence, and the law alone leaves more than a formula."""
+    variable any shape of it holds both: it is beaten by evidence, and the law alone leaves more than a formula."""
     if len(row.ids) < 2:
         return True
     found = [held_against(row, k, rows) for k in (0, 1)]
@@ -190,8 +190,8 @@ def _of_one_variable(pair: Row) -> bool:
 
 
 def worse(row: Row, other: Row) -> bool:
-    """Whether a row's error on what was kept back is larger than another one's by more than noise makes of it: two models
-    that differ by d leave sums of squares that differ by chance by 2 d in sizes of the noise."""
+    """Whether a row's error on what was kept back is larger than another one's by more than noise makes of it: of two
+    models that differ by d, sums of squares differ by 2 d by chance, in sizes of the noise."""
     if not row.heldout > other.heldout:
         return False
     if row.kept is None or other.kept is None:

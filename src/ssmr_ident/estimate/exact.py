@@ -23,8 +23,8 @@ BURST = 1e300
 """Sum of squares, or of slopes, from which a simulation has burst: sums of them would overflow."""
 
 REACH = 1.5
-"""Of one step of a logarithm, at the most: beyond a factor of four or five a straight line says nothing, and a parameter
-that the data hardly see would keep all others from moving."""
+"""Of one step of a logarithm, at the most: beyond a factor of four or five a straight line says nothing, and what the
+data hardly see would keep all else from moving."""
 
 LEAST_GAIN, LEAST_SHARE = 0.02, 5e-6
 """Of the cost, a step that lowers it by less than their sum is the last: a hundredth of what a decision looks at."""
