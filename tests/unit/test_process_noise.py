@@ -29,7 +29,7 @@ def noise(share: float, seed: int, count: int = 8000) -> np.ndarray:
 
 def test_density_is_the_sum_of_both() -> None:
     share = 0.3
-    found = process_noise(noise(share, 1, 40_000), *accelerance(), 12)
+    found = process_noise([noise(share, 1, 40_000)], *accelerance(), 12)
     frequency = np.array([2.0, 9.5, 10.0, 10.5, 60.0, 150.0])
     z = np.exp(2j * math.pi * frequency / RATE)
     numerator, denominator = accelerance()
@@ -44,7 +44,7 @@ def test_a_line_at_resonance_is_counted_right() -> None:
     gains: dict[str, list[float]] = {"with": [], "without": []}
     for seed in range(40):
         samples = noise(0.3, seed)
-        for name, model in (("with", process_noise(samples, *accelerance(), 12)), ("without", fit_noise(samples, 12))):
+        for name, model in (("with", process_noise([samples], *accelerance(), 12)), ("without", fit_noise(samples, 12))):
             white, columns = model.filtered(samples), model.filtered(motion)
             left = white - columns @ np.linalg.lstsq(columns, white, rcond=None)[0]
             gains[name].append(float(white @ white - left @ left))
@@ -53,6 +53,6 @@ def test_a_line_at_resonance_is_counted_right() -> None:
 
 
 def test_white_noise_stays_white() -> None:
-    found = process_noise(noise(0.0, 3), *accelerance(), 12)
+    found = process_noise([noise(0.0, 3)], *accelerance(), 12)
     assert found.order == 0
     assert len(found.moving_average) == 1

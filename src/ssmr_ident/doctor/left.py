@@ -6,21 +6,21 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.signal import lfilter
 from scipy.stats import spearmanr
 
 from ssmr_ident.core.shown import Shown
 from ssmr_ident.estimate.node import matrices
-from ssmr_ident.estimate.noise import LARGEST_ORDER
 from ssmr_ident.estimate.pieces import Piece
 from ssmr_ident.estimate.values import Fit, Problem
 from ssmr_ident.signals.band import Band
-from ssmr_ident.signals.noise import fit_noise
 
 Array = np.ndarray
 
 PERIODS = 2.0
-"""Of the motion, that a window lasts."""
+"""Of the motion, that a window lasts where that leaves twice ``FEWEST``."""
+
+NARROWEST = 16
+"""Samples of a window at the least."""
 
 FEWEST = 10
 """Windows below which ranks say nothing, and what is left is taken to follow the motion."""
@@ -48,7 +48,7 @@ class Left:
 
 
 def left(problem: Problem, fit: Fit) -> Left:
-    """Residuals of each channel whitened by one filter for all its recordings, in windows of ``PERIODS``."""
+    """Residuals of each channel, whitened as its noise is, in windows of ``PERIODS``."""
     found = [_of_channel(problem, fit, name) for name in problem.pieces[0].channels]
     uneven = max(found, key=lambda own: own.uneven)
     return Left(max(own.follows for own in found), uneven.uneven, uneven.loudest)
@@ -56,15 +56,15 @@ def left(problem: Problem, fit: Fit) -> Left:
 
 def _of_channel(problem: Problem, fit: Fit, name: str) -> Left:
     chosen = [(p, *_counted(p, r, name)) for p, r in zip(problem.pieces, fit.residuals, strict=True)]
-    longest = max((rest for _, rest, _ in chosen), key=len)
-    whitening = fit_noise(longest, LARGEST_ORDER).filter
+    noises = [own[p.channels.index(name)] for p, own in zip(problem.pieces, problem.noises, strict=True)]
     overall = float(np.sqrt(np.mean([np.mean(rest**2) for _, rest, _ in chosen])))
     windows: list[tuple[float, float, str]] = []
-    width = 16
-    for piece, rest, model in chosen:
-        width = max(16, round(PERIODS * piece.counted_rate / problem.frequency))
-        white = lfilter(whitening, [1.0], rest)
-        for first in range(len(whitening) - 1, len(rest) - width + 1, width):
+    width, total = NARROWEST, sum(len(rest) for _, rest, _ in chosen)
+    for (piece, rest, model), noise in zip(chosen, noises, strict=True):
+        long = round(PERIODS * piece.counted_rate / problem.frequency)
+        width = max(NARROWEST, min(long, total // (2 * FEWEST)))
+        white = noise.filtered(rest)
+        for first in range(noise.order, len(rest) - width + 1, width):
             own = slice(first, first + width)
             windows.append((float(model[own].std()), float(np.sqrt(np.mean(white[own] ** 2))), piece.name))
     # where nothing moves, a converter's steps show no noise either

@@ -54,16 +54,15 @@ def own_noise(problem: Problem, fit: Fit) -> tuple[tuple[AutoregressiveNoise, ..
     for recording in recordings:
         own = [k for k, p in enumerate(problem.pieces) if p.recording == recording]
         spent = round(fit.dof / len(recordings)) + 2 * len(own)
-        columns = np.vstack(
-            [problem.pieces[k].counted(fit.residuals[k] - fit.residuals[k].mean(axis=0)) for k in own]
-        ).T
+        parts = [problem.pieces[k].counted(fit.residuals[k]) for k in own]
+        channels = range(parts[0].shape[1])
         if problem.pieces[own[0]].band is not None:  # frequencies there are other ones than the rig's
-            found[recording] = tuple(fit_noise(column, LARGEST_ORDER, spent) for column in columns)
+            whole = np.vstack([part - part.mean(axis=0) for part in parts])
+            found[recording] = tuple(fit_noise(whole[:, c], LARGEST_ORDER, spent) for c in channels)
             continue
         systems = from_force(problem.pieces[own[0]], fit)
         found[recording] = tuple(
-            process_noise(column, *system, LARGEST_ORDER, spent)
-            for column, system in zip(columns, systems, strict=True)
+            process_noise([part[:, c] for part in parts], *systems[c], LARGEST_ORDER, spent) for c in channels
         )
     return tuple(found[p.recording] for p in problem.pieces)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from scipy.optimize import minimize_scalar
@@ -17,7 +18,7 @@ RATIOS = (-9.0, 14.0)
 
 
 def process_noise(
-    samples: Array, numerator: Array, denominator: Array, largest_order: int = 24, spent: int = 0
+    parts: Sequence[Array], numerator: Array, denominator: Array, largest_order: int = 24, spent: int = 0
 ) -> AutoregressiveNoise:
     """Noise of a channel of which a part comes through a linear system.
 
@@ -26,8 +27,8 @@ def process_noise(
 
     Parameters
     ----------
-    samples : (n,) float
-        What a fit leaves; its mean is taken as zero.
+    parts : sequence of (n,) float
+        What a fit leaves, each part from a start of its own.
     numerator, denominator : (k + 1,) float
         Of the system from disturbance to channel, in falling powers of z; the denominator's first is 1.
     largest_order : int
@@ -45,8 +46,9 @@ def process_noise(
     The ratio of the two densities by Whittle's likelihood, the minimum-phase factor of their sum, and an autoregressive
     model of what that leaves. Source: Priestley, Spectral Analysis and Time Series (1981), sections 6.1.5 and 10.1.
     """
-    plain = fit_noise(samples, largest_order, spent)
-    frequency, power = periodogram(samples, detrend=False)
+    whole = np.concatenate([part - part.mean() for part in parts])
+    plain = fit_noise(whole, largest_order, spent)
+    frequency, power = periodogram(max(parts, key=len), detrend="constant")
     z = np.exp(2j * math.pi * frequency[1:])
     shape = np.abs(np.polyval(numerator, z) / np.polyval(denominator, z)) ** 2
     peak, power = float(shape.max()), power[1:]
@@ -59,8 +61,10 @@ def process_noise(
 
     ratio = math.exp(minimize_scalar(deviance, bounds=RATIOS, method="bounded").x) / peak
     moving = minimum_phase(denominator, numerator, ratio)
-    rest = fit_noise(lfilter(denominator, moving, samples), largest_order, spent + 1)
-    count = len(samples)
+    # from its start what adds up in a part has nothing to be off by; off its mean it would begin with a blow
+    filtered = np.concatenate([lfilter(denominator, moving, part) for part in parts])
+    rest = fit_noise(filtered, largest_order, spent + 1)
+    count = len(whole)
     gained = 2.0 * count * math.log(plain.std / rest.std) + (plain.order - rest.order - 1) * math.log(count)
     if not gained > 0.0:
         return plain
