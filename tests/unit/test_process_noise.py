@@ -44,7 +44,10 @@ def test_a_line_at_resonance_is_counted_right() -> None:
     gains: dict[str, list[float]] = {"with": [], "without": []}
     for seed in range(40):
         samples = noise(0.3, seed)
-        for name, model in (("with", process_noise([samples], *accelerance(), 12)), ("without", fit_noise(samples, 12))):
+        for name, model in (
+            ("with", process_noise([samples], *accelerance(), 12)),
+            ("without", fit_noise(samples, 12)),
+        ):
             white, columns = model.filtered(samples), model.filtered(motion)
             left = white - columns @ np.linalg.lstsq(columns, white, rcond=None)[0]
             gains[name].append(float(white @ white - left @ left))

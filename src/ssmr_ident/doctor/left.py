@@ -64,7 +64,7 @@ def _of_channel(problem: Problem, fit: Fit, name: str) -> Left:
         long = round(PERIODS * piece.counted_rate / problem.frequency)
         width = max(NARROWEST, min(long, total // (2 * FEWEST)))
         white = noise.filtered(rest)
-        for first in range(noise.order, len(rest) - width + 1, width):
+        for first in range(problem.passed_over(piece) + noise.order, len(rest) - width + 1, width):
             own = slice(first, first + width)
             windows.append((float(model[own].std()), float(np.sqrt(np.mean(white[own] ** 2))), piece.name))
     # where nothing moves, a converter's steps show no noise either
@@ -81,7 +81,7 @@ def _of_channel(problem: Problem, fit: Fit, name: str) -> Left:
 def _counted(piece: Piece, rest: Array, name: str) -> tuple[Array, Array]:
     """What counts of what is left in a channel, and of what the model says there."""
     at = piece.channels.index(name)
-    both = piece.counted(np.stack([rest - rest.mean(axis=0), rest + piece.y], axis=2))
+    both = piece.counted(np.stack([rest, rest + piece.y], axis=2))
     return both[:, at, 0], both[:, at, 1]
 
 

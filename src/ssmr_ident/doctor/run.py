@@ -26,6 +26,7 @@ from ssmr_ident.doctor.search import searched
 from ssmr_ident.doctor.table import Row
 from ssmr_ident.estimate.exact import polish
 from ssmr_ident.estimate.finer import finer
+from ssmr_ident.estimate.held_force import held
 from ssmr_ident.estimate.network import network_problem
 from ssmr_ident.estimate.problem import problem_of
 from ssmr_ident.estimate.stretches import in_stretches
@@ -100,6 +101,9 @@ def examined(campaign: Campaign, known: ParameterSet, progress: Progress | None,
     if alone and any("acceleration_2" in m.recording for m in campaign.measurements):
         notes.append("acceleration_2 was not compared: a rig of one mass moves as one, a network has several bodies")
     search = searched(fitted, budget, progress)
+    if search.problem.held:
+        kept = held(kept) if kept is not None else None
+        notes.append("the recordings follow a force that is held from one value of the log to the next: it is taken so")
     if heldout and kept is not None:
         kept = with_motion(kept, search.problem)
         if kept is None:

@@ -25,8 +25,9 @@ from ssmr_ident.doctor.second import FULL_KINDS, exchanged, in_other_formulas, p
 from ssmr_ident.estimate.baseline import baseline_fit, under_own_noise
 from ssmr_ident.estimate.coarser import coarser
 from ssmr_ident.estimate.exact import polish
+from ssmr_ident.estimate.held_force import held, is_held
 from ssmr_ident.estimate.network import paths_of
-from ssmr_ident.estimate.noise import left_white, own_noise
+from ssmr_ident.estimate.noise import LARGEST_ORDER, left_white, own_noise
 from ssmr_ident.estimate.stretches import sampled
 from ssmr_ident.estimate.values import Problem, Start, with_noises
 from ssmr_ident.physics.network import ONE
@@ -49,7 +50,7 @@ def searched(problem: Problem, budget: float = math.inf, progress: Progress | No
     say("fitting the baseline", 0, 1)
     base = baseline_fit(problem)
     if drifts(problem):
-        problem, base = under_own_noise(problem, base)
+        problem, base = under_own_noise(problem, base, 0)
     search = Search(problem, time.monotonic() + budget)
     search.add(base)
     paths = paths_of(problem, base.node, base.point)
@@ -69,7 +70,7 @@ def searched(problem: Problem, budget: float = math.inf, progress: Progress | No
     if alone:
         shapes_again(search)
     offered_back(search)
-    search = _with_own_noise(search) if drifts(problem) else _with_white(search)
+    search = _with_own_noise(search, 0) if drifts(problem) else _with_white(search)
     named_along(search, say)
     offered_back(search)
     search = _with_own_noise(search)
@@ -82,8 +83,12 @@ def searched(problem: Problem, budget: float = math.inf, progress: Progress | No
         in_other_formulas(search, say)
         offered_back(search)
     if few is not whole:
-        return on_every_sample(search, whole, begins, share, say)
-    ended(search)
+        search = on_every_sample(search, whole, begins, share, say)
+    else:
+        ended(search)
+    named_best = next((r.fit for r in search.rows() if r.ids and not r.generic), None)
+    if named_best is not None and not whole.held and is_held(search.problem, named_best) and not search.late:
+        return searched(held(whole), search.until - time.monotonic(), progress)
     return search
 
 
@@ -102,11 +107,11 @@ def _with_white(search: Search) -> Search:
     return replace(search, problem=problem, fits=[again(problem, f, SHORT) for f in search.fits], offered=set())
 
 
-def _with_own_noise(search: Search) -> Search:
+def _with_own_noise(search: Search, largest_order: int = LARGEST_ORDER) -> Search:
     """Everything again under the noise that the best fit leaves, from where it was."""
     best = search.rows()[0].fit
     assert best is not None
-    problem = with_noises(search.problem, own_noise(search.problem, best))
+    problem = with_noises(search.problem, own_noise(search.problem, best, largest_order))
     near = FAR_OFF * best.cost
     fits = [
         polish(problem, f.node, Start(f.point, f.nuisances), SHORT if f.cost < near or not f.node.members else 0)

@@ -150,7 +150,7 @@ def _beside(search: Search, say: Progress, first: Fit) -> bool:
         for fit in sorted(short, key=lambda f: f.cost)[:2]
     ]
     if not search.late:
-        named_along(search, say, [law], [*full, *shaped, first])
+        named_along(search, say, [law], [f for f in (*full, *shaped, first) if law in f.node.members])
     return True
 
 

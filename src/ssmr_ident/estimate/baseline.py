@@ -8,7 +8,7 @@ from ssmr_ident.estimate.coarser import coarser
 from ssmr_ident.estimate.exact import polish
 from ssmr_ident.estimate.network import paths_of
 from ssmr_ident.estimate.node import Node
-from ssmr_ident.estimate.noise import left_white, own_noise
+from ssmr_ident.estimate.noise import LARGEST_ORDER, left_white, own_noise
 from ssmr_ident.estimate.regression import regressed
 from ssmr_ident.estimate.shooting import shot
 from ssmr_ident.estimate.stretches import sampled
@@ -49,11 +49,11 @@ def on_every_sample(problem: Problem, fit: Fit, begins: tuple[int, ...]) -> Fit:
     return polish(problem, fit.node, Start(fit.point, tuple(fit.nuisances[k] for k in begins)), STEPS)
 
 
-def under_own_noise(problem: Problem, fit: Fit) -> tuple[Problem, Fit]:
+def under_own_noise(problem: Problem, fit: Fit, largest_order: int = LARGEST_ORDER) -> tuple[Problem, Fit]:
     """The problem under the noise that its fit leaves, and that fit."""
     own = problem
     for _ in range(IN_TURN):
         white = left_white(problem, fit)
-        own = with_noises(white, own_noise(white, fit))
+        own = with_noises(white, own_noise(white, fit, largest_order))
         fit = polish(own, fit.node, Start(fit.point, fit.nuisances), STEPS)
     return own, fit

@@ -46,9 +46,11 @@ def first_white(pieces: Sequence[Piece]) -> tuple[Piece, ...]:
     return tuple(found)
 
 
-def own_noise(problem: Problem, fit: Fit) -> tuple[tuple[AutoregressiveNoise, ...], ...]:
+def own_noise(
+    problem: Problem, fit: Fit, largest_order: int = LARGEST_ORDER
+) -> tuple[tuple[AutoregressiveNoise, ...], ...]:
     """What a fit leaves, recording by recording and channel by channel, as noise: its own, and what comes
-    through the rig from a force that was measured with noise, or not at all."""
+    through the rig from a force that was measured with noise, or not at all; both white where ``largest_order`` is 0."""
     found: dict[int, tuple[AutoregressiveNoise, ...]] = {}
     recordings = {p.recording for p in problem.pieces}
     for recording in recordings:
@@ -58,11 +60,11 @@ def own_noise(problem: Problem, fit: Fit) -> tuple[tuple[AutoregressiveNoise, ..
         channels = range(parts[0].shape[1])
         if problem.pieces[own[0]].band is not None:  # frequencies there are other ones than the rig's
             whole = np.vstack([part - part.mean(axis=0) for part in parts])
-            found[recording] = tuple(fit_noise(whole[:, c], LARGEST_ORDER, spent) for c in channels)
+            found[recording] = tuple(fit_noise(whole[:, c], largest_order, spent) for c in channels)
             continue
         systems = from_force(problem.pieces[own[0]], fit)
         found[recording] = tuple(
-            process_noise([part[:, c] for part in parts], *systems[c], LARGEST_ORDER, spent) for c in channels
+            process_noise([part[:, c] for part in parts], *systems[c], largest_order, spent) for c in channels
         )
     return tuple(found[p.recording] for p in problem.pieces)
 

@@ -116,6 +116,8 @@ class Piece:
         In which alone it counts.
     motor : Given or None
         What a motor is given, whose torque acts beside the drive.
+    late : float [s]
+        How much later a force acts that is held from one value of the log to the next.
     """
 
     name: str
@@ -137,6 +139,7 @@ class Piece:
     into: int = 0
     band: Band | None = None
     motor: Given | None = None
+    late: float = 0.0
 
     def counted(self, columns: Array, skipped: int = 0) -> Array:
         """What counts of samples as long as ``y``, (n, c, …) to (m, c, …): all but single wild ones and those skipped
@@ -285,6 +288,7 @@ def pieces_of(
                 into,
                 band,
                 given,
+                0.5 / rate if drive_name and drive_name not in FEET else 0.0,
             )
         )
     return tuple(found)

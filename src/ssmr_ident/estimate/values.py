@@ -47,6 +47,8 @@ class Problem:
         Periods after which a start no longer tells where the motion is; ``inf`` unless it is chaotic.
     layout : Layout
         Bodies and springs.
+    held : bool
+        Whether the force is taken to be held from one value of the log to the next; else it goes in straight lines.
     """
 
     pieces: tuple[Piece, ...]
@@ -58,6 +60,7 @@ class Problem:
     fastest: float = 0.0
     horizon: float = math.inf
     layout: Layout = ONE
+    held: bool = False
 
     @property
     def speed(self) -> float:

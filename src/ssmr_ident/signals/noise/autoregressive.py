@@ -139,18 +139,36 @@ def fit_noise(samples: Array, largest_order: int = 24, spent: int = 0) -> Autore
 
     Notes
     -----
-    By the biased autocovariance, whose filter is always stable.
+    Burg's reflections, of the errors of prediction forwards and backwards: the filter is always stable, and nothing
+    leaks from where noise is strong to where it is weak, as it does through an autocovariance of few samples. Source:
+    Percival and Walden, Spectral Analysis for Physical Applications (1993), section 9.5.
     """
     count = len(samples)
-    largest_order = max(0, min(largest_order, count // 10))
-    size = 1 << (2 * count - 1).bit_length()
-    spectrum = np.fft.rfft(samples, size)
-    covariance = np.fft.irfft(np.abs(spectrum) ** 2, size)[: largest_order + 1] / count
-    if covariance[0] <= 0:
+    variance = float(np.mean(samples**2))
+    if variance <= 0:
         return AutoregressiveNoise(np.ones(1), 1e-300)
-    coefficients, variance = schwarz_order(covariance, count)
+    forward, backward, coefficients = samples, samples, np.ones(1)
+    best, best_score = (coefficients, variance), count * np.log(variance)
+    for order in range(1, max(0, min(largest_order, count // 10)) + 1):
+        ahead, behind = forward[1:], backward[:-1]
+        reflection = -2.0 * float(ahead @ behind) / max(float(ahead @ ahead + behind @ behind), 1e-300)
+        forward, backward = ahead + reflection * behind, behind + reflection * ahead
+        coefficients = extended(coefficients, reflection)
+        variance *= 1.0 - reflection**2
+        if variance <= 0.0:
+            break
+        score = count * np.log(variance) + order * np.log(count)
+        if score < best_score:
+            best, best_score = (coefficients, variance), score
+    coefficients, variance = best
     freedom = max(count - spent - len(coefficients) + 1, 1)
     return AutoregressiveNoise(coefficients, float(np.sqrt(variance * count / freedom)))
+
+
+def extended(coefficients: Array, reflection: float) -> Array:
+    """Levinson's step: a prediction filter of one order more."""
+    longer = np.append(coefficients, 0.0)
+    return np.asarray(longer + reflection * longer[::-1])
 
 
 def schwarz_order(covariance: Array, count: int) -> tuple[Array, float]:
@@ -171,8 +189,7 @@ def schwarz_order(covariance: Array, count: int) -> tuple[Array, float]:
     coefficients, variance = np.ones(1), float(covariance[0])
     for order in range(1, len(covariance)):
         reflection = -float(coefficients @ covariance[order:0:-1]) / variance
-        extended = np.append(coefficients, 0.0)
-        coefficients = extended + reflection * extended[::-1]
+        coefficients = extended(coefficients, reflection)
         variance *= 1.0 - reflection**2
         if variance <= 1e-14 * covariance[0]:
             break
