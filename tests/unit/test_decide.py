@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
-from ssmr_ident.doctor.decide import MISSING, NOTHING, UNDETERMINED, decide
+import numpy as np
+
+from ssmr_ident.doctor.decide import MISSING, NOTHING, UNDETERMINED, decide, worse
 from ssmr_ident.doctor.laws import best_shape
 from ssmr_ident.doctor.left import Left
 from ssmr_ident.doctor.table import Row
+from ssmr_ident.estimate.values import Fit
 
 SAMPLES = 5000.0
 
@@ -228,3 +232,39 @@ def test_a_second_effect_that_makes_what_was_kept_back_worse_is_not_named() -> N
     pair = row("dry_friction sensor_bandwidth", "static_force sensor_chain", 22_400.0, 5000.0, 1.0)
     assert decide([BASE, law, replace(pair, heldout=1.85)]).chosen is law
     assert decide([BASE, law, replace(pair, heldout=1.75)]).chosen.ids == pair.ids
+
+
+def test_friction_that_remembers_is_a_function_of_speed_beside_a_spring() -> None:
+    """Any shape over deflection and speed holds both laws, whatever the friction's formula."""
+    base = row("", "", 0.0, 5e6, 100.0)
+    sine = row("nonlinear_stiffness", "static_force", 2_400_000.0, 200_000.0, 20.0, variables=("x",))
+    over_x = row("unlisted", "static_force", 2_410_000.0, 180_000.0, 19.0, generic=True, variables=("x",))
+    over_v = row("unlisted", "static_force", 50_000.0, 4.9e6, 99.0, generic=True, variables=("v",))
+    shape = row("unlisted", "static_force", 2_496_000.0, 8_000.0, 4.0, generic=True, variables=("",))
+    pair = row("nonlinear_stiffness dry_friction", "static_force memory", 2_495_000.0, 10_000.0, 4.5,
+               variables=("x", ""))  # fmt: skip
+    found = decide([base, sine, over_x, over_v, shape, pair])
+    assert found.chosen is pair
+    assert found.listed
+
+
+def kept(*residuals: float) -> Fit:
+    return SimpleNamespace(residuals=(np.array(residuals)[:, None],))  # type: ignore[return-value]
+
+
+def test_an_error_that_is_larger_by_chance_is_none() -> None:
+    noise = np.random.default_rng(3).standard_normal(4000)
+    off = 0.02 * np.sin(np.arange(4000) / 30.0)
+    law = replace(BASE, heldout=1.0, kept=kept(*noise))
+    assert not worse(replace(BASE, heldout=1.0002, kept=kept(*(noise + off))), law)
+    assert worse(replace(BASE, heldout=1.1, kept=kept(*(noise + 10.0 * off))), law)
+    assert not worse(replace(BASE, heldout=0.9, kept=kept(*(0.9 * noise))), law)
+
+
+def test_two_functions_of_one_variable_leave_more_than_a_formula_each() -> None:
+    base = row("", "", 0.0, 200_000.0, 10.0)
+    law = row("quadratic_damping", "static_force", 97_300.0, 5_400.0, 1.04, variables=("v",))
+    shape = row("unlisted", "static_force", 97_400.0, 5_010.0, 1.0, generic=True, variables=("v",))
+    pair = row("quadratic_damping dry_friction", "static_force static_force", 97_480.0, 5_000.0, 1.0,
+               variables=("v", "v"))  # fmt: skip
+    assert decide([base, law, shape, pair]).chosen is law

@@ -12,7 +12,9 @@ from ssmr_ident.doctor.left import Beyond, Left, beyond, left, wandering
 from ssmr_ident.doctor.rules import FOLLOWS, UNEVEN
 from ssmr_ident.estimate.network import bare
 from ssmr_ident.estimate.pieces import Piece
+from ssmr_ident.estimate.values import Problem
 from ssmr_ident.physics.network import ONE, Network
+from ssmr_ident.signals.noise import AutoregressiveNoise
 
 RATE, HZ = 200.0, 4.0
 
@@ -26,7 +28,8 @@ def asked(seconds: float, rest_of, ask=left) -> Left:
         "log.csv", 0, ("position",), np.zeros(1, int), time, motion[:, None] - rest, np.ones_like(rest, bool),
         np.zeros(2), False, False, 1.0 / RATE, 1, np.array([0.01]),
     )  # fmt: skip
-    return ask(SimpleNamespace(pieces=(piece,), frequency=HZ), SimpleNamespace(residuals=(rest,)))  # type: ignore[arg-type]
+    problem = Problem((piece,), (), ((AutoregressiveNoise(np.ones(1), 0.01),),), HZ, 1.0)
+    return ask(problem, SimpleNamespace(residuals=(rest,)))  # type: ignore[arg-type]
 
 
 def far_off(hz: float) -> Beyond | None:

@@ -209,8 +209,8 @@ def held_against(pair: Row, which: int, rows: Sequence[Row]) -> list[Row]:
     of the same kind, of its own variable. Dry friction has two kinds: a steep function of speed, and a memory of
     micrometres."""
     kind, law = pair.kinds[which], pair.ids[which]
-    rubs = FRICTION in pair.ids and STATIC in pair.kinds
-    alike = (pair.kinds[0] == pair.kinds[1] or rubs) and not pair.generic
+    beside_friction = [k for i, k in zip(pair.ids, pair.kinds, strict=True) if i != FRICTION]
+    alike = (pair.kinds[0] == pair.kinds[1] or beside_friction == [STATIC]) and not pair.generic
     own = pair.variables[which] if alike and pair.variables else ""
 
     def shape(r: Row, i: int) -> bool:

@@ -17,10 +17,7 @@ from ssmr_ident.signals.band import Band
 Array = np.ndarray
 
 PERIODS = 2.0
-"""Of the motion, that a window lasts where that leaves twice ``FEWEST``."""
-
-NARROWEST = 16
-"""Samples of a window at the least."""
+"""Of the fastest motion that is expected, that a window lasts."""
 
 FEWEST = 10
 """Windows below which ranks say nothing, and what is left is taken to follow the motion."""
@@ -59,10 +56,9 @@ def _of_channel(problem: Problem, fit: Fit, name: str) -> Left:
     noises = [own[p.channels.index(name)] for p, own in zip(problem.pieces, problem.noises, strict=True)]
     overall = float(np.sqrt(np.mean([np.mean(rest**2) for _, rest, _ in chosen])))
     windows: list[tuple[float, float, str]] = []
-    width, total = NARROWEST, sum(len(rest) for _, rest, _ in chosen)
+    width = 16
     for (piece, rest, model), noise in zip(chosen, noises, strict=True):
-        long = round(PERIODS * piece.counted_rate / problem.frequency)
-        width = max(NARROWEST, min(long, total // (2 * FEWEST)))
+        width = max(16, round(PERIODS * piece.counted_rate / max(problem.frequency, problem.fastest)))
         white = noise.filtered(rest)
         for first in range(problem.passed_over(piece) + noise.order, len(rest) - width + 1, width):
             own = slice(first, first + width)

@@ -22,9 +22,15 @@ LEAST_CURVATURE = 1e-12
 BURST = 1e300
 """Sum of squares, or of slopes, from which a simulation has burst: sums of them would overflow."""
 
-REACH = 1.5
-"""Of one step of a logarithm, at the most: beyond a factor of four or five a straight line says nothing, and what the
-data hardly see would keep all else from moving."""
+DAMPED = 1e-3
+"""Share of the curvature by which a step is damped at first."""
+
+TRIES = 6
+"""Of a step, each four times as damped."""
+
+REACH = 3.0
+"""Of a logarithm in one step: what wants to go beyond a factor of twenty is hardly seen by the data, and stays where it
+would keep all else from moving."""
 
 LEAST_GAIN, LEAST_SHARE = 0.02, 5e-6
 """Of the cost, a step that lowers it by less than their sum is the last: a hundredth of what a decision looks at."""
@@ -112,8 +118,8 @@ def polish(problem: Problem, node: Node, start: Start, steps: int = 30, freeze: 
     for k, (piece, own) in enumerate(zip(problem.pieces, begun, strict=True)):
         local[k, : counts[k]], scales[k, : counts[k]] = own, nuisance_scales(problem, node, piece)
     mean, precision = priors(node)
-    reach = np.array([REACH if c.log else math.inf for c in node.coordinates])
-    reach[list(freeze)] = 0.0
+    free = np.ones(len(point), dtype=bool)
+    free[list(freeze)] = False
 
     def total(chi2: float, at: Array, own: Array) -> float:
         return chi2 + float(np.sum(precision * (at - mean) ** 2)) + float(np.sum((own / scales) ** 2))
@@ -122,33 +128,41 @@ def polish(problem: Problem, node: Node, start: Start, steps: int = 30, freeze: 
     cost = total(chi2, point, local)
     if not math.isfinite(cost):
         return _failed(problem, node, point, tuple(begun))
-    damping, gain, stop = 1e-3, 0.0, Stop.STEPS
-    for _ in range(steps):
-        lower_any, enough = False, LEAST_GAIN + LEAST_SHARE * cost
-        for _ in range(6):
-            step, moves, promised = _step(normal, point, local, mean, precision, scales, damping, reach)
+    far = np.array([REACH if c.log else math.inf for c in node.coordinates])
+    damping, gain, promised, stop, step = DAMPED, 0.0, math.inf, Stop.STEPS, np.zeros(len(point))
+
+    def lowered(moving: Array, enough: float) -> bool:
+        """Whether a step of what may move lowers the cost, which it is then taken by."""
+        nonlocal point, local, chi2, residuals, normal, cost, damping, gain, promised, step
+        for _ in range(TRIES):
+            step, moves, promised = _step(normal, point, local, mean, precision, scales, damping, moving)
             if promised < enough:  # not worth another simulation
-                break
+                return False
             new_point, new = bounded(node, point + step), local + moves
             trial = _exact(problem, node, new_point, new)
             lower = total(trial[0], new_point, new)
             if lower < cost:
-                lower_any = True
-                break
+                gain, cost = cost - lower, lower
+                point, local, (chi2, residuals, normal) = new_point, new, trial
+                return True
             damping = max(damping * 4.0, 1e-4)
-        if not lower_any:
-            stop = Stop.CONVERGED
-            break
-        gain, cost = cost - lower, lower
-        point, local, (chi2, residuals, normal) = new_point, new, trial
+        return False
+
+    for _ in range(steps):
+        enough = LEAST_GAIN + LEAST_SHARE * cost
+        if not lowered(free, enough):
+            near, damping = free & (np.abs(step) < far), DAMPED
+            if (near == free).all() or not lowered(near, enough):
+                stop = Stop.CONVERGED
+                break
         damping *= damped_next(gain / promised)
         if gain < enough:
             stop = Stop.CONVERGED
             break
-    step, moves, further = _step(normal, point, local, mean, precision, scales, 0.0, reach)
+    step, moves, further = _step(normal, point, local, mean, precision, scales, 0.0, free)
     further = max(gain, further) if stop is Stop.STEPS else further
     ahead = Start(bounded(node, point + step), _each(local + moves, counts))
-    covariance, dof = _decided(node, normal, precision, scales, reach > 0.0)
+    covariance, dof = _decided(node, normal, precision, scales, free)
     prior = float(np.sum(precision * (point - mean) ** 2))
     nuisances = _each(local, counts)
     left = float(normal[:, -1, -1].sum())
@@ -167,16 +181,9 @@ def damped_next(ratio: float) -> float:
 
 
 def _step(
-    normal: Array,
-    point: Array,
-    local: Array,
-    mean: Array,
-    precision: Array,
-    scales: Array,
-    damping: float,
-    reach: Array,
+    normal: Array, point: Array, local: Array, mean: Array, precision: Array, scales: Array, damping: float, free: Array
 ) -> tuple[Array, Array, float]:
-    """Moves of point, each within its ``reach``, and nuisances, and by how much the cost falls where all is linear."""
+    """Moves of point and nuisances, and by how much the cost falls where all is linear."""
     k = local.shape[1]
     cross, line = normal[:, :k, k:-1], normal[:, :k, -1] + local / scales**2
     solved = solved_positive(_own(normal, scales, damping), np.concatenate([cross, line[..., None]], axis=2))
@@ -184,16 +191,9 @@ def _step(
     left = np.diag(precision + LEAST_CURVATURE) + _reduced(normal, cross, eliminated)
     right = -precision * (point - mean) - normal[:, k:-1, -1].sum(axis=0) + np.einsum("skp,sk->p", cross, last)
     _on_diagonal(left)[:] += damping * np.maximum(_on_diagonal(left), 1e-12)
-    step, free = np.zeros(len(point)), reach > 0.0
-    while free.any():
-        step[free] = solved_evenly(left[np.ix_(free, free)], (right - left[:, ~free] @ step[~free])[free])
-        far = np.abs(step) > reach
-        if not far.any():
-            break
-        step[far] = np.sign(step[far]) * reach[far]
-        free &= ~far
-    gain = 2.0 * float(right @ step) - float(step @ left @ step)
-    return step, -(eliminated @ step) - last, float(np.sum(line * last)) + gain
+    step = np.zeros(len(point))
+    step[free] = solved_evenly(left[np.ix_(free, free)], right[free])
+    return step, -(eliminated @ step) - last, float(np.sum(line * last)) + float(right @ step)
 
 
 def _reduced(normal: Array, cross: Array, eliminated: Array) -> Array:

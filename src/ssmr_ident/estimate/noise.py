@@ -50,7 +50,7 @@ def own_noise(
     problem: Problem, fit: Fit, largest_order: int = LARGEST_ORDER
 ) -> tuple[tuple[AutoregressiveNoise, ...], ...]:
     """What a fit leaves, recording by recording and channel by channel, as noise: its own, and what comes
-    through the rig from a force that was measured with noise, or not at all; both white where ``largest_order`` is 0."""
+    through the rig from a force that was measured with noise, or not at all; both white if ``largest_order`` is 0."""
     found: dict[int, tuple[AutoregressiveNoise, ...]] = {}
     recordings = {p.recording for p in problem.pieces}
     for recording in recordings:
