@@ -54,3 +54,10 @@ def test_what_is_left_behind_lies_between_the_baseline_and_the_best_as_before() 
     part = (FAR.chi2 - LAW.chi2) / (BASE.chi2 - LAW.chi2)
     assert far.chi2 == pytest.approx(20_000.0 + part * 176_000.0)
     assert 0.0 < far.log_evidence < 88_000.0
+
+
+def test_what_a_line_promises_counts_for_a_row_and_not_against_others() -> None:
+    pair = row("free_play hysteresis", "static_force memory", 4400.0, dof=5.0)
+    burst = row("quadratic_damping hysteresis", "static_force memory", 30_000.0, dof=5.0, promised=29_000.0)
+    better = row("unlisted", "changing", 4000.0, generic=True, dof=20.0)
+    assert pair.name in kept(BASE, LAW, SHAPE, better, pair, burst)

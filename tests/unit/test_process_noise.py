@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy.linalg import solve_discrete_are
 from scipy.signal import cont2discrete, lfilter, ss2tf
 
 from ssmr_ident.signals.noise import fit_noise, process_noise
@@ -59,3 +60,30 @@ def test_white_noise_stays_white() -> None:
     found = process_noise([noise(0.0, 3)], *accelerance(), 12)
     assert found.order == 0
     assert len(found.moving_average) == 1
+
+
+def test_what_adds_up_is_told_from_its_start() -> None:
+    """A white force on a free mass, beside a sensor's white noise: its innovations by an algebraic Riccati equation."""
+    step, force, sensor = 0.01, 0.5, 2e-4
+    a, b, c = np.array([[1.0, step], [0.0, 1.0]]), np.array([[step**2 / 2.0], [step]]), np.array([[1.0, 0.0]])
+    p = solve_discrete_are(a.T, c.T, force**2 * b @ b.T, np.array([[sensor**2]]))
+    innovation = math.sqrt((c @ p @ c.T).item() + sensor**2)
+    numerators, denominator = ss2tf(a, b, c, np.zeros((1, 1)))
+    random = np.random.default_rng(5)
+    parts = [
+        lfilter(numerators[0], denominator, force * random.standard_normal(n)) + sensor * random.standard_normal(n)
+        for n in (4000, 1000)
+    ]
+    found = process_noise(parts, numerators[0], denominator, 0)
+    assert found.std == pytest.approx(innovation, rel=0.05)
+    assert np.std(found.filtered(parts[0])[20:]) == pytest.approx(1.0, abs=0.06)
+
+
+def test_noise_of_many_decades_reads_as_large_as_it_is() -> None:
+    """Two lines near zero frequency, four decades above the rest: Yule and Walker's equations read 0.2 here."""
+    samples = lfilter([1.0], np.convolve([1.0, -1.995, 0.9955], [1.0, -1.98, 0.985]), random_white(6, 1500))
+    assert np.std(fit_noise(samples, 12).whiten(samples)) == pytest.approx(1.0, abs=0.05)
+
+
+def random_white(seed: int, count: int) -> np.ndarray:
+    return np.random.default_rng(seed).standard_normal(count)

@@ -13,7 +13,7 @@ from ssmr_ident.signals.noise.autoregressive import AutoregressiveNoise, fit_noi
 
 Array = np.ndarray
 
-RATIOS = (-9.0, 14.0)
+RATIOS = (-9.0, 40.0)
 """Limits of the logarithm of disturbance over the channel's own noise, at the frequency where it is largest."""
 
 
@@ -48,15 +48,17 @@ def process_noise(
     """
     whole = np.concatenate([part - part.mean() for part in parts])
     plain = fit_noise(whole, largest_order, spent)
-    frequency, power = periodogram(max(parts, key=len), detrend="constant")
-    z = np.exp(2j * math.pi * frequency[1:])
-    shape = np.abs(np.polyval(numerator, z) / np.polyval(denominator, z)) ** 2
-    peak, power = float(shape.max()), power[1:]
+    # through the denominator what adds up is stationary: as it is, its slow part would leak into all the rest
+    longest = lfilter(denominator, [1.0], max(parts, key=len))[len(denominator) - 1 :]
+    frequency, power = periodogram(longest, detrend=False)
+    z, power = np.exp(2j * math.pi * frequency[1:]), power[1:]
+    own, through = (np.abs(np.polyval(c, z)) ** 2 for c in (denominator, numerator))
+    peak = float((through / own).max())
     if not power.any():
         return plain
 
     def deviance(log_ratio: float) -> float:
-        density = 1.0 + math.exp(log_ratio) / peak * shape
+        density = own + math.exp(log_ratio) / peak * through
         return float(np.sum(np.log(density)) + len(power) * math.log(np.mean(power / density)))
 
     ratio = math.exp(minimize_scalar(deviance, bounds=RATIOS, method="bounded").x) / peak
