@@ -19,7 +19,7 @@ Array = np.ndarray
 PERIODS = 2.0
 """Of the fastest motion that is expected, that a window lasts."""
 
-FEWEST = 10
+FEWEST = 8
 """Windows below which ranks say nothing, and what is left is taken to follow the motion."""
 
 
@@ -54,7 +54,6 @@ def left(problem: Problem, fit: Fit) -> Left:
 def _of_channel(problem: Problem, fit: Fit, name: str) -> Left:
     chosen = [(p, *_counted(p, r, name)) for p, r in zip(problem.pieces, fit.residuals, strict=True)]
     noises = [own[p.channels.index(name)] for p, own in zip(problem.pieces, problem.noises, strict=True)]
-    overall = float(np.sqrt(np.mean([np.mean(rest**2) for _, rest, _ in chosen])))
     windows: list[tuple[float, float, str]] = []
     width = 16
     for (piece, rest, model), noise in zip(chosen, noises, strict=True):
@@ -62,16 +61,17 @@ def _of_channel(problem: Problem, fit: Fit, name: str) -> Left:
         white = noise.filtered(rest)
         for first in range(problem.passed_over(piece) + noise.order, len(rest) - width + 1, width):
             own = slice(first, first + width)
-            windows.append((float(model[own].std()), float(np.sqrt(np.mean(white[own] ** 2))), piece.name))
+            over = float(model[own].std() / piece.white[piece.channels.index(name)])
+            windows.append((over, float(np.sqrt(np.mean(white[own] ** 2))), piece.name))
     # where nothing moves, a converter's steps show no noise either
-    moving = np.array([w[:2] for w in windows if w[0] > overall])
+    moving = np.array([w[:2] for w in windows if w[0] > 1.0])
     if len(moving) < FEWEST:
         return Left(math.inf)
     rank = float(spearmanr(moving[:, 0], moving[:, 1]).statistic)
     follows = math.atanh(min(rank, 1.0 - 1e-12)) * math.sqrt((len(moving) - 3) / 1.06)
     sizes = np.array([w[1] for w in windows])
-    over = float(sizes.max()) / max(float(np.sqrt(np.mean(sizes**2))), 1e-300)
-    return Left(follows, math.log(over) * math.sqrt(2.0 * width), windows[int(np.argmax(sizes))][2])
+    out = float(sizes.max()) / max(float(np.sqrt(np.mean(sizes**2))), 1e-300)
+    return Left(follows, math.log(out) * math.sqrt(2.0 * width), windows[int(np.argmax(sizes))][2])
 
 
 def _counted(piece: Piece, rest: Array, name: str) -> tuple[Array, Array]:

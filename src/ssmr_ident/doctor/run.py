@@ -17,7 +17,7 @@ from ssmr_ident.diagnose.arranged import arranged
 from ssmr_ident.diagnose.diagnosis import Diagnosis
 from ssmr_ident.diagnose.setup import keep_back
 from ssmr_ident.doctor.decide import MISSING, Decision, decide
-from ssmr_ident.doctor.fitted import SHORT
+from ssmr_ident.doctor.fitted import FAR_OFF, SHORT
 from ssmr_ident.doctor.held import held_fit, interleaved, with_motion
 from ssmr_ident.doctor.left import left
 from ssmr_ident.doctor.networks import also_at
@@ -183,7 +183,8 @@ def _decided(rows: tuple[Row, ...], kept: Problem | None, known: ParameterSet) -
         for row in rows:
             found.append(_held(row, kept, known, near) if row.name in wanted else row)
             near = found[-1].kept or near
-        rows = tuple(found)
+        near = min((r.kept for r in found if r.kept is not None), key=lambda f: f.cost, default=None)
+        rows = tuple(_held_nearer(r, kept, known, near) if r.name in wanted else r for r in found)
 
 
 def _in_small_steps(
@@ -210,6 +211,14 @@ def _held(row: Row, kept: Problem, known: ParameterSet, near: Fit | None) -> Row
     if held is None:
         return row
     return replace(row, kept=held, heldout=float(np.mean(errors(predictions(kept, held, known)))))
+
+
+def _held_nearer(row: Row, kept: Problem, known: ParameterSet, near: Fit | None) -> Row:
+    """A row with its error once more from the starts of the best, where it is far off: it may have been caught."""
+    if row.kept is None or near is None or row.kept.cost < FAR_OFF * near.cost:
+        return row
+    again = _held(row, kept, known, near)
+    return again if again.kept is not None and again.kept.cost < row.kept.cost else row
 
 
 def _alone_of(row: Row, chosen: Row | None) -> bool:
