@@ -21,9 +21,9 @@ from ssmr_ident.doctor.decide import MISSING, NOTHING, UNDETERMINED, Decision
 from ssmr_ident.doctor.fitted import Search
 from ssmr_ident.doctor.further_body import mode_parameters, riders, shapes_told, with_further_bodies
 from ssmr_ident.doctor.law_curve import law_curve
-from ssmr_ident.doctor.left import beyond, wandering
 from ssmr_ident.doctor.next_recording import next_recording
-from ssmr_ident.doctor.rules import OVER_NOISE, UNEVEN
+from ssmr_ident.doctor.notes import notes_on, wandering_zeros
+from ssmr_ident.doctor.rules import UNEVEN
 from ssmr_ident.doctor.table import Row
 from ssmr_ident.estimate.node import Member, effects_of
 from ssmr_ident.estimate.values import Fit, Problem
@@ -85,7 +85,7 @@ def answer(found: Examined) -> Diagnosis:
     rows = (*found.rows, *(r for r in found.search.far if r.name not in names))
     tried = tuple(Tried("+".join(r.ids) or "baseline", r.heldout, r.log_evidence, r.name) for r in rows)
     shown = training if math.isnan(heldout.before) else heldout
-    slow = _wandering(found.search.problem, chosen)
+    slow = wandering_zeros(found.search.problem, chosen)
     if named:
         summary = missing(effects, shown, METRIC, conflicts)
     elif decision.verdict == NOTHING:
@@ -111,13 +111,7 @@ def answer(found: Examined) -> Diagnosis:
         before=before_file,
         after=after_file,
         summary=summary,
-        notes=(
-            *found.notes,
-            *_notes(decision, chosen, heldout),
-            *_colour(decision, base),
-            *_beyond(found.search.problem, base),
-            *_wandering(found.search.problem, chosen),
-        ),
+        notes=(*found.notes, *notes_on(found.search.problem, found.rows, decision, chosen, heldout)),
         evidence=Evidence(overlays=drawn),
         kinds=tuple(
             KindShare(s.kind, element_of(fits[s.row.name].node.members[0]), float(s.share), float(s.log_evidence))
@@ -331,36 +325,3 @@ def located(problem: Problem, fit: Fit) -> tuple[Located, ...]:
         )
         found.append(Located(recording, channel, (time[0], time[1]), (band[0], band[1]), "", part, words))
     return tuple(found)
-
-
-def _colour(decision: Decision, base: Row) -> tuple[str, ...]:
-    if decision.verdict != NOTHING or base.over < OVER_NOISE:
-        return ()
-    return (
-        f"what is left is {base.over:.1f} times what is white in it; it does not follow the motion, so it is taken for "
-        "noise of another colour",
-    )
-
-
-def _beyond(problem: Problem, base: Row) -> tuple[str, ...]:
-    far = beyond(problem, base.fit) if base.over >= OVER_NOISE and base.fit is not None else None
-    return () if far is None else (str(far),)
-
-
-def _wandering(problem: Problem, chosen: Row) -> tuple[str, ...]:
-    if chosen.over < OVER_NOISE or chosen.fit is None:
-        return ()
-    return tuple(
-        f"most of what is left in {name} lies below {hz:.2g} Hz, slower than anything that moves there: the zero of "
-        "its sensor wanders"
-        for name, hz in wandering(problem, chosen.fit)
-    )
-
-
-def _notes(decision: Decision, chosen: Row, heldout: PredictionQuality) -> tuple[str, ...]:
-    if decision.verdict == MISSING and heldout.after > 1.6 * heldout.noise_floor:
-        return (
-            f"{chosen.name} still leaves {heldout.after / heldout.noise_floor:.1f} times the noise floor: its form, or "
-            "a smaller effect beside it, is not quite the world's",
-        )
-    return ()

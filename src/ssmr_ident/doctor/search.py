@@ -45,11 +45,11 @@ def searched(problem: Problem, budget: float = math.inf, progress: Progress | No
     """
     say = progress or (lambda stage, done, total: None)
     whole = problem
-    few, begins, share = sampled(whole if drifts(whole) else coarser(whole))
+    few, begins, share = sampled(whole if whole.drifts else coarser(whole))
     problem = few
     say("fitting the baseline", 0, 1)
     base = baseline_fit(problem)
-    if drifts(problem):
+    if problem.drifts:
         problem, base = under_own_noise(problem, base, 0)
     search = Search(problem, time.monotonic() + budget)
     search.add(base)
@@ -70,7 +70,7 @@ def searched(problem: Problem, budget: float = math.inf, progress: Progress | No
     if alone:
         shapes_again(search)
     offered_back(search)
-    search = _with_own_noise(search, 0) if drifts(problem) else _with_white(search)
+    search = _with_own_noise(search, 0) if problem.drifts else _with_white(search)
     named_along(search, say)
     offered_back(search)
     search = _with_own_noise(search)
@@ -90,13 +90,6 @@ def searched(problem: Problem, budget: float = math.inf, progress: Progress | No
     if named_best is not None and not whole.held and is_held(search.problem, named_best) and not search.late:
         return searched(held(whole), search.until - time.monotonic(), progress)
     return search
-
-
-def drifts(problem: Problem) -> bool:
-    """Whether no spring holds the mass: what a force was not measured with then adds up, and no fit comes near the
-    recordings under the noise of the sensor alone."""
-    stiffness = problem.baseline[2]
-    return problem.layout == ONE and stiffness.value(stiffness.mean) == 0.0 and any(p.driven for p in problem.pieces)
 
 
 def _with_white(search: Search) -> Search:

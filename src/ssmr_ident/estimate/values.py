@@ -67,6 +67,14 @@ class Problem:
         return 2.0 * math.pi * self.frequency * self.size
 
     @property
+    def drifts(self) -> bool:
+        """Whether no spring holds the mass: what its force was not measured with then adds up, and no model comes near
+        the recordings under the noise of the sensor alone."""
+        stiffness = self.baseline[2]
+        held = self.layout != ONE or stiffness.value(stiffness.mean) > 0.0
+        return not held and any(p.driven and not p.based for p in self.pieces)
+
+    @property
     def begin(self) -> float:
         """Time at the begin of driven stretches that is compared with nothing [s]: half a period, for a sensor that is
         late shows there what drove the rig before."""
