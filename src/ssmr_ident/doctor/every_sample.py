@@ -8,9 +8,21 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from ssmr_ident.doctor.decide import held_against, without_both
-from ssmr_ident.doctor.fitted import BEGUN, ENDED, FULL, Progress, Search, carried, further, offered_back, offered_up
-from ssmr_ident.doctor.rules import FORMULA, SECOND, TIE
+from ssmr_ident.doctor.fitted import (
+    BEGUN,
+    ENDED,
+    FULL,
+    Progress,
+    Search,
+    carried,
+    further,
+    offered_back,
+    offered_up,
+    with_own_noise,
+)
+from ssmr_ident.doctor.rules import FORMULA, HALVED, SECOND, TIE
 from ssmr_ident.doctor.table import Row
+from ssmr_ident.estimate.earlier import earlier
 from ssmr_ident.estimate.exact import polish
 from ssmr_ident.estimate.network import paths_of
 from ssmr_ident.estimate.noise import left_white, own_noise
@@ -52,15 +64,31 @@ def on_every_sample(search: Search, whole: Problem, begins: Sequence[int], share
     for index, row in enumerate(kept):
         say("every sample", index, len(kept))
         assert row.fit is not None
-        # in chaos the best one's states begin all others
-        start = Start(row.fit.point, carried(row.fit.node, found)) if chaotic else _at_begins(row.fit, begins)
-        start = Start(found.point, found.nuisances) if row.fit is best else start
+        if row.fit is best:
+            start = Start(found.point, found.nuisances)
+        elif chaotic:  # there the best one's states begin all others
+            start = Start(row.fit.point, carried(row.fit.node, found))
+        else:
+            start = earlier(search.problem, row.fit, whole, begins)
         new.add(polish(problem, row.fit.node, start, BEGUN))
+    new = _under_less_noise(new)
     ended(new)
     offered_back(new, 1)
     offered_up(new)
     new.far = _scaled([r for r in rows if r not in kept], rows, new.rows())
     return new
+
+
+def _under_less_noise(search: Search) -> Search:
+    """Again under the noise that the best leaves, where that is less than half of it in squares: the fit that it was
+    taken from has lost its way."""
+    for _ in range(ROUNDS):
+        best = search.rows()[0].fit
+        assert best is not None
+        if best.left > HALVED * search.problem.samples:
+            break
+        search = with_own_noise(search)
+    return search
 
 
 def _followed(search: Problem, whole: Problem, fit: Fit, begins: Sequence[int]) -> tuple[Problem, Fit]:
@@ -69,7 +97,7 @@ def _followed(search: Problem, whole: Problem, fit: Fit, begins: Sequence[int]) 
     if math.isfinite(whole.horizon):  # what a start does to the motion is no longer linear
         paths = paths_of(whole, fit.node, fit.point)
         return whole, polish(whole, fit.node, shot(whole, fit.node, Start(fit.point, paths=tuple(paths))), FULL)
-    return whole, polish(whole, fit.node, _at_begins(fit, begins), FULL)
+    return whole, polish(whole, fit.node, earlier(search, fit, whole, begins), FULL)
 
 
 def decisive(rows: Sequence[Row], share: float, samples: float) -> list[Row]:
@@ -171,8 +199,3 @@ def _wanted(row: Row, rows: Sequence[Row]) -> float:
         return tie
     single = max((r.log_evidence for r in rows if len(r.ids) == 1 and not r.generic), default=-math.inf)
     return max(tie, single + SECOND)
-
-
-def _at_begins(fit: Fit, begins: Sequence[int]) -> Start:
-    """A fit's point with its nuisances at the begins of the recordings."""
-    return Start(fit.point, tuple(fit.nuisances[k] for k in begins))

@@ -15,9 +15,10 @@ from ssmr_ident.doctor.table import Row, log_evidence, row_of
 from ssmr_ident.estimate.exact import polish
 from ssmr_ident.estimate.motion import motion
 from ssmr_ident.estimate.node import Member, Node
+from ssmr_ident.estimate.noise import LARGEST_ORDER, own_noise
 from ssmr_ident.estimate.regression import regressed
 from ssmr_ident.estimate.shooting import shot
-from ssmr_ident.estimate.values import Fit, Problem, Start, Stop
+from ssmr_ident.estimate.values import Fit, Problem, Start, Stop, with_noises
 from ssmr_ident.physics.network import ONE
 
 Array = np.ndarray
@@ -190,3 +191,19 @@ def offered_up(search: Search) -> None:
             if poorer is not None and poorer.cost < fit.cost - UNIT:
                 node = replace(poorer.node, members=(*poorer.node.members, member))
                 search.add(polish(search.problem, node, Start(joined(node, poorer), carried(node, poorer)), SHORT))
+
+
+def with_own_noise(search: Search, largest_order: int = LARGEST_ORDER) -> Search:
+    """Everything again under the noise that the best fit leaves, from where it was."""
+    best = search.rows()[0].fit
+    assert best is not None
+    problem = with_noises(search.problem, own_noise(search.problem, best, largest_order))
+    near = FAR_OFF * best.cost
+    fits = [
+        polish(problem, f.node, Start(f.point, f.nuisances), SHORT if f.cost < near or not f.node.members else 0)
+        for f in search.fits
+        if math.isfinite(f.cost)
+    ]
+    new = replace(search, problem=problem, fits=fits, offered=set())
+    offered_back(new)
+    return new

@@ -8,7 +8,6 @@ from dataclasses import replace
 
 from ssmr_ident.doctor.every_sample import ended, on_every_sample
 from ssmr_ident.doctor.fitted import (
-    FAR_OFF,
     SHORT,
     Progress,
     Search,
@@ -17,6 +16,7 @@ from ssmr_ident.doctor.fitted import (
     finished,
     offered_back,
     shapes_again,
+    with_own_noise,
 )
 from ssmr_ident.doctor.kinds import kinds
 from ssmr_ident.doctor.named import named_along
@@ -24,12 +24,11 @@ from ssmr_ident.doctor.networks import members_of_network
 from ssmr_ident.doctor.second import FULL_KINDS, exchanged, in_other_formulas, paired, second
 from ssmr_ident.estimate.baseline import baseline_fit, under_own_noise
 from ssmr_ident.estimate.coarser import coarser
-from ssmr_ident.estimate.exact import polish
 from ssmr_ident.estimate.held_force import held, is_held
 from ssmr_ident.estimate.network import paths_of
-from ssmr_ident.estimate.noise import LARGEST_ORDER, left_white, own_noise
+from ssmr_ident.estimate.noise import left_white
 from ssmr_ident.estimate.stretches import sampled
-from ssmr_ident.estimate.values import Problem, Start, with_noises
+from ssmr_ident.estimate.values import Problem
 from ssmr_ident.physics.network import ONE
 
 
@@ -70,10 +69,10 @@ def searched(problem: Problem, budget: float = math.inf, progress: Progress | No
     if alone:
         shapes_again(search)
     offered_back(search)
-    search = _with_own_noise(search, 0) if problem.drifts else _with_white(search)
+    search = with_own_noise(search, 0) if problem.drifts else _with_white(search)
     named_along(search, say)
     offered_back(search)
-    search = _with_own_noise(search)
+    search = with_own_noise(search)
     if alone:
         second(search, say)
         paired(search, say)
@@ -98,19 +97,3 @@ def _with_white(search: Search) -> Search:
     assert best is not None
     problem = left_white(search.problem, best)
     return replace(search, problem=problem, fits=[again(problem, f, SHORT) for f in search.fits], offered=set())
-
-
-def _with_own_noise(search: Search, largest_order: int = LARGEST_ORDER) -> Search:
-    """Everything again under the noise that the best fit leaves, from where it was."""
-    best = search.rows()[0].fit
-    assert best is not None
-    problem = with_noises(search.problem, own_noise(search.problem, best, largest_order))
-    near = FAR_OFF * best.cost
-    fits = [
-        polish(problem, f.node, Start(f.point, f.nuisances), SHORT if f.cost < near or not f.node.members else 0)
-        for f in search.fits
-        if math.isfinite(f.cost)
-    ]
-    new = replace(search, problem=problem, fits=fits, offered=set())
-    offered_back(new)
-    return new

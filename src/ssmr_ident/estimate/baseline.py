@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ssmr_ident.estimate.coarser import coarser
+from ssmr_ident.estimate.earlier import earlier
 from ssmr_ident.estimate.exact import polish
 from ssmr_ident.estimate.network import paths_of
 from ssmr_ident.estimate.node import Node
@@ -41,12 +42,12 @@ def fitted_baseline(problem: Problem) -> tuple[Problem, Fit]:
     It begins, as a search does, with means of several samples and with stretches of long recordings.
     """
     few, begins, _ = sampled(coarser(problem))
-    return under_own_noise(problem, on_every_sample(problem, baseline_fit(few), begins))
+    return under_own_noise(problem, on_every_sample(problem, few, baseline_fit(few), begins))
 
 
-def on_every_sample(problem: Problem, fit: Fit, begins: tuple[int, ...]) -> Fit:
+def on_every_sample(problem: Problem, few: Problem, fit: Fit, begins: tuple[int, ...]) -> Fit:
     """A fit of fewer samples to its end on all; ``begins`` are the numbers of each recording's first stretch."""
-    return polish(problem, fit.node, Start(fit.point, tuple(fit.nuisances[k] for k in begins)), STEPS)
+    return polish(problem, fit.node, earlier(few, fit, problem, begins), STEPS)
 
 
 def under_own_noise(problem: Problem, fit: Fit, largest_order: int = LARGEST_ORDER) -> tuple[Problem, Fit]:

@@ -35,7 +35,7 @@ def with_friction(problem: Problem, fit: Fit) -> tuple[Problem, Fit, list[str]] 
     form = next(f for f in FORMS if f.effect == FRICTION and f.kind == STATIC)
     # along the baseline's own motion the baseline leaves no force at all
     (offer,) = proposals(few, base, paths_of(few, base.node, base.point), forms=[form])
-    found = on_every_sample(problem, begun(few, offer, base), begins)
+    found = on_every_sample(problem, few, begun(few, offer, base), begins)
     quiet, found = under_own_noise(problem, found)
     plain = polish(quiet, fit.node, Start(fit.point, fit.nuisances), STEPS)
     gained = log_evidence(found, quiet.samples) - log_evidence(plain, quiet.samples)
