@@ -14,6 +14,7 @@ from ssmr_ident.doctor.rules import UNIT
 from ssmr_ident.doctor.table import Row, log_evidence, row_of
 from ssmr_ident.estimate.exact import polish
 from ssmr_ident.estimate.motion import motion
+from ssmr_ident.estimate.network import paths_of
 from ssmr_ident.estimate.node import Member, Node
 from ssmr_ident.estimate.noise import LARGEST_ORDER, own_noise
 from ssmr_ident.estimate.regression import regressed
@@ -110,6 +111,16 @@ def carried(node: Node, fit: Fit) -> tuple[Array, ...]:
 
 def again(problem: Problem, fit: Fit, steps: int) -> Fit:
     return polish(problem, fit.node, Start(fit.point, fit.nuisances), steps)
+
+
+def best_paths(problem: Problem, fit: Fit) -> tuple[Sequence[Array], bool]:
+    """Motion along which laws are asked for, and whether it is the recorded one: that of a fit that follows it; else
+    that of logs which show where the mass is."""
+    if over(fit, problem) <= NEAR_NOISE:
+        return motion(problem, fit), True
+    if all((piece.orders == 0).any() and not piece.based for piece in problem.pieces):
+        return paths_of(problem, fit.node, fit.point), True
+    return motion(problem, fit), False
 
 
 def beside(problem: Problem, fit: Fit, member: Member, steps: int) -> Fit:

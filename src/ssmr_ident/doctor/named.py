@@ -13,6 +13,7 @@ from ssmr_ident.doctor.fitted import (
     SHORT,
     Progress,
     Search,
+    best_paths,
     carried,
     finished,
     joined,
@@ -23,7 +24,6 @@ from ssmr_ident.doctor.networks import laws_in_network
 from ssmr_ident.doctor.rules import SECOND
 from ssmr_ident.estimate.exact import polish
 from ssmr_ident.estimate.latent_force import network_paths
-from ssmr_ident.estimate.motion import motion
 from ssmr_ident.estimate.node import Member
 from ssmr_ident.estimate.shooting import shot
 from ssmr_ident.estimate.values import Fit, Problem, Start
@@ -52,13 +52,14 @@ def named(search: Search, say: Progress, best: Fit, beside: Sequence[Member] = (
     """Named laws beside given members, begun along the motion of a fit that follows it well."""
     problem, short = search.problem, []
     base = next(f for f in search.fits if not f.node.members)
+    recorded = over(best, problem) <= NEAR_NOISE
     if problem.layout == ONE:
-        paths = motion(problem, best)
+        paths, recorded = best_paths(problem, best)
         offers = proposals(problem, best, paths, beside)
     else:
         paths = network_paths(problem, best.node, best.point)
         offers = [replace(o, start=replace(o.start, paths=tuple(paths))) for o in laws_in_network(problem, search.fits)]
-    if over(best, problem) > NEAR_NOISE:  # along a motion that is not the recorded one promises are worth little
+    if not recorded:  # along another motion promises are worth little
         offers = sorted(offers, key=lambda offer: _scored(problem, offer, best))
     offers = _varied(offers)
     for index, offer in enumerate(offers):

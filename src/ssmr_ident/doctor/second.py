@@ -7,7 +7,18 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from ssmr_ident.doctor.decide import FRICTION
-from ssmr_ident.doctor.fitted import BEGUN, FULL, SHORT, Progress, Search, again, beside, carried, offered_back
+from ssmr_ident.doctor.fitted import (
+    BEGUN,
+    FULL,
+    SHORT,
+    Progress,
+    Search,
+    again,
+    beside,
+    best_paths,
+    carried,
+    offered_back,
+)
 from ssmr_ident.doctor.kinds import kinds
 from ssmr_ident.doctor.laws import FORMS, Proposal, proposals
 from ssmr_ident.doctor.named import begun, named, named_along
@@ -53,7 +64,7 @@ def paired(search: Search, say: Progress) -> None:
     if search.late or shape is None or shape.fit is None or shape.log_evidence < single + max(SECOND, grain(rows)):
         return
     found = shape.fit
-    paths = motion(problem, found)
+    paths, _ = best_paths(problem, found)
     offers: dict[frozenset[str], Proposal] = {}
     firsts = {o.node.members[-1].id: o for o in reversed(proposals(problem, found, paths))}
     for first in firsts.values():
