@@ -1,4 +1,4 @@
-"""Free swings that friction ends, and carriages under position control: plants that share nothing with the simulator."""
+"""Swings that friction ends, and carriages under position control: plants that are not the simulator's."""
 
 from __future__ import annotations
 
