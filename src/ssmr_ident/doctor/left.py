@@ -17,9 +17,9 @@ from ssmr_ident.signals.band import Band
 Array = np.ndarray
 
 PERIODS = 2.0
-"""Of the fastest motion that is expected, that a window lasts."""
+"""Of the motion, that a window lasts; a mass that no spring holds has none: there, a share of all."""
 
-FEWEST = 8
+FEWEST = 10
 """Windows below which ranks say nothing, and what is left is taken to follow the motion."""
 
 
@@ -55,9 +55,10 @@ def _of_channel(problem: Problem, fit: Fit, name: str) -> Left:
     chosen = [(p, *_counted(p, r, name)) for p, r in zip(problem.pieces, fit.residuals, strict=True)]
     noises = [own[p.channels.index(name)] for p, own in zip(problem.pieces, problem.noises, strict=True)]
     windows: list[tuple[float, float, str]] = []
-    width = 16
+    width, total = 16, sum(len(rest) for _, rest, _ in chosen)
     for (piece, rest, model), noise in zip(chosen, noises, strict=True):
-        width = max(16, round(PERIODS * piece.counted_rate / max(problem.frequency, problem.fastest)))
+        period = round(PERIODS * piece.counted_rate / problem.frequency)
+        width = max(16, total // (2 * FEWEST) if problem.drifts else period)
         white = noise.filtered(rest)
         for first in range(problem.passed_over(piece) + noise.order, len(rest) - width + 1, width):
             own = slice(first, first + width)

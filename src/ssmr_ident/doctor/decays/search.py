@@ -70,7 +70,7 @@ RELEASED = 3
 """Times that a law's states at the release are looked for anew, at the most."""
 
 ALIKE = 1.2
-"""Factor on the cost of an effect's best formula up to which its second one goes on to all recordings, too."""
+"""Factor on the cost of an effect's best fit up to which another formula, or start, of it goes on."""
 
 REACH, SHARE = 50.0, 0.02
 """Cost above the least, of what is linear too, and share of the baseline's misfit, up to which a linear model is led on
@@ -318,9 +318,9 @@ def _offered_to_each(search: Search) -> None:
         for member, other in (pair.members, pair.members[::-1]):
             model, keep = pair.model.without_effect(other.id)
             begun = evaluate(pair.fit.trials, model, pair.point[keep], pair.fit.nuisances)
-            if np.isfinite(begun.rss):
-                fit = to_the_end(cooled_alone(begun))
-                search.add(Found((replace(member, model=model),), None, fit))
+            alone = min((f.cost for f in search.found if [m.id for m in f.members] == [member.id]), default=math.inf)
+            if np.isfinite(begun.rss) and cost_of(led := cooled_alone(begun)) < ALIKE * alone:
+                search.add(Found((replace(member, model=model),), None, to_the_end(led)))
 
 
 def _other_formulas(search: Search, law: Found, say: Progress) -> None:
