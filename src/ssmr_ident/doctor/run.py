@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 from threadpoolctl import threadpool_limits
@@ -38,9 +37,6 @@ from ssmr_ident.physics.network import NETWORK
 Array = np.ndarray
 Progress = Callable[[str, int, int], None]
 
-
-SHARPEST = 8.0
-"""Times the frequency of the motion up to which a force is followed on a mass that no spring holds."""
 
 SHOWN = 6
 """Rows of the table that are held against what was kept back."""
@@ -83,7 +79,7 @@ def examined(campaign: Campaign, known: ParameterSet, progress: Progress | None,
     campaign = arranged(campaign)  # sums round differently in another order
     targets, heldout, by_us = roles(campaign)
     alone = campaign.session.baseline != NETWORK
-    prepared = partial(problem_of, sharpest=SHARPEST) if alone else network_problem
+    prepared = problem_of if alone else network_problem
     fitted = prepared(targets, known)
     notes: list[str] = []
     if heldout:

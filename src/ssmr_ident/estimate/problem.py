@@ -36,7 +36,12 @@ FAR = 3.0
 """Factor between the file's natural frequency and the motion's from which the motion is believed."""
 
 
-def problem_of(measurements: Sequence[Measurement], parameters: ParameterSet, sharpest: float = 1.0) -> Problem:
+SHARPEST = 10.0
+"""Times the frequency of the motion up to which the force is followed where no spring holds the mass: friction turns
+as fast as the force does."""
+
+
+def problem_of(measurements: Sequence[Measurement], parameters: ParameterSet) -> Problem:
     """Prepare recordings of a rig.
 
     Parameters
@@ -44,8 +49,6 @@ def problem_of(measurements: Sequence[Measurement], parameters: ParameterSet, sh
     measurements : sequence of Measurement
     parameters : ParameterSet
         Mass, damping, stiffness, as known.
-    sharpest : float
-        Times the frequency of the motion up to which the force is followed on a mass that no spring holds.
     """
     frequency = natural_hz(parameters)
     seen = [seen_hz(m) for m in measurements]
@@ -55,7 +58,7 @@ def problem_of(measurements: Sequence[Measurement], parameters: ParameterSet, sh
     bandwidth = known_bandwidth(measurements, parameters)
     fastest = max(frequency, moving)
     if not natural_hz(parameters):
-        fastest = max(fastest, *(min(drive_hz(m), sharpest * moving) for m in measurements))
+        fastest = max(fastest, *(min(drive_hz(m), SHARPEST * moving) for m in measurements))
     motor = drive_from_parameters(parameters)
     if motor is not None:
         fastest = max(fastest, *(in_the_loop_hz(m, parameters, motor) for m in measurements))

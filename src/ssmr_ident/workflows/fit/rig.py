@@ -36,10 +36,6 @@ from ssmr_ident.workflows.fit.small_motion import at_small_motion
 ONE_MODE_LEAVES = 50.0
 """Percent of every recording that a single mode may leave; beyond, mass and stiffness are not those of the rig."""
 
-SHARPEST = 10.0
-"""Times the frequency of the motion up to which the force is followed where no spring holds the mass: friction turns
-as fast as the force does."""
-
 ANOTHER = 0.2
 """Share by which a frequency may differ from the file's, before it is said that another mode may be meant."""
 
@@ -54,7 +50,7 @@ def fit_rig_session(campaign: Campaign, chosen: tuple[Measurement, ...], coulomb
     if not here:
         found.findings.append("no recording here tells a parameter: all keep what the file says")
         return _answer(campaign, chosen, known, found)
-    plain, clipped = within_range(problem_of(here, known, SHARPEST), here)
+    plain, clipped = within_range(problem_of(here, known), here)
     found.findings.extend(clipped)
     problem, fit = fitted_baseline(plain)
     rubbed = None if springs(fit) or not coulomb else with_friction(plain, fit)
