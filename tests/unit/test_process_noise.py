@@ -9,7 +9,7 @@ import pytest
 from scipy.linalg import solve_discrete_are
 from scipy.signal import cont2discrete, lfilter, ss2tf
 
-from ssmr_ident.signals.noise import fit_noise, process_noise
+from ssmr_ident.signals.noise import burg_noise, process_noise
 
 RATE, HZ, RATIO = 400.0, 10.0, 0.02
 
@@ -47,7 +47,7 @@ def test_a_line_at_resonance_is_counted_right() -> None:
         samples = noise(0.3, seed)
         for name, model in (
             ("with", process_noise([samples], *accelerance(), 12)),
-            ("without", fit_noise(samples, 12)),
+            ("without", burg_noise(samples, 12)),
         ):
             white, columns = model.filtered(samples), model.filtered(motion)
             left = white - columns @ np.linalg.lstsq(columns, white, rcond=None)[0]
@@ -82,7 +82,7 @@ def test_what_adds_up_is_told_from_its_start() -> None:
 def test_noise_of_many_decades_reads_as_large_as_it_is() -> None:
     """Two lines near zero frequency, four decades above the rest: Yule and Walker's equations read 0.2 here."""
     samples = lfilter([1.0], np.convolve([1.0, -1.995, 0.9955], [1.0, -1.98, 0.985]), random_white(6, 1500))
-    assert np.std(fit_noise(samples, 12).whiten(samples)) == pytest.approx(1.0, abs=0.05)
+    assert np.std(burg_noise(samples, 12).whiten(samples)) == pytest.approx(1.0, abs=0.05)
 
 
 def random_white(seed: int, count: int) -> np.ndarray:

@@ -13,7 +13,7 @@ from ssmr_ident.estimate.motor import drive_of
 from ssmr_ident.estimate.node import stepped
 from ssmr_ident.estimate.pieces import Piece, white_of
 from ssmr_ident.estimate.values import Fit, Problem
-from ssmr_ident.signals.noise import AutoregressiveNoise, fit_noise, process_noise
+from ssmr_ident.signals.noise import AutoregressiveNoise, burg_noise, process_noise
 
 Array = np.ndarray
 
@@ -60,7 +60,7 @@ def own_noise(
         channels = range(parts[0].shape[1])
         if problem.pieces[own[0]].band is not None:  # frequencies there are other ones than the rig's
             whole = np.vstack([part - part.mean(axis=0) for part in parts])
-            found[recording] = tuple(fit_noise(whole[:, c], largest_order, spent) for c in channels)
+            found[recording] = tuple(burg_noise(whole[:, c], largest_order, spent) for c in channels)
             continue
         systems = from_force(problem.pieces[own[0]], fit)
         found[recording] = tuple(

@@ -3,7 +3,7 @@
 Every other room reads noise here; ``tests/contract/test_one_noise_model.py`` holds that none estimates its own.
 """
 
-from ssmr_ident.signals.noise.autoregressive import AutoregressiveNoise, fit_noise, quiet_noise, white_noise
+from ssmr_ident.signals.noise.autoregressive import AutoregressiveNoise, burg_noise, fit_noise, quiet_noise, white_noise
 from ssmr_ident.signals.noise.background import background_noise
 from ssmr_ident.signals.noise.colour import (
     independent_samples,
@@ -38,6 +38,7 @@ __all__ = [
     "any_mains_lines",
     "background_noise",
     "block_noises",
+    "burg_noise",
     "fit_noise",
     "force_noise",
     "independent_samples",

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 from scipy.signal import lfilter, periodogram
 
-from ssmr_ident.signals.noise.autoregressive import AutoregressiveNoise, fit_noise
+from ssmr_ident.signals.noise.autoregressive import AutoregressiveNoise, burg_noise
 
 Array = np.ndarray
 
@@ -47,7 +47,7 @@ def process_noise(
     model of what that leaves. Source: Priestley, Spectral Analysis and Time Series (1981), sections 6.1.5 and 10.1.
     """
     whole = np.concatenate([part - part.mean() for part in parts])
-    plain = fit_noise(whole, largest_order, spent)
+    plain = burg_noise(whole, largest_order, spent)
     # through the denominator what adds up is stationary: as it is, its slow part would leak into all the rest
     longest = lfilter(denominator, [1.0], max(parts, key=len))[len(denominator) - 1 :]
     frequency, power = periodogram(longest, detrend=False)
@@ -65,7 +65,7 @@ def process_noise(
     moving = minimum_phase(denominator, numerator, ratio)
     # from its start what adds up in a part has nothing to be off by; off its mean it would begin with a blow
     filtered = np.concatenate([lfilter(denominator, moving, part) for part in parts])
-    rest = fit_noise(filtered, largest_order, spent + 1)
+    rest = burg_noise(filtered, largest_order, spent + 1)
     count = len(whole)
     gained = 2.0 * count * math.log(plain.std / rest.std) + (plain.order - rest.order - 1) * math.log(count)
     if not gained > 0.0:
