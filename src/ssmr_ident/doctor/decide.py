@@ -6,10 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
 from ssmr_ident.doctor.rules import (
-    BY_CHANCE,
     CERTAIN,
     FOLLOWS,
     FORMULA,
@@ -24,7 +21,6 @@ from ssmr_ident.doctor.table import FRICTION, UNLISTED, Row, grain
 
 STATIC, MEMORY, GEOMETRY = "static_force", "memory", "geometry"
 MISSING, NOTHING, UNDETERMINED = "missing_physics", "nothing_missing", "undetermined"
-TINY = 1e-300
 
 
 @dataclass(frozen=True)
@@ -162,8 +158,7 @@ def stands(row: Row, rows: Sequence[Row]) -> bool:
     for alone in (rows for rows in found if rows):
         if row.log_evidence < max(r.log_evidence for r in alone) + max(SECOND, grain(rows)):
             return False
-        foretold = [r for r in alone if math.isfinite(r.heldout)]
-        if foretold and worse(row, min(foretold, key=lambda r: r.heldout)):
+        if row.heldout > min((r.heldout for r in alone if math.isfinite(r.heldout)), default=math.inf):
             return False
         apart = without_both(row, alone)
         if not apart:
@@ -187,21 +182,6 @@ def _a_formula(rows: Sequence[Row]) -> float:
 
 def _of_one_variable(pair: Row) -> bool:
     return pair.kinds[0] == pair.kinds[1] and len(set(pair.variables)) == 1 and all(pair.variables)
-
-
-def worse(row: Row, other: Row) -> bool:
-    """Whether a row's error on what was kept back is larger than another one's by more than noise makes of it: of two
-    models that differ by d, sums of squares differ by 2 d by chance, in sizes of the noise."""
-    if not row.heldout > other.heldout:
-        return False
-    if row.kept is None or other.kept is None:
-        return True
-    more, square = 0.0, 0.0
-    for own, less in zip(row.kept.residuals, other.kept.residuals, strict=True):
-        size = np.sqrt(np.mean(less**2, axis=0)) + TINY
-        more += float(np.sum((own / size) ** 2 - (less / size) ** 2))
-        square += float(np.sum(((own - less) / size) ** 2))
-    return more > BY_CHANCE * 2.0 * math.sqrt(square)
 
 
 def held_against(pair: Row, which: int, rows: Sequence[Row]) -> list[Row]:

@@ -27,9 +27,6 @@ FORMULA = 0.02
 """Share of the baseline's misfit, in squares, that a named law may leave beside the best of any shape and still be that
 law: a seventh in size. Set by judgement, like ``HALVED``; not yet calibrated."""
 
-BY_CHANCE = 2.0
-"""Standard deviations that an error on what was kept back may be larger by chance: one in forty."""
-
 GRAIN = 1e-4
 """Share of the baseline's misfit, in squares, that a second effect takes at the least: a hundredth in size. What drives
 between two samples, and how instruments see it, is known to some per mille only."""
