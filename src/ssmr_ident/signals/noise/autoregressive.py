@@ -149,25 +149,11 @@ def fit_noise(samples: Array, largest_order: int = 24, spent: int = 0) -> Autore
     covariance = np.fft.irfft(np.abs(spectrum) ** 2, size)[: largest_order + 1] / count
     if covariance[0] <= 0:
         return AutoregressiveNoise(np.ones(1), 1e-300)
-    coefficients, variance = schwarz_order(covariance, count)
-    freedom = max(count - spent - len(coefficients) + 1, 1)
-    return AutoregressiveNoise(coefficients, float(np.sqrt(variance * count / freedom)))
+    return _unspent(*schwarz_order(covariance, count), count, spent)
 
 
 def burg_noise(samples: Array, largest_order: int = 24, spent: int = 0) -> AutoregressiveNoise:
-    """As ``fit_noise``, for noise that spans many decades.
-
-    Parameters
-    ----------
-    samples : (n,) float
-        Residual or quiet stretch; its mean is taken as zero.
-    largest_order : int
-    spent : int
-        Degrees of freedom that an earlier fit took out of the samples.
-
-    Returns
-    -------
-    AutoregressiveNoise
+    """As ``fit_noise``, of the same parameters, for noise that spans many decades.
 
     Notes
     -----
@@ -192,7 +178,11 @@ def burg_noise(samples: Array, largest_order: int = 24, spent: int = 0) -> Autor
         score = count * np.log(variance) + order * np.log(count)
         if score < best_score:
             best, best_score = (coefficients, variance), score
-    coefficients, variance = best
+    return _unspent(*best, count, spent)
+
+
+def _unspent(coefficients: Array, variance: float, count: int, spent: int) -> AutoregressiveNoise:
+    """Noise by its filter, what a fit and the filter itself took out of the samples' variance put back."""
     freedom = max(count - spent - len(coefficients) + 1, 1)
     return AutoregressiveNoise(coefficients, float(np.sqrt(variance * count / freedom)))
 

@@ -45,12 +45,6 @@ def background_noise(stretches: Sequence[Array], largest_order: int) -> Autoregr
     return AutoregressiveNoise(coefficients, math.sqrt(variance))
 
 
-def _begins(length: int, width: int) -> list[int]:
-    """Where windows begin that cover a stretch and overlap by half at the least."""
-    count = 1 + math.ceil(2 * (length - width) / width)
-    return [int(at) for at in np.linspace(0, length - width, count)]
-
-
 def _expected(count: int) -> float:
     """Mean of the quantile of so many exponential numbers of mean 1: between two of them in order, of which the k-th
     has Σ 1/(n − j), j < k (Rényi 1953)."""
