@@ -242,12 +242,3 @@ def test_friction_that_remembers_is_a_function_of_speed_beside_a_spring() -> Non
     found = decide([base, sine, over_x, over_v, shape, pair])
     assert found.chosen is pair
     assert found.listed
-
-
-def test_two_functions_of_one_variable_leave_more_than_a_formula_each() -> None:
-    base = row("", "", 0.0, 200_000.0, 10.0)
-    law = row("quadratic_damping", "static_force", 97_300.0, 5_400.0, 1.04, variables=("v",))
-    shape = row("unlisted", "static_force", 97_400.0, 5_010.0, 1.0, generic=True, variables=("v",))
-    pair = row("quadratic_damping dry_friction", "static_force static_force", 97_480.0, 5_000.0, 1.0,
-               variables=("v", "v"))  # fmt: skip
-    assert decide([base, law, shape, pair]).chosen is law

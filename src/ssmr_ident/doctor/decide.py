@@ -148,7 +148,7 @@ def stands(row: Row, rows: Sequence[Row]) -> bool:
     """Whether each of two effects beats the other one in any shape, and halves what that leaves beyond white noise, or
     leaves nothing that goes with the motion or that another model explains, and ``FORMULA`` less; and both any one law,
     by evidence in sizes of what they themselves leave. Neither makes what was kept back worse. Of two functions of one
-    variable any shape of it holds both: it is beaten by evidence, and the law alone leaves more than a formula."""
+    variable any shape of it holds both: there it is beaten by evidence, and the law alone leaves that much more."""
     if len(row.ids) < 2:
         return True
     found = [held_against(row, k, rows) for k in (0, 1)]
@@ -169,19 +169,9 @@ def stands(row: Row, rows: Sequence[Row]) -> bool:
         explained = HALVED * row.over**2 < min(r.over for r in rows if math.isfinite(r.over)) ** 2
         only_noise = explained and row.left.follows < FOLLOWS and row.left.uneven < UNEVEN
         takes = halved or (only_noise and row.chi2 < (1.0 - FORMULA) * best.chi2)
-        if not takes or (_of_one_variable(row) and best.chi2 - row.chi2 < _a_formula(rows)):
+        if not takes:
             return False
     return True
-
-
-def _a_formula(rows: Sequence[Row]) -> float:
-    """What a law's formula may leave, in chi2."""
-    base = next(r for r in rows if not r.ids)
-    return FORMULA * (base.chi2 - min(r.chi2 for r in rows if math.isfinite(r.chi2)))
-
-
-def _of_one_variable(pair: Row) -> bool:
-    return pair.kinds[0] == pair.kinds[1] and len(set(pair.variables)) == 1 and all(pair.variables)
 
 
 def held_against(pair: Row, which: int, rows: Sequence[Row]) -> list[Row]:
@@ -208,8 +198,9 @@ def held_against(pair: Row, which: int, rows: Sequence[Row]) -> list[Row]:
 
 def without_both(pair: Row, rows: Sequence[Row]) -> list[Row]:
     """Rows that cannot hold both of two listed effects: of functions of one variable, any shape of it does."""
+    of_one = pair.kinds[0] == pair.kinds[1] and len(set(pair.variables)) == 1 and all(pair.variables)
     listed = not pair.generic and UNLISTED not in pair.ids
-    return [r for r in rows if not (r.generic and _of_one_variable(pair) and listed)]
+    return [r for r in rows if not (r.generic and of_one and listed)]
 
 
 def kind_shares(rows: Sequence[Row], base: Row) -> tuple[Share, ...]:
