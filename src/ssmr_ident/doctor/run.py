@@ -26,6 +26,7 @@ from ssmr_ident.doctor.table import Row
 from ssmr_ident.estimate.exact import polish
 from ssmr_ident.estimate.finer import finer
 from ssmr_ident.estimate.held_force import held
+from ssmr_ident.estimate.model_error import under_model_error
 from ssmr_ident.estimate.network import network_problem
 from ssmr_ident.estimate.problem import problem_of
 from ssmr_ident.estimate.stretches import in_stretches
@@ -113,7 +114,8 @@ def examined(campaign: Campaign, known: ParameterSet, progress: Progress | None,
         )
     rows = tuple(_with_left(r, search.problem) if len(r.ids) != 1 and not r.generic else r for r in search.table())
     rows, decision = _decided(rows, kept, known)
-    rows, decision = _in_small_steps(rows, decision, search.problem, kept, known)
+    problem, rows, decision = _in_small_steps(rows, decision, search.problem, kept, known)
+    rows, decision = _with_intervals(rows, decision, problem)
     if not alone:
         notes += _of_network(fitted, rows, decision)
     if search.untried:
@@ -185,19 +187,31 @@ def _decided(rows: tuple[Row, ...], kept: Problem | None, known: ParameterSet) -
 
 def _in_small_steps(
     rows: tuple[Row, ...], decision: Decision, problem: Problem, kept: Problem | None, known: ParameterSet
-) -> tuple[tuple[Row, ...], Decision]:
+) -> tuple[Problem, tuple[Row, ...], Decision]:
     """What was chosen, fitted and held against what was kept back once more in smaller steps; as it was where it then
     leaves one size of the noise more, for it has lost its way."""
     chosen = decision.chosen
     small = finer(problem)
     if chosen is None or chosen.fit is None or not chosen.fit.node.beside or small is problem:
-        return rows, decision
+        return problem, rows, decision
     fit = polish(small, chosen.fit.node, Start(chosen.fit.point, chosen.fit.nuisances), SHORT)
     if not fit.cost < chosen.fit.cost + problem.samples:
-        return rows, decision
+        return problem, rows, decision
     new = replace(chosen, fit=fit)
     if kept is not None and chosen.kept is not None:
         new = _held(new, finer(kept), known, chosen.kept)
+    return small, *_in_place_of(chosen, new, rows, decision)
+
+
+def _with_intervals(rows: tuple[Row, ...], decision: Decision, problem: Problem) -> tuple[tuple[Row, ...], Decision]:
+    """What was chosen, its deviations by what it leaves."""
+    chosen = decision.chosen
+    if chosen is None or chosen.fit is None:
+        return rows, decision
+    return _in_place_of(chosen, replace(chosen, fit=under_model_error(problem, chosen.fit)), rows, decision)
+
+
+def _in_place_of(chosen: Row, new: Row, rows: tuple[Row, ...], decision: Decision) -> tuple[tuple[Row, ...], Decision]:
     return tuple(new if r is chosen else r for r in rows), replace(decision, chosen=new)
 
 

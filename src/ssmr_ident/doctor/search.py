@@ -22,12 +22,10 @@ from ssmr_ident.doctor.kinds import kinds
 from ssmr_ident.doctor.named import named_along
 from ssmr_ident.doctor.networks import members_of_network
 from ssmr_ident.doctor.second import FULL_KINDS, exchanged, in_other_formulas, paired, second
-from ssmr_ident.estimate.baseline import baseline_fit, under_own_noise
-from ssmr_ident.estimate.coarser import coarser
+from ssmr_ident.estimate.baseline import BOTH_WHITE, on_few_samples
 from ssmr_ident.estimate.held_force import held, is_held
 from ssmr_ident.estimate.network import paths_of
 from ssmr_ident.estimate.noise import left_white
-from ssmr_ident.estimate.stretches import sampled
 from ssmr_ident.estimate.values import Problem
 from ssmr_ident.physics.network import ONE
 
@@ -44,12 +42,8 @@ def searched(problem: Problem, budget: float = math.inf, progress: Progress | No
     """
     say = progress or (lambda stage, done, total: None)
     whole = problem
-    few, begins, share = sampled(whole if whole.drifts else coarser(whole))
-    problem = few
     say("fitting the baseline", 0, 1)
-    base = baseline_fit(problem)
-    if problem.drifts:
-        problem, base = under_own_noise(problem, base, 0)
+    problem, base, begins, share = on_few_samples(whole)
     search = Search(problem, time.monotonic() + budget)
     search.add(base)
     paths = paths_of(problem, base.node, base.point)
@@ -69,7 +63,7 @@ def searched(problem: Problem, budget: float = math.inf, progress: Progress | No
     if alone:
         shapes_again(search)
     offered_back(search)
-    search = with_own_noise(search, 0) if problem.drifts else _with_white(search)
+    search = with_own_noise(search, BOTH_WHITE) if problem.drifts else _with_white(search)
     named_along(search, say)
     offered_back(search)
     search = with_own_noise(search)
@@ -81,7 +75,7 @@ def searched(problem: Problem, budget: float = math.inf, progress: Progress | No
     if alone:
         in_other_formulas(search, say)
         offered_back(search)
-    if few is not whole:
+    if problem.samples < whole.samples:
         search = on_every_sample(search, whole, begins, share, say)
     else:
         ended(search)

@@ -19,6 +19,9 @@ from ssmr_ident.physics.network import ONE
 STEPS = 25
 """Gauss-Newton steps."""
 
+BOTH_WHITE = 0
+"""Order of autoregressive noise where the sensor's noise and what comes through the rig are both taken as white."""
+
 IN_TURN = 2
 """Times that noise and fit follow from each other (iterated generalised least squares): what a fit under white noise
 leaves is not yet the noise of the fit under its own."""
@@ -36,13 +39,27 @@ def baseline_fit(problem: Problem) -> Fit:
     return polish(problem, node, shot(problem, node, Start(begin, paths=tuple(paths))), STEPS)
 
 
+def on_few_samples(problem: Problem) -> tuple[Problem, Fit, tuple[int, ...], float]:
+    """What a search begins with: means of several samples in stretches of long recordings, the baseline's fit of them,
+    the number of each recording's first stretch, and what share of the motion they are.
+
+    Where no spring holds the mass nothing is averaged, for friction turns as fast as the force does, and the noise
+    comes through the mass.
+    """
+    few, begins, share = sampled(problem if problem.drifts else coarser(problem))
+    fit = baseline_fit(few)
+    if few.drifts:
+        few, fit = under_own_noise(few, fit, BOTH_WHITE)
+    return few, fit, begins, share
+
+
 def fitted_baseline(problem: Problem) -> tuple[Problem, Fit]:
     """The baseline on every sample under the noise that it leaves, and the problem with that noise.
 
-    It begins, as a search does, with means of several samples and with stretches of long recordings.
+    It begins as a search does.
     """
-    few, begins, _ = sampled(coarser(problem))
-    return under_own_noise(problem, on_every_sample(problem, few, baseline_fit(few), begins))
+    few, fit, begins, _ = on_few_samples(problem)
+    return under_own_noise(problem, on_every_sample(problem, few, fit, begins))
 
 
 def on_every_sample(problem: Problem, few: Problem, fit: Fit, begins: tuple[int, ...]) -> Fit:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -43,10 +43,23 @@ def _exact(problem: Problem, node: Node, point: Array, local: Array) -> tuple[fl
     ``local`` : (pieces, k) float, nuisances, with room behind those of pieces that have fewer. The normal equations are
     (pieces, k + p + 1, k + p + 1) float: nuisances, coordinates, residual.
     """
-    model = Compiled.of(problem, node, point, problem.pieces)
     residuals: list[Array] = []
     spread = 0.0
     normal = np.empty((len(local), *[local.shape[1] + len(point) + 1] * 2))
+    for k, (white, rest, jumps) in enumerate(whitened_columns(problem, node, point, local)):
+        flat = white.reshape(-1, white.shape[2])
+        np.matmul(flat.T, flat, out=normal[k])
+        if not (np.abs(normal[k]) < BURST).all():
+            return math.inf, [], normal
+        residuals.append(rest)
+        spread += jumps
+    return float(normal[:, -1, -1].sum()) + spread, residuals, normal
+
+
+def whitened_columns(problem: Problem, node: Node, point: Array, local: Array) -> Iterator[tuple[Array, Array, float]]:
+    """Of each piece (m, c, k + p + 1) float, whitened slopes over nuisances and coordinates and what the piece leaves;
+    (n, c) float, that before; and the logarithm that the likelihood has of samples within a force's jump."""
+    model = Compiled.of(problem, node, point, problem.pieces)
     for batch in batches(problem.pieces):
         whole, unsure = _linearised(model, batch, local)
         row = 0
@@ -57,13 +70,8 @@ def _exact(problem: Problem, node: Node, point: Array, local: Array) -> tuple[fl
             within = (off / [noise.std for noise in problem.noises[k]]) ** 2
             columns /= np.sqrt(1.0 + within)[..., None]
             columns[:passed] = 0.0
-            spread += float(np.log1p(within[passed:]).sum())
-            residuals.append(columns[..., -1].copy())
-            white = _whitened(problem, k, columns).reshape(-1, columns.shape[2])
-            np.matmul(white.T, white, out=normal[k])
-        if not (np.abs(normal[: batch.stop]) < BURST).all():
-            return math.inf, [], normal
-    return float(normal[:, -1, -1].sum()) + spread, residuals, normal
+            rest = columns[..., -1].copy()
+            yield _whitened(problem, k, columns), rest, float(np.log1p(within[passed:]).sum())
 
 
 def _linearised(model: Compiled, batch: range, local: Array) -> tuple[Array, Array]:
@@ -114,9 +122,7 @@ def polish(problem: Problem, node: Node, start: Start, steps: int = 30, freeze: 
     point = bounded(node, start.point)
     begun = start.nuisances if start.nuisances is not None else starts_of(problem, node, start)
     counts = [len(own) for own in begun]
-    local, scales = np.zeros((len(begun), max(counts))), np.ones((len(begun), max(counts)))
-    for k, (piece, own) in enumerate(zip(problem.pieces, begun, strict=True)):
-        local[k, : counts[k]], scales[k, : counts[k]] = own, nuisance_scales(problem, node, piece)
+    local, scales = side_by_side(problem, node, begun)
     mean, precision = priors(node)
     free = np.ones(len(point), dtype=bool)
     free[list(freeze)] = False
@@ -169,6 +175,15 @@ def polish(problem: Problem, node: Node, start: Start, steps: int = 30, freeze: 
     return Fit(node, point, nuisances, covariance, tuple(residuals), chi2, prior, dof, stop, further, ahead, left)
 
 
+def side_by_side(problem: Problem, node: Node, begun: Sequence[Array]) -> tuple[Array, Array]:
+    """(pieces, k) float: every piece's own nuisances, zeros behind those of pieces that have fewer; and their sizes."""
+    counts = [len(own) for own in begun]
+    local, scales = np.zeros((len(begun), max(counts))), np.ones((len(begun), max(counts)))
+    for k, (piece, own) in enumerate(zip(problem.pieces, begun, strict=True)):
+        local[k, : counts[k]], scales[k, : counts[k]] = own, nuisance_scales(problem, node, piece)
+    return local, scales
+
+
 def _each(local: Array, counts: Sequence[int]) -> tuple[Array, ...]:
     """Every piece's own nuisances."""
     return tuple(own[:count].copy() for own, count in zip(local, counts, strict=True))
@@ -186,7 +201,8 @@ def _step(
     """Moves of point and nuisances, and by how much the cost falls where all is linear."""
     k = local.shape[1]
     cross, line = normal[:, :k, k:-1], normal[:, :k, -1] + local / scales**2
-    solved = solved_positive(_own(normal, scales, damping), np.concatenate([cross, line[..., None]], axis=2))
+    own = curvature_of_nuisances(normal, scales, damping)
+    solved = solved_positive(own, np.concatenate([cross, line[..., None]], axis=2))
     eliminated, last = solved[..., :-1], solved[..., -1]
     left = np.diag(precision + LEAST_CURVATURE) + _reduced(normal, cross, eliminated)
     right = -precision * (point - mean) - normal[:, k:-1, -1].sum(axis=0) + np.einsum("skp,sk->p", cross, last)
@@ -207,7 +223,7 @@ def _on_diagonal(square: Array) -> Array:
     return np.einsum("...ii->...i", square)
 
 
-def _own(normal: Array, scales: Array, damping: float) -> Array:
+def curvature_of_nuisances(normal: Array, scales: Array, damping: float) -> Array:
     """Curvature of the pieces' nuisances with their priors."""
     k = scales.shape[1]
     own = normal[:, :k, :k].copy()
@@ -235,7 +251,7 @@ def _decided(node: Node, normal: Array, precision: Array, scales: Array, free: A
     """Covariance of the coordinates, and how many of them the data decide."""
     k = scales.shape[1]
     cross = normal[:, :k, k:-1]
-    information = _reduced(normal, cross, solved_positive(_own(normal, scales, 0.0), cross))
+    information = _reduced(normal, cross, solved_positive(curvature_of_nuisances(normal, scales, 0.0), cross))
     covariance = np.zeros_like(information)
     whole = (information + np.diag(precision + LEAST_CURVATURE))[np.ix_(free, free)]
     size = np.sqrt(np.maximum(np.diag(whole), LEAST_CURVATURE))

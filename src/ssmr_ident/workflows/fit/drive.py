@@ -10,39 +10,41 @@ from ssmr_ident.doctor.laws import FORMS, proposals
 from ssmr_ident.doctor.named import begun
 from ssmr_ident.doctor.rules import CERTAIN
 from ssmr_ident.doctor.table import FRICTION, log_evidence
-from ssmr_ident.estimate.baseline import STEPS, baseline_fit, on_every_sample, under_own_noise
-from ssmr_ident.estimate.coarser import coarser
+from ssmr_ident.estimate.baseline import BOTH_WHITE, STEPS, on_every_sample, on_few_samples, under_own_noise
 from ssmr_ident.estimate.exact import polish
 from ssmr_ident.estimate.generic import STATIC
 from ssmr_ident.estimate.network import paths_of
-from ssmr_ident.estimate.stretches import sampled
 from ssmr_ident.estimate.values import Fit, Problem, Start
 
 
-def with_friction(problem: Problem, fit: Fit) -> tuple[Problem, Fit, list[str]] | None:
-    """Dry friction beside mass and damper, under the noise that it leaves, and what is said of it; None where it is not
-    certainly better.
+def with_friction(problem: Problem, fit: Fit) -> tuple[Problem, Fit] | None:
+    """Dry friction beside mass and damper, under the noise that it leaves; None where it is not certainly better.
 
     Parameters
     ----------
     problem : Problem
-        Under white noise: what a baseline leaves, taken for noise, hides what it lacks.
+        Under the noise that is known before any fit.
     fit : Fit
         The baseline's.
+
+    Notes
+    -----
+    Noise stays white, at the sensor and in the force: of what a model leaves that is wrong in small things an
+    autoregressive model of many terms makes noise where these things are, and friction is then read elsewhere.
     """
-    few, begins, _ = sampled(coarser(problem))
-    base = baseline_fit(few)
+    few, base, begins, _ = on_few_samples(problem)
     form = next(f for f in FORMS if f.effect == FRICTION and f.kind == STATIC)
     # along the baseline's own motion the baseline leaves no force at all
     (offer,) = proposals(few, base, paths_of(few, base.node, base.point), forms=[form])
-    found = on_every_sample(problem, few, begun(few, offer, base), begins)
-    quiet, found = under_own_noise(problem, found)
+    loud, _ = under_own_noise(problem, fit, BOTH_WHITE)
+    quiet, found = under_own_noise(problem, on_every_sample(loud, few, begun(few, offer, base), begins), BOTH_WHITE)
     plain = polish(quiet, fit.node, Start(fit.point, fit.nuisances), STEPS)
     gained = log_evidence(found, quiet.samples) - log_evidence(plain, quiet.samples)
-    return (quiet, found, _told(quiet, found)) if gained > CERTAIN else None
+    return (quiet, found) if gained > CERTAIN else None
 
 
-def _told(problem: Problem, fit: Fit) -> list[str]:
+def told(problem: Problem, fit: Fit) -> list[str]:
+    """What is said of friction that was fitted."""
     unit = "N m" if problem.pieces[0].units[0].startswith("rad") else "N"
     k = next(k for k, c in enumerate(fit.node.coordinates) if c.name == "F_c_N")
     friction = float(fit.node.values(fit.point)[k])

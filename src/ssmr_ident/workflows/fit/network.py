@@ -17,6 +17,7 @@ from ssmr_ident.doctor.rules import OVER_NOISE
 from ssmr_ident.doctor.table import over_noise
 from ssmr_ident.estimate.baseline import fitted_baseline
 from ssmr_ident.estimate.clipped import within_range
+from ssmr_ident.estimate.model_error import under_model_error
 from ssmr_ident.estimate.network import EXACTLY, network_problem
 from ssmr_ident.estimate.values import Fit, Problem
 from ssmr_ident.experiments.campaign import Campaign, Measurement
@@ -45,6 +46,7 @@ def fit_network_session(campaign: Campaign, chosen: tuple[Measurement, ...]) -> 
         raise InputError(f"{known.file}: effects", "are not fitted with a network", mend)
     problem, clipped = within_range(network_problem(chosen, known), chosen)
     problem, fit = fitted_baseline(problem)
+    fit = under_model_error(problem, fit)
     fitted = exported(fit, known)
     stds = np.sqrt(np.maximum(np.diag(fit.covariance), 0.0))
     free = [k for k, c in enumerate(fit.node.baseline) if c.std > EXACTLY]

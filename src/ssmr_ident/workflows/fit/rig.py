@@ -15,6 +15,7 @@ from ssmr_ident.doctor.rules import OVER_NOISE
 from ssmr_ident.doctor.table import over_noise
 from ssmr_ident.estimate.baseline import fitted_baseline
 from ssmr_ident.estimate.clipped import within_range
+from ssmr_ident.estimate.model_error import under_model_error
 from ssmr_ident.estimate.one_recording import oscillation
 from ssmr_ident.estimate.pieces import FORCES
 from ssmr_ident.estimate.problem import natural_hz, problem_of
@@ -27,7 +28,7 @@ from ssmr_ident.physics.voltage_drive import DRIVE_KEYS
 from ssmr_ident.report.text_fit import file_variables
 from ssmr_ident.session.effects_block import in_rotary_units
 from ssmr_ident.workflows.fit.after_hit import modes_after_a_hit
-from ssmr_ident.workflows.fit.drive import with_friction
+from ssmr_ident.workflows.fit.drive import told, with_friction
 from ssmr_ident.workflows.fit.network import CORRELATED, LEARNT
 from ssmr_ident.workflows.fit.result import SessionFit
 from ssmr_ident.workflows.fit.rig_recordings import Found, Seen, recordings_of
@@ -55,8 +56,10 @@ def fit_rig_session(campaign: Campaign, chosen: tuple[Measurement, ...], coulomb
     problem, fit = fitted_baseline(plain)
     rubbed = None if springs(fit) or not coulomb else with_friction(plain, fit)
     if rubbed is not None:
-        problem, fit, said = rubbed
-        found.findings.extend(said)
+        problem, fit = rubbed
+    fit = under_model_error(problem, fit)
+    if rubbed is not None:
+        found.findings.extend(told(problem, fit))
     far = beyond(problem, fit) if over_noise(problem, fit) >= OVER_NOISE else None
     if far is not None:
         found.findings.append(str(far))
