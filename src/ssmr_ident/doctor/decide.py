@@ -148,7 +148,7 @@ def stands(row: Row, rows: Sequence[Row]) -> bool:
     """Whether each of two effects beats the other one in any shape, and halves what that leaves beyond white noise, or
     leaves nothing that goes with the motion or that another model explains, and ``FORMULA`` less; and both any one law,
     by evidence in sizes of what they themselves leave. Neither makes what was kept back worse. Of two functions of one
-    variable any shape of it holds both: there it is beaten by evidence, and the law alone leaves that much more."""
+    variable any shape of it holds both: it need not be worse than the two, and no more is asked of them there."""
     if len(row.ids) < 2:
         return True
     found = [held_against(row, k, rows) for k in (0, 1)]
@@ -156,13 +156,15 @@ def stands(row: Row, rows: Sequence[Row]) -> bool:
     if not found[0] or row.log_evidence < max(single, default=-math.inf) + SECOND * _temper(row):
         return False
     for alone in (rows for rows in found if rows):
-        if row.log_evidence < max(r.log_evidence for r in alone) + max(SECOND, grain(rows)):
-            return False
-        if row.heldout > min((r.heldout for r in alone if math.isfinite(r.heldout)), default=math.inf):
-            return False
         apart = without_both(row, alone)
+        if row.log_evidence < max(r.log_evidence for r in alone):
+            return False
         if not apart:
             continue
+        if row.log_evidence < max(r.log_evidence for r in apart) + max(SECOND, grain(rows)):
+            return False
+        if row.heldout > min((r.heldout for r in apart if math.isfinite(r.heldout)), default=math.inf):
+            return False
         best = max(apart, key=lambda r: r.log_evidence)
         least = min(r.over for r in apart)
         halved = least > 1.0 and row.over**2 - 1.0 < HALVED * (least**2 - 1.0)
@@ -197,10 +199,13 @@ def held_against(pair: Row, which: int, rows: Sequence[Row]) -> list[Row]:
 
 
 def without_both(pair: Row, rows: Sequence[Row]) -> list[Row]:
-    """Rows that cannot hold both of two listed effects: of functions of one variable, any shape of it does."""
-    of_one = pair.kinds[0] == pair.kinds[1] and len(set(pair.variables)) == 1 and all(pair.variables)
-    listed = not pair.generic and UNLISTED not in pair.ids
-    return [r for r in rows if not (r.generic and of_one and listed)]
+    """Rows that cannot hold both of two listed effects: of functions of one variable, any shape of it does. Dry
+    friction is one of the speed, whatever else it is."""
+    laws = list(zip(pair.ids, pair.kinds, pair.variables or ("", ""), strict=True))
+    first, second = ((STATIC, "v") if law == FRICTION else (kind, variable) for law, kind, variable in laws)
+    if first != second or not first[1] or pair.generic or UNLISTED in pair.ids:
+        return list(rows)
+    return [r for r in rows if not (r.generic and first[1] in r.variables)]
 
 
 def kind_shares(rows: Sequence[Row], base: Row) -> tuple[Share, ...]:

@@ -196,7 +196,7 @@ def offered_back(search: Search, count: int = OFFERED) -> None:
 
 def offered_up(search: Search) -> None:
     """A model with a member of any shape that is worse than the one without, which it contains, begins again there."""
-    for fit in [f for f in search.fits if len(f.node.members) > 1]:
+    for fit in [f for f in search.fits if f.node.members]:
         for member in (m for m in fit.node.members if m.tables):
             poorer = next((f for f in search.fits if f.node.name == fit.node.without(member).name), None)
             if poorer is not None and poorer.cost < fit.cost - UNIT:

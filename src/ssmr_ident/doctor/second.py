@@ -104,13 +104,13 @@ def exchanged(search: Search, say: Progress) -> None:
 
 
 def in_other_formulas(search: Search, say: Progress) -> None:
-    """The laws of the best named model in the other formulas of their effects, where any shape is better or more than
-    noise is left."""
+    """The laws of the best named model in the other formulas of their effects: of one law where any shape is better or
+    more than noise is left, of two always, for what one leaves the other takes."""
     rows = search.rows()
     best = next((r for r in rows if r.ids and not r.generic), None)
     if best is None or best.fit is None:
         return
-    if best.over < OVER_NOISE and rows[0].log_evidence < best.log_evidence + TIE:
+    if len(best.ids) == 1 and best.over < OVER_NOISE and rows[0].log_evidence < best.log_evidence + TIE:
         return
     found = best.fit
     paths, names = motion(search.problem, found), {f.node.name for f in search.fits}
