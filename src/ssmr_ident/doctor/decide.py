@@ -101,13 +101,15 @@ def certain(row: Row, base: Row) -> bool:
 
 
 def needed(law: Row, left: float, rows: Sequence[Row]) -> bool:
-    """Whether a law that takes most of the misfit is there in another formula: its kind in any shape, as smooth as that
-    is, is certainly worse without it than beside it, no other kind alone is better than both, and any shape of the
-    law's own variable takes most of what any shape at all takes beside it."""
+    """Whether a law that takes most of the misfit is there in another formula: its kind in any shape (of friction: in
+    any smooth one, for one with a step where the motion turns has friction in it) is certainly worse without it than
+    beside it, no other kind alone is better than both, and any shape of the law's own variable takes most of what any
+    shape at all takes beside it."""
     own = [r for r in rows if r.generic and set(r.kinds) == {law.kinds[0]}]
     other = [r.log_evidence for r in rows if r.generic and len(r.ids) == 1 and r.kinds[0] != law.kinds[0]]
     if max(other, default=-math.inf) > max(r.log_evidence for r in (law, *own)) + SECOND:
         return False
+    own = [r for r in own if r.smooth or law.ids != (FRICTION,)]
     beside = [r for r in own if len(r.ids) == 2 and r.ids[0] == law.ids[0]]
     without = [r.log_evidence for r in own if len(r.ids) == 1]
     if (
@@ -163,7 +165,7 @@ def stands(row: Row, rows: Sequence[Row]) -> bool:
             continue
         if row.log_evidence < max(r.log_evidence for r in apart) + max(SECOND, grain(rows)):
             return False
-        if row.heldout > min((r.heldout for r in apart if math.isfinite(r.heldout)), default=math.inf):
+        if row.unseen > min((r.unseen for r in apart if math.isfinite(r.unseen)), default=math.inf):
             return False
         best = max(apart, key=lambda r: r.log_evidence)
         least = min(r.over for r in apart)

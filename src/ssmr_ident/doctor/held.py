@@ -16,13 +16,16 @@ from ssmr_ident.estimate.pieces import Piece, cut
 from ssmr_ident.estimate.regression import starts_of
 from ssmr_ident.estimate.shooting import shot
 from ssmr_ident.estimate.stretches import moving
-from ssmr_ident.estimate.values import Fit, Problem, Start
+from ssmr_ident.estimate.values import Fit, Problem, Start, with_noises
 
 STRETCHES, EVERY_THIRD = 6, 3
 """A lone recording is cut into as many; every third is kept back."""
 
 PERIODS = 2.0
 """That a stretch holds at least."""
+
+STEPS = 12
+"""Gauss-Newton steps of starts and zeros."""
 
 
 def interleaved(problem: Problem) -> tuple[Problem, Problem | None]:
@@ -69,6 +72,19 @@ def _of(problem: Problem, pieces: list[Piece]) -> Problem:
     return replace(problem, pieces=tuple(pieces), noises=tuple(noise[id(p.white)] for p in pieces))
 
 
+def innovations(kept: Problem, held: Fit, fitted: Problem) -> float:
+    """RMS of what a model leaves of other recordings under the noise of those that it was fitted to.
+
+    nan where a spring holds the mass, or no recording fitted has the rate of one kept back. ``held`` : its fit on them.
+    """
+    noises = {round(p.rate, 6): noise for p, noise in zip(fitted.pieces, fitted.noises, strict=True)}
+    if not kept.drifts or any(round(p.rate, 6) not in noises for p in kept.pieces):
+        return math.nan
+    noisy = with_noises(kept, [noises[round(p.rate, 6)] for p in kept.pieces])
+    again = polish(noisy, held.node, Start(held.point, held.nuisances), STEPS, freeze=range(len(held.point)))
+    return math.sqrt(again.left / max(noisy.samples, 1))
+
+
 def held_fit(kept: Problem, fit: Fit, near: Fit | None = None) -> Fit | None:
     """A fit's model on other recordings, their starts and zeros alone refitted.
 
@@ -84,5 +100,5 @@ def held_fit(kept: Problem, fit: Fit, near: Fit | None = None) -> Fit | None:
         start = shot(kept, fit.node, start, held=True)
     else:
         start = Start(fit.point, tuple(starts_of(kept, fit.node, start)))
-    found = polish(kept, fit.node, start, 12, freeze=range(len(fit.point)))
+    found = polish(kept, fit.node, start, STEPS, freeze=range(len(fit.point)))
     return found if math.isfinite(found.cost) else None

@@ -8,9 +8,11 @@ from collections.abc import Sequence
 from ssmr_ident.diagnose.diagnosis import PredictionQuality
 from ssmr_ident.doctor.decide import MISSING, NOTHING, Decision
 from ssmr_ident.doctor.left import beyond, wandering
-from ssmr_ident.doctor.rules import HALVED, OVER_NOISE
+from ssmr_ident.doctor.rules import FORMULA, HALVED, OVER_NOISE
 from ssmr_ident.doctor.table import Row
 from ssmr_ident.estimate.values import Problem
+
+NOT_QUITE = "its form, or a smaller effect beside it, is not quite the world's"
 
 
 def notes_on(
@@ -52,14 +54,19 @@ def _nearest(decision: Decision, rows: Sequence[Row], base: Row) -> tuple[str, .
 
 def _left(problem: Problem, decision: Decision, chosen: Row, heldout: PredictionQuality) -> tuple[str, ...]:
     if problem.drifts:
-        return (
+        said = (
             "no spring holds the mass, so that whatever pushed it beside the logged force has added up: the noise "
             "floor is that of the sensor alone, and no model comes near it",
         )
+        if decision.verdict != MISSING or not decision.listed or decision.left < FORMULA:
+            return said
+        return (
+            *said,
+            f"{chosen.name} leaves {100 * decision.left:.0f} % of what a force of any shape takes: {NOT_QUITE}",
+        )
     if decision.verdict == MISSING and heldout.after > OVER_NOISE * heldout.noise_floor:
         return (
-            f"{chosen.name} still leaves {heldout.after / heldout.noise_floor:.1f} times the noise floor: its form, or "
-            "a smaller effect beside it, is not quite the world's",
+            f"{chosen.name} still leaves {heldout.after / heldout.noise_floor:.1f} times the noise floor: {NOT_QUITE}",
         )
     return ()
 

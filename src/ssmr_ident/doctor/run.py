@@ -17,7 +17,7 @@ from ssmr_ident.diagnose.diagnosis import Diagnosis
 from ssmr_ident.diagnose.setup import keep_back
 from ssmr_ident.doctor.decide import MISSING, Decision, decide
 from ssmr_ident.doctor.fitted import FAR_OFF, SHORT
-from ssmr_ident.doctor.held import held_fit, interleaved, with_motion
+from ssmr_ident.doctor.held import held_fit, innovations, interleaved, with_motion
 from ssmr_ident.doctor.left import left
 from ssmr_ident.doctor.networks import also_at
 from ssmr_ident.doctor.result import Examined, answer, errors, predictions
@@ -80,11 +80,10 @@ def examined(campaign: Campaign, known: ParameterSet, progress: Progress | None,
     campaign = arranged(campaign)  # sums round differently in another order
     targets, heldout, by_us = roles(campaign)
     alone = campaign.session.baseline != NETWORK
-    prepared = problem_of if alone else network_problem
-    fitted = prepared(targets, known)
+    fitted = problem_of(targets, known) if alone else network_problem(targets, known)
     notes: list[str] = []
     if heldout:
-        kept: Problem | None = prepared(heldout, known)
+        kept: Problem | None = problem_of(heldout, known, fitted) if alone else network_problem(heldout, known)
         if by_us:
             names = ", ".join(m.name for m in heldout)
             notes.append(f"the session holds nothing back, so {names} did not enter the fits that decided")
@@ -113,7 +112,7 @@ def examined(campaign: Campaign, known: ParameterSet, progress: Progress | None,
             "recordings were fitted in stretches of that length, each with a start of its own"
         )
     rows = tuple(_with_left(r, search.problem) if len(r.ids) != 1 and not r.generic else r for r in search.table())
-    rows, decision = _decided(rows, kept, known)
+    rows, decision = _decided(rows, search.problem, kept, known)
     problem, rows, decision = _in_small_steps(rows, decision, search.problem, kept, known)
     rows, decision = _with_intervals(rows, decision, problem)
     if not alone:
@@ -165,7 +164,9 @@ def _with_left(row: Row, problem: Problem) -> Row:
     return replace(row, left=left(problem, row.fit))
 
 
-def _decided(rows: tuple[Row, ...], kept: Problem | None, known: ParameterSet) -> tuple[tuple[Row, ...], Decision]:
+def _decided(
+    rows: tuple[Row, ...], problem: Problem, kept: Problem | None, known: ParameterSet
+) -> tuple[tuple[Row, ...], Decision]:
     """The decision, once what is named, and what that is held against, has predicted what was kept back."""
     asked: set[str] = set()
     near: Fit | None = None
@@ -179,10 +180,10 @@ def _decided(rows: tuple[Row, ...], kept: Problem | None, known: ParameterSet) -
         asked.update(wanted)
         found = []
         for row in rows:
-            found.append(_held(row, kept, known, near) if row.name in wanted else row)
+            found.append(_held(row, problem, kept, known, near) if row.name in wanted else row)
             near = found[-1].kept or near
         near = min((r.kept for r in found if r.kept is not None), key=lambda f: f.cost, default=None)
-        rows = tuple(_held_nearer(r, kept, known, near) if r.name in wanted else r for r in found)
+        rows = tuple(_held_nearer(r, problem, kept, known, near) if r.name in wanted else r for r in found)
 
 
 def _in_small_steps(
@@ -199,7 +200,7 @@ def _in_small_steps(
         return problem, rows, decision
     new = replace(chosen, fit=fit)
     if kept is not None and chosen.kept is not None:
-        new = _held(new, finer(kept), known, chosen.kept)
+        new = _held(new, small, finer(kept), known, chosen.kept)
     return small, *_in_place_of(chosen, new, rows, decision)
 
 
@@ -215,19 +216,20 @@ def _in_place_of(chosen: Row, new: Row, rows: tuple[Row, ...], decision: Decisio
     return tuple(new if r is chosen else r for r in rows), replace(decision, chosen=new)
 
 
-def _held(row: Row, kept: Problem, known: ParameterSet, near: Fit | None) -> Row:
+def _held(row: Row, problem: Problem, kept: Problem, known: ParameterSet, near: Fit | None) -> Row:
     """A row with its error on what was kept back."""
     held = held_fit(kept, row.fit, near) if row.fit is not None else None
     if held is None:
         return row
-    return replace(row, kept=held, heldout=float(np.mean(errors(predictions(kept, held, known)))))
+    heldout = float(np.mean(errors(predictions(kept, held, known))))
+    return replace(row, kept=held, heldout=heldout, innovations=innovations(kept, held, problem))
 
 
-def _held_nearer(row: Row, kept: Problem, known: ParameterSet, near: Fit | None) -> Row:
+def _held_nearer(row: Row, problem: Problem, kept: Problem, known: ParameterSet, near: Fit | None) -> Row:
     """A row with its error once more from the starts of the best, where it is far off: it may have been caught."""
     if row.kept is None or near is None or row.kept.cost < FAR_OFF * near.cost:
         return row
-    again = _held(row, kept, known, near)
+    again = _held(row, problem, kept, known, near)
     return again if again.kept is not None and again.kept.cost < row.kept.cost else row
 
 

@@ -17,6 +17,7 @@ from ssmr_ident.doctor.fitted import (
     beside,
     best_paths,
     carried,
+    joined,
     offered_back,
 )
 from ssmr_ident.doctor.kinds import kinds
@@ -145,6 +146,10 @@ def _beside(search: Search, say: Progress, first: Fit) -> bool:
     if law.id == FRICTION:
         own += [memory(problem, paths)] if law.kind == STATIC else [static(problem, paths, "v")]
     shaped = [search.add(beside(problem, first, m, FULL)) for m in own]
+    if law.id == FRICTION:  # and without it: other shapes have friction in them
+        pair = search.add(beside(problem, first, static(problem, paths, smooth=True), FULL))
+        alone = pair.node.without(law)
+        search.add(polish(problem, alone, Start(joined(alone, pair), carried(alone, pair)), FULL))
     short = []
     others = [m for m in offers if not (m.tables and m.kind == law.kind)]
     for index, member in enumerate(others):

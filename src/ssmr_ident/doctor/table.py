@@ -10,6 +10,7 @@ import numpy as np
 
 from ssmr_ident.doctor.left import Left
 from ssmr_ident.doctor.rules import GRAIN, LOOP, SEEN
+from ssmr_ident.estimate.generic import SMOOTH
 from ssmr_ident.estimate.node import MEMORY, Member
 from ssmr_ident.estimate.simulated import GEARS
 from ssmr_ident.estimate.values import Fit, Problem
@@ -44,11 +45,16 @@ class Row:
         What is left, window by window; of the baseline and of two named effects.
     heldout : float
         Error on what was kept back, in the metric; nan where nothing was, or it was not asked for.
+    innovations : float
+        RMS of what is left there under the noise of the recordings fitted, where no spring holds the mass and a run
+        from its start adds up what no model knows; else nan.
     fit : Fit or None
     kept : Fit or None
         The same with starts and zeros of what was kept back.
     variables : tuple of str
         Of which alone each member is a function; empty where it is of several, or is no static force.
+    smooth : bool
+        Whether a shape of it has no step where the motion turns.
     equal : tuple of str
         The same effects by other names, where another law makes the same force; else empty.
     """
@@ -63,10 +69,17 @@ class Row:
     over: float = 1.0
     left: Left = field(default_factory=lambda: Left(math.inf))
     heldout: float = math.nan
+    innovations: float = math.nan
     fit: Fit | None = None
     kept: Fit | None = None
     variables: tuple[str, ...] = ()
+    smooth: bool = False
     equal: tuple[str, ...] = ()
+
+    @property
+    def unseen(self) -> float:
+        """Error on what was kept back, by which two models are compared."""
+        return self.heldout if math.isnan(self.innovations) else self.innovations
 
 
 def grain(rows: Sequence[Row]) -> float:
@@ -85,7 +98,8 @@ def row_of(fit: Fit, problem: Problem, zero: float = 0.0) -> Row:
     return Row(
         tuple(_called(fit, m) for m in members), tuple(m.kind for m in members), fit.node.name, fit.node.generic,
         log_evidence(fit, problem.samples) - zero, fit.left, problem.samples, over_noise(problem, fit), fit=fit,
-        variables=tuple(m.variable for m in members), equal=_equal(fit, problem.size),
+        variables=tuple(m.variable for m in members), smooth=any(m.form == SMOOTH for m in members),
+        equal=_equal(fit, problem.size),
     )  # fmt: skip
 
 

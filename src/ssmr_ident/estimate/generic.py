@@ -20,7 +20,7 @@ from ssmr_ident.simulate.rig_kernel import BY_INERTIA, BY_POSITION, BY_VELOCITY
 Array = np.ndarray
 
 STATIC, EXTRA, CHANGING, SENSOR = "static_force", "extra_motion", "changing", "sensor_chain"
-ANY, BY_RECORDING = "any shape", "by recording"
+ANY, SMOOTH, BY_RECORDING = "any shape", "any smooth shape", "by recording"
 
 CELLS = 400
 """Of a table: straight lines between."""
@@ -44,7 +44,7 @@ LOOSE = 3.0
 """Prior standard deviation of a coefficient, in the forces that the linear rig shows."""
 
 
-def static(problem: Problem, paths: Sequence[Array], variable: str = "") -> Member:
+def static(problem: Problem, paths: Sequence[Array], variable: str = "", smooth: bool = False) -> Member:
     """f(x) + g(v) + h(x) v + s(x) r(v), x and v that the linear rig has left out; s and r are steep.
 
     Parameters
@@ -54,6 +54,8 @@ def static(problem: Problem, paths: Sequence[Array], variable: str = "") -> Memb
         Position, velocity, acceleration per piece; they say where the tables are.
     variable : str
         ``x`` for f alone, ``v`` for g.
+    smooth : bool
+        Without a step where the motion turns: g is of powers alone, and s r is left out.
     """
     x, v = np.concatenate([p[:, 0] for p in paths]), np.concatenate([p[:, 1] for p in paths])
     reach, fastest = 1.1 * float(np.abs(x).max()), float(np.abs(v).max())
@@ -63,16 +65,19 @@ def static(problem: Problem, paths: Sequence[Array], variable: str = "") -> Memb
     driven = any(p.driven for p in problem.pieces)
     by_x = _smooth_shapes(grid, x / reach, 0.0 if driven else DENSER)
     u = low * np.sinh(top * grid) / fastest
-    by_v = np.column_stack([*(np.tanh(u / width) for width in STEEP), u * np.abs(u), u**3, np.abs(u), u**2])
+    steps = [] if smooth else [np.tanh(u / width) for width in STEEP]
+    by_v = np.column_stack([*steps, u * np.abs(u), u**3, np.abs(u), u**2])
     by_v = _without(by_v, np.column_stack([u]), np.interp(np.arcsinh(v / low) / top, grid, np.arange(CELLS + 1.0)))
     side, sharp = np.tanh(grid / SIDE), np.tanh(u / STEEP[0])
     both = np.array([
         np.column_stack([grid, np.abs(grid), grid**2, side, side, grid, np.abs(grid)]),
         np.column_stack([u, u, u, u, sharp, sharp, sharp]),
     ])  # fmt: skip
+    both = both[..., :4] if smooth else both
     parts = {"x": Tables(by_position=by_x), "v": Tables(by_velocity=by_v), "": Tables(by_x, by_v, both)}
     tables = replace(parts[variable], reach=reach, low=low, top=top)
     member = _member("unlisted", STATIC, tables, problem)
+    member = replace(member, form=SMOOTH) if smooth else member
     return replace(member, form=f"{ANY} over {variable}", variable=variable) if variable else member
 
 

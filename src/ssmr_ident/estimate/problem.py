@@ -41,7 +41,9 @@ SHARPEST = 10.0
 as fast as the force does."""
 
 
-def problem_of(measurements: Sequence[Measurement], parameters: ParameterSet) -> Problem:
+def problem_of(
+    measurements: Sequence[Measurement], parameters: ParameterSet, as_fast: Problem | None = None
+) -> Problem:
     """Prepare recordings of a rig.
 
     Parameters
@@ -49,6 +51,8 @@ def problem_of(measurements: Sequence[Measurement], parameters: ParameterSet) ->
     measurements : sequence of Measurement
     parameters : ParameterSet
         Mass, damping, stiffness, as known.
+    as_fast : Problem, optional
+        Other recordings, up to whose fastest motion these are followed; else up to their own.
     """
     frequency = natural_hz(parameters)
     seen = [seen_hz(m) for m in measurements]
@@ -62,6 +66,8 @@ def problem_of(measurements: Sequence[Measurement], parameters: ParameterSet) ->
     motor = drive_from_parameters(parameters)
     if motor is not None:
         fastest = max(fastest, *(in_the_loop_hz(m, parameters, motor) for m in measurements))
+    if as_fast is not None:
+        frequency, fastest = as_fast.frequency, as_fast.fastest
     problem = made(measurements, (), (), frequency, fastest, bandwidth, motor is not None)
     driven = any(p.driven and not p.based for p in problem.pieces)
     baseline = (*baseline_of(parameters, driven, problem.size, frequency), *drive_coordinates(parameters))
