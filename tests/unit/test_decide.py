@@ -196,10 +196,49 @@ def test_two_listed_laws_of_one_variable_are_both_there_though_any_shape_of_it_h
     )
     shape = row("nonlinear_stiffness unlisted", "static_force static_force", 22_360.0, 4985.0, 0.999, True, ("x", "x"))
     assert decide([BASE, law, play, pair, shape]).chosen is pair
-    formula = replace(shape, log_evidence=22_395.0)
+    formula = replace(shape, log_evidence=22_405.0)
     assert decide([BASE, law, play, pair, formula]).chosen is not pair
     hardly = replace(law, chi2=5060.0, over=1.0, log_evidence=22_380.0)
     assert decide([BASE, hardly, play, pair, shape]).chosen is hardly
+
+
+def test_friction_is_a_function_of_speed_where_drag_is_beside_it() -> None:
+    """Friction and any shape over speed hold drag as well: no more is asked than that the two are not worse."""
+    friction = row("dry_friction", "memory", 18_000.0, 14_000.0, 1.7, variables=("",))
+    drag = row("quadratic_damping", "static_force", 9000.0, 32_000.0, 2.5, variables=("v",))
+    over_speed = row("unlisted", "static_force", 21_000.0, 8000.0, 1.3, True, ("v",))
+    pair = row("dry_friction quadratic_damping", "memory static_force", 22_400.0, 5000.0, 1.0, variables=("", "v"))
+    both = row("dry_friction unlisted", "memory static_force", 22_390.0, 4990.0, 0.999, True, ("", "v"))
+    pair, both = replace(pair, heldout=2.0), replace(both, heldout=1.9)
+    found = decide([BASE, friction, drag, over_speed, pair, both])
+    assert found.chosen is pair
+    assert decide([BASE, friction, drag, over_speed, pair, replace(both, log_evidence=22_410.0)]).chosen is not pair
+    other = replace(both, kinds=("memory", "memory"), variables=("", ""), chi2=5010.0)
+    assert decide([BASE, friction, drag, over_speed, pair, other]).chosen is not pair
+
+
+def test_friction_is_needed_where_a_smooth_shape_alone_is_worse() -> None:
+    """A shape with a step where the motion turns has friction in it, and says nothing against it."""
+    friction = row("dry_friction", "static_force", 21_000.0, 8000.0, 1.3, variables=("v",))
+    steep = row("unlisted", "static_force", 22_400.0, 5000.0, 1.0, True, ("",))
+    over_speed = row("dry_friction unlisted", "static_force static_force", 22_000.0, 5500.0, 1.05, True, ("v", "v"))
+    beside = row("dry_friction unlisted", "static_force static_force", 22_350.0, 5050.0, 1.0, True, ("v", ""))
+    smooth = row("unlisted", "static_force", 20_000.0, 9800.0, 1.4, True, ("",))
+    beside, smooth = replace(beside, smooth=True), replace(smooth, smooth=True)
+    found = decide([BASE, friction, steep, over_speed, beside, smooth])
+    assert found.chosen is friction
+    assert found.listed
+    enough = replace(smooth, log_evidence=22_345.0)
+    assert decide([BASE, friction, steep, over_speed, beside, enough]).chosen is steep
+
+
+def test_where_no_spring_holds_the_mass_innovations_are_compared() -> None:
+    """A run from its start adds up what no model knows."""
+    first = row("dry_friction", "static_force", 20_000.0, 9500.0, 1.4, variables=("v",))
+    pair = row("dry_friction sensor_delay", "static_force sensor_chain", 22_400.0, 5000.0, 1.0, variables=("v", ""))
+    first, pair = replace(first, heldout=3.0, innovations=1.0), replace(pair, heldout=2.0, innovations=1.2)
+    assert decide([BASE, first, pair]).chosen is first
+    assert decide([BASE, first, replace(pair, heldout=4.0, innovations=0.9)]).chosen is not first
 
 
 def test_friction_that_never_slides_is_a_loop_by_another_name() -> None:

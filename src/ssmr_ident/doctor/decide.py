@@ -109,7 +109,7 @@ def needed(law: Row, left: float, rows: Sequence[Row]) -> bool:
     other = [r.log_evidence for r in rows if r.generic and len(r.ids) == 1 and r.kinds[0] != law.kinds[0]]
     if max(other, default=-math.inf) > max(r.log_evidence for r in (law, *own)) + SECOND:
         return False
-    own = [r for r in own if r.smooth or law.ids != (FRICTION,)]
+    own = ([r for r in own if r.smooth] if law.ids == (FRICTION,) else []) or own
     beside = [r for r in own if len(r.ids) == 2 and r.ids[0] == law.ids[0]]
     without = [r.log_evidence for r in own if len(r.ids) == 1]
     if (
