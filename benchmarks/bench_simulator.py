@@ -30,7 +30,7 @@ from ssmr_ident.physics.motor import wheel_rates
 from ssmr_ident.physics.robot import Robot, robot_from_parameters
 from ssmr_ident.session import read_parameters
 from ssmr_ident.simulate import simulate
-from ssmr_ident.simulate.many import Release, simulate_many, simulate_pulls
+from ssmr_ident.simulate.many import Release, simulate_many, simulate_alike
 
 STEP = 2e-5  # s
 YAW_RATE = np.radians(45.0)
@@ -143,7 +143,7 @@ def eight_at_once(robot: Robot, rounds: int) -> None:
             )
             for slack in 1e-3 * random.random(count)
         ]
-        _compared(f"pulls, {law}", lambda some: simulate_pulls(some, 100.0, 2e-3, ("force",)), pulls, rounds)
+        _compared(f"pulls, {law}", lambda some: simulate_alike(some, 100.0, 2e-3, ("force",)), pulls, rounds)
 
 
 def _compared(name: str, together: Callable[[list], np.ndarray], asked: list, rounds: int) -> None:

@@ -556,7 +556,7 @@ def test_the_slip_of_a_driven_wheel_carries_the_rolling_resistance(robot: Robot)
 def test_the_random_floor_has_the_height_and_correlation_asked_for() -> None:
     """rms exactly; correlation e^-(d/l)² averaged over floors, lines and columns alike."""
     length, height = 0.04, 3e-4
-    floors = [ground_roughness.field(height, length, seed) for seed in range(6)]
+    floors = [height * ground_roughness.field(length, seed).reshape(2 * [ground_roughness.CELLS]) for seed in range(6)]
     for cells in (5, 10, 15):
         distance = cells * ground_roughness.CELL
         for axis in (0, 1):

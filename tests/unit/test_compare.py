@@ -19,7 +19,7 @@ from ssmr_ident.experiments.campaign import load
 from ssmr_ident.experiments.pull import pull
 from ssmr_ident.physics.robot import robot_from_parameters
 from ssmr_ident.session import read_parameters, write_parameters
-from ssmr_ident.simulate.many import simulate_pulls
+from ssmr_ident.simulate.many import simulate_alike
 from ssmr_ident.workflows.compare import compare_session
 from ssmr_ident.workflows.simulate.request import Request
 from ssmr_ident.workflows.simulate.run import simulate_to_file
@@ -115,7 +115,7 @@ def test_a_decay_is_explained_by_its_own_parameters_whatever_its_start(root: Pat
 @pytest.mark.compiles
 def test_a_pull_finds_slack_and_zero(tmp_path: Path) -> None:
     robot = robot_from_parameters(read_parameters("p3at-extended"))
-    (pulled,) = simulate_pulls([(robot, {}, pull(duration=3.0))], 100.0, 1e-4, ("force",))[:, :, 0]
+    (pulled,) = simulate_alike([(robot, {}, pull(duration=3.0))], 100.0, 1e-4, ("force",))[:, :, 0]
     slack, zero = 40, 2.5  # samples at 1 mm/s and 100 Hz: 0.4 mm
     force = np.concatenate([np.zeros(slack), pulled[:-slack]]) + zero
     time = np.arange(len(force)) / 100.0

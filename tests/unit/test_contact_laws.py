@@ -15,7 +15,7 @@ from ssmr_ident.experiments.pull import pull
 from ssmr_ident.physics.robot import GRAVITY, Robot, robot_from_parameters
 from ssmr_ident.session import read_parameters, write_parameters
 from ssmr_ident.simulate.bench import drag_wheel
-from ssmr_ident.simulate.many import simulate_pulls
+from ssmr_ident.simulate.many import simulate_alike
 from ssmr_ident.simulate.simulation import simulate
 
 
@@ -92,7 +92,7 @@ def test_under_the_cone_by_name_and_by_its_speed_the_answers_are_the_same(robot:
 
 def test_printed_pulls_in_lanes(robot: Robot) -> None:
     robots = [replace(robot.with_contact("printed_6_4"), mu_static=0.8 + 0.02 * i) for i in range(4)]
-    together = simulate_pulls([(one, {}, pull(duration=4.0)) for one in robots], 100.0, 1e-4, ("force", "ay"))
+    together = simulate_alike([(one, {}, pull(duration=4.0)) for one in robots], 100.0, 1e-4, ("force", "ay"))
     for one, found in zip(robots, together, strict=True):
         alone = simulate(one, pull(duration=4.0), 100.0, 1e-4)
         assert np.array_equal(found, np.column_stack([alone["force"], alone["ay"]]))

@@ -15,7 +15,7 @@ from ssmr_ident.experiments.scenario import Scenario
 from ssmr_ident.physics.effects import CATALOGUE
 from ssmr_ident.physics.robot import Robot, robot_from_parameters
 from ssmr_ident.session import read_parameters
-from ssmr_ident.simulate.many import Release, simulate_many, simulate_pulls
+from ssmr_ident.simulate.many import Release, simulate_alike, simulate_many
 from ssmr_ident.simulate.simulation import simulate
 from ssmr_ident.simulate.together import FEWEST
 
@@ -129,10 +129,29 @@ def test_pulls_in_lanes(robot: Robot, sliding_speed: float, direction: str) -> N
             )
             for k in range(FEWEST)
         ]
-        together = simulate_pulls(pulls, 100.0, 1e-3, ("force",))[:, :, 0]
+        together = simulate_alike(pulls, 100.0, 1e-3, ("force",))[:, :, 0]
         alone = [simulate(body, one, 100.0, 1e-3, effects)["force"] for body, effects, one in pulls]
         np.testing.assert_array_equal(together, alone, err_msg=effect)
         assert np.ptp(together) > 10.0
+
+
+@pytest.mark.parametrize("sliding_speed", [0.0, 0.3])
+def test_swivels_over_uneven_floors_in_lanes(robot: Robot, sliding_speed: float) -> None:
+    """Each on a floor of its own, of its own height."""
+    robot = replace(robot, sliding_speed=sliding_speed)
+    rates = np.array([[-3.0, 3.0]])
+    floors = [{"ground_roughness": {"height_m": 1e-4 * (1 + k % 3), "seed": 1.0 + k % 2}} for k in range(WIDTH + FEWEST)]
+    for effect in (
+        {},
+        {"ground_joints": {"depth_m": 2e-4, "pitch_m": 0.02}},
+        {"wheel_eccentricity": {"eccentricity_m": 3e-4}},
+        {"wheel_lift": {}, "flexible_mast": {"f_mast_Hz": 9.0}},
+    ):
+        runs = [(robot, {**floor, **effect}, Scenario("swivel", 0.6, wheel_rates=rates)) for floor in floors]
+        together = simulate_alike(runs, 500.0, 5e-4, ("ay", "load_1"))
+        alone = [simulate(body, one, 500.0, 5e-4, effects) for body, effects, one in runs]
+        np.testing.assert_array_equal(together, [np.column_stack([one["ay"], one["load_1"]]) for one in alone])
+        assert len({one.tobytes() for one in together}) == 6  # two floors of three heights
 
 
 def test_runs_that_are_not_alike_do_not_share_lanes(robot: Robot) -> None:

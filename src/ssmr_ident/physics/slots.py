@@ -147,8 +147,8 @@ def effect_vector(effects: Mapping[str, Mapping[str, float]]) -> np.ndarray:
 
 
 def is_plain(vector: np.ndarray) -> bool:
-    """Whether none of the effects that the simulator's loop knows acts."""
-    return np.array_equal(vector, _OFF)
+    """Whether none of the effects that the simulator's loop knows acts, but for a rough floor."""
+    return np.array_equal(np.delete(vector, ROUGHNESS), np.delete(_OFF, ROUGHNESS))
 
 
 def _off(slot: str) -> float:

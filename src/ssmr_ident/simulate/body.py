@@ -31,7 +31,7 @@ from ssmr_ident.simulate import layout as k
 from ssmr_ident.simulate.mast import inverse_mass_matrix
 
 LOADED, POINTS, UNSEEN = k.LOADED, k.POINTS, k.UNSEEN
-FLAT = np.zeros((1, 1))
+FLAT = np.zeros(1)
 _AS_IT_IS = [1.0, 1.0, 1.0]
 _UNEVEN = np.array([JOINT_DEPTH, ECCENTRICITY, ROUGHNESS])
 _POSE = ("x", "y", "z", "roll", "pitch", "yaw")
@@ -45,7 +45,7 @@ _SWITCHES = np.array(
         slots.CUBIC, slots.KNEE_SHARE, slots.CUBIC_SHARE, slots.QUADRATIC, slots.FRICTION_FORCE, slots.SLIDER,
         slots.FRICTION_ROUNDING, slots.ALPHA, slots.RELAXATION_STIFFNESS, slots.GAP, slots.GAP_SHARE_X,
         slots.KINETIC_SHARE, slots.LOAD_EXPONENT, slots.ROLLING, slots.LIFT, slots.CORIOLIS, slots.MAST_HZ,
-        slots.BELT_STIFFNESS,
+        slots.BELT_STIFFNESS, JOINT_DEPTH, ECCENTRICITY, ROUGHNESS,
         *range(slots.UNLISTED, slots.UNLISTED + len(unlisted.TERMS)),
     ]
 )  # fmt: skip
@@ -65,10 +65,11 @@ class Body:
         As effects have changed it.
     active : mapping of effect id to complete parameters
     e : (SLOTS,) float
-    floor : (n, n) float [m]
+    floor : (n²,) float
+        In units of its roughness.
     mast : (8, 8) float
     beyond : bool
-        False where the baseline is all there is.
+        False where the baseline, on a floor that may be rough, is all there is.
     read_otherwise : bool
         Sensor effects change the channels.
     """
@@ -83,7 +84,7 @@ class Body:
 
     @cached_property
     def uneven(self) -> np.ndarray | None:
-        """The floor, (n, n) float [m], where anything makes it uneven; None where it is flat."""
+        """The floor where anything makes it uneven; None where it is flat."""
         return self.floor if any(self.e[_UNEVEN].tolist()) else None
 
     @cached_property
@@ -93,7 +94,7 @@ class Body:
         switches, ahead = self.e[_SWITCHES] != _OFF, p[POINTS : POINTS + 12 : 3] > 0.0
         return (
             self.beyond, switches.tobytes(), ahead.tobytes(), p[k.SLIDING_SPEED] > 0.0, p[k.SLIP_COUPLING] != 0.0,
-            p[k.AS_PRINTED] > 0.0, id(self.uneven),
+            p[k.AS_PRINTED] > 0.0, self.uneven is None,
         )  # fmt: skip
 
     @cached_property
@@ -155,7 +156,7 @@ def _floor(active: Effects) -> np.ndarray:
     values = active.get("ground_roughness")
     if not values or values["height_m"] == 0.0:
         return FLAT
-    return ground_roughness.field(values["height_m"], values["length_m"], values["seed"])
+    return ground_roughness.field(values["length_m"], int(values["seed"]))
 
 
 def pack_robot(robot: Robot) -> np.ndarray:

@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 
 from ssmr_ident.core.kernel import kernel
-from ssmr_ident.core.simd import anywhere
+from ssmr_ident.core.simd import anywhere, first, lanewise
 from ssmr_ident.physics.effects import ground_joints, ground_roughness, wheel_eccentricity
 from ssmr_ident.physics.slots import ECCENTRICITY, JOINT_DEPTH, JOINT_PITCH, JOINT_WIDTH
 
-_joint, _joint_slope = ground_joints.height, ground_joints.slope
+_joint, _joint_slope = lanewise(ground_joints.height), lanewise(ground_joints.slope)
 _rough = ground_roughness.height
-_run_out, _run_out_slope = wheel_eccentricity.height, wheel_eccentricity.slope
+_run_out, _run_out_slope = lanewise(wheel_eccentricity.height), lanewise(wheel_eccentricity.slope)
 
 
 @kernel
@@ -29,27 +29,31 @@ def floor_height(e, wheel, path, speed, angle, rate):
         Of the wheel.
     """
     level, change = 0.0, 0.0
-    if e[JOINT_DEPTH] != 0.0:
+    if first(e[JOINT_DEPTH]) != 0.0:
         level += _joint(path, e[JOINT_PITCH], e[JOINT_DEPTH], e[JOINT_WIDTH])
         change += _joint_slope(path, e[JOINT_PITCH], e[JOINT_DEPTH], e[JOINT_WIDTH]) * speed
-    if e[ECCENTRICITY] != 0.0:
+    if first(e[ECCENTRICITY]) != 0.0:
         level += _run_out(angle, e[ECCENTRICITY], wheel)
         change += _run_out_slope(angle, e[ECCENTRICITY], wheel) * rate
     return level, change
 
 
 @kernel
-def rough_height(floor, x, y, speed_x, speed_y):
+def rough_height(floor, begin, rms, x, y, speed_x, speed_y):
     """Height [m] of a random floor under a contact, and its rate [m/s].
 
     Parameters
     ----------
-    floor : (n, n) float [m]
+    floor : (k n²,) float
+        Fields in units of ``rms``.
+    begin : float
+        Place where the one under the contact begins.
+    rms : float [m]
     x, y, speed_x, speed_y : float [m], [m/s]
         Contact in the world.
     """
-    height, along_x, along_y = _rough(floor, x, y)
-    return height, along_x * speed_x + along_y * speed_y
+    height, along_x, along_y = _rough(floor, begin, x, y)
+    return rms * height, rms * (along_x * speed_x + along_y * speed_y)
 
 
 @kernel

@@ -77,14 +77,14 @@ def simulate_many(
     return _channels(runs, duration, sample_rate, step, names, 1.0, AT_REST, 1.0)
 
 
-def simulate_pulls(
-    pulls: Sequence[tuple[Robot, Effects, Scenario]], sample_rate: float, step: float, names: Sequence[str]
+def simulate_alike(
+    scenarios: Sequence[tuple[Robot, Effects, Scenario]], sample_rate: float, step: float, names: Sequence[str]
 ) -> np.ndarray:
-    """Integrate pulls of one length, on wheels that turn alike; to the last bit what ``simulate`` gives of each.
+    """Integrate scenarios of one length, on wheels that turn alike; to the last bit what ``simulate`` gives of each.
 
     Parameters
     ----------
-    pulls : sequence of (Robot, mapping of effect id to mapping of parameter to value, Scenario)
+    scenarios : sequence of (Robot, mapping of effect id to mapping of parameter to value, Scenario)
     sample_rate, step, names
         As ``simulate_many`` takes them.
 
@@ -94,12 +94,12 @@ def simulate_pulls(
         As ``simulate_many`` gives it.
     """
     runs: list[Run | None] = []
-    for robot, effects, scenario in pulls:
+    for robot, effects, scenario in scenarios:
         try:
             runs.append(prepared(robot, scenario, effects))
         except Impossible:
             runs.append(None)
-    one = pulls[0][2]
+    one = scenarios[0][2]
     return _channels(runs, one.duration, sample_rate, step, names, one.head_step, one.wheel_rates, one.wheel_rate_step)
 
 

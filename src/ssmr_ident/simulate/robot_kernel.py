@@ -105,8 +105,8 @@ _belt_force, _lifted, _unlisted = motor_belt.force, lift_effect.load, unlisted.f
 
 @kernel
 def run(
-    p, e, floor, mast, pulling, head, head_last, head_step, reference, reference_step, start, step, steps, stride,
-    low_pass, out, beyond,
+    p, e, floor, floor_begin, mast, pulling, head, head_last, head_step, reference, reference_step, start, step, steps,
+    stride, low_pass, out, beyond,
 ):  # fmt: skip
     """Integrate ``steps`` steps and store every ``stride``-th state in ``out``.
 
@@ -118,8 +118,10 @@ def run(
     p : (PARAMETERS,) float
     e : (SLOTS,) float
         Effects.
-    floor : (n, n) float [m], or None
-        None where nothing acts that makes a floor uneven.
+    floor : (k n²,) float, or None
+        Fields in units of their roughness; None where nothing acts that makes a floor uneven.
+    floor_begin : float
+        Place in ``floor`` where the field under the robot begins.
     mast : (8, 8) float
         Inverse mass matrix of body and swaying mast; not used while the mast is stiff.
     pulling : (PULLING,) float
@@ -134,8 +136,8 @@ def run(
         Difference equation of the accelerometer at ``step``.
     out : (steps // stride + 1, len(OUTPUTS)) float
     beyond : bool or None
-        None where no effect acts and nothing pulls: a loop of its own is then compiled from this very text, in which
-        none of that is asked for any more.
+        None where no effect but a rough floor acts and nothing pulls: a loop of its own is then compiled from this very
+        text, in which none of that is asked for any more.
 
     Returns
     -------
@@ -159,6 +161,8 @@ def run(
         held
     ) = False
     coriolis = rolling = 0.0
+    if floor is not None:
+        rough = first(e[_ROUGHNESS]) != 0.0
     if beyond is not None:
         remembers = first(e[_FRICTION]) != 0.0 or first(e[_ALPHA]) != 1.0 or first(e[_RELAXATION]) != 0.0
         beside = remembers or (
@@ -169,7 +173,7 @@ def run(
             or first(e[_GAP]) != 0.0
         )
         if floor is not None:
-            patterned, rough = e[_JOINT_DEPTH] != 0.0 or e[_ECCENTRICITY] != 0.0, e[_ROUGHNESS] != 0.0
+            patterned = first(e[_JOINT_DEPTH]) != 0.0 or first(e[_ECCENTRICITY]) != 0.0
         falling, load_law = first(e[KINETIC_SHARE]) != 1.0, first(e[LOAD_EXPONENT]) != 0.0
         swaying, stretching = math.isfinite(first(e[MAST_HZ])), math.isfinite(first(e[BELT_STIFFNESS]))
         lift, coriolis, rolling = first(e[_LIFT]) > 0.5, e[_CORIOLIS], e[ROLLING]
@@ -254,7 +258,7 @@ def run(
                     level, change = floor_height(law, i, path[0, i], contact_speed(hub_x, hub_y), angle, rate)
                 if rough:
                     height, climbing = rough_height(
-                        floor, x + cyaw * rx - syaw * ry, y + syaw * rx + cyaw * ry,
+                        floor, floor_begin, e[_ROUGHNESS], x + cyaw * rx - syaw * ry, y + syaw * rx + cyaw * ry,
                         cyaw * hub_x - syaw * hub_y, syaw * hub_x + cyaw * hub_y,
                     )  # fmt: skip
                     level, change = level + height, change + climbing

@@ -127,6 +127,7 @@ def simulate(
         one.p,
         body.e,
         body.uneven,
+        0.0,
         body.mast,
         one.pulling,
         one.head,

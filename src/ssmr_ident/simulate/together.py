@@ -98,11 +98,13 @@ def run_together(
         groups.setdefault(one.alike, []).append(index)
     for members in groups.values():
         own = [runs[index] for index in members]
+        floors, begins = _floors(own)
         filters = {hertz: low_pass_coefficients(hertz, step) for hertz in {one.bandwidth_hz for one in own}}
         _in_turn(
             np.array([one.p for one in own]),
             np.array([one.body.e for one in own]),
-            own[0].body.uneven,
+            floors,
+            begins,
             np.array([one.body.mast for one in own]),
             np.array([one.pulling for one in own]),
             np.array([one.head for one in own]),
@@ -122,22 +124,33 @@ def run_together(
     return out
 
 
+def _floors(runs: Sequence[Run]) -> tuple[np.ndarray | None, np.ndarray]:
+    """Floors that runs have, each once and one behind the other, None where all are flat; and where each run's begins,
+    (k, 1) float."""
+    if runs[0].body.uneven is None:
+        return None, np.zeros((len(runs), 1))
+    different = {id(one.body.floor): one.body.floor for one in runs}
+    lengths = np.cumsum([0, *(len(floor) for floor in different.values())])
+    begins = dict(zip(different, lengths.tolist(), strict=False))
+    return np.concatenate(list(different.values())), np.array([[float(begins[id(one.body.floor)])] for one in runs])
+
+
 @kernel
 def _in_turn(
-    p, e, floor, mast, pulling, head, head_step, reference, reference_step, start, low_pass, places, step, steps,
-    stride, beyond, kept, out,
+    p, e, floors, begins, mast, pulling, head, head_step, reference, reference_step, start, low_pass, places, step,
+    steps, stride, beyond, kept, out,
 ):  # fmt: skip
     """``run`` for every row of its arguments; results go to ``places`` of ``out``."""
     done = 0
-    if floor is None and out.shape[1] <= LONGEST:
+    if out.shape[1] <= LONGEST:
         wide = np.empty((out.shape[1] if len(places) >= FEWEST else 0, _COLUMNS, WIDTH))
         while len(places) - done >= FEWEST:
             upto = min(done + WIDTH, len(places))
             ended = _in_lanes(
-                _abreast(p, done, upto), _abreast(e, done, upto), _abreast(mast.reshape(len(mast), 64), done, upto),
-                _abreast(pulling, done, upto), _abreast(head, done, upto), head.shape[1] - 1, head_step, reference,
-                reference_step, _abreast(start, done, upto), step, steps, stride, _abreast(low_pass, done, upto),
-                wide, beyond,
+                _abreast(p, done, upto), _abreast(e, done, upto), floors, _abreast(begins, done, upto),
+                _abreast(mast.reshape(len(mast), 64), done, upto), _abreast(pulling, done, upto),
+                _abreast(head, done, upto), head.shape[1] - 1, head_step, reference, reference_step,
+                _abreast(start, done, upto), step, steps, stride, _abreast(low_pass, done, upto), wide, beyond,
             )  # fmt: skip
             for j in range(upto - done):
                 place = places[done + j]
@@ -149,8 +162,8 @@ def _in_turn(
     for j in range(done, len(places)):
         place = places[j]
         ended_at = run(
-            p[j], e[j], floor, mast[j], pulling[j], head[j], head.shape[1] - 1, head_step, reference, reference_step,
-            start[j], step, steps, stride, low_pass[j], whole, beyond,
+            p[j], e[j], floors, begins[j, 0], mast[j], pulling[j], head[j], head.shape[1] - 1, head_step, reference,
+            reference_step, start[j], step, steps, stride, low_pass[j], whole, beyond,
         )  # fmt: skip
         for n in range(out.shape[1]):
             for c in range(len(kept)):
@@ -159,14 +172,14 @@ def _in_turn(
 
 @kernel
 def _in_lanes(
-    p, e, mast, pulling, head, head_last, head_step, reference, reference_step, start, step, steps, stride, low_pass,
-    out, beyond,
+    p, e, floors, begins, mast, pulling, head, head_last, head_step, reference, reference_step, start, step, steps,
+    stride, low_pass, out, beyond,
 ):  # fmt: skip
     """``run`` for arrays whose last axis is of lanes; the caller keeps them. (WIDTH,) float, as ``run`` returns."""
     ended = run(
-        lanes_of(p, 0), lanes_of(e, 0), None, lanes_of(mast, 8), lanes_of(pulling, 0), lanes_of(head, 0), head_last,
-        head_step, reference, reference_step, lanes_of(start, 0), step, steps, stride, lanes_of(low_pass, 0),
-        lanes_of(out, _COLUMNS), beyond,
+        lanes_of(p, 0), lanes_of(e, 0), floors, lanes_of(begins, 0)[0], lanes_of(mast, 8), lanes_of(pulling, 0),
+        lanes_of(head, 0), head_last, head_step, reference, reference_step, lanes_of(start, 0), step, steps, stride,
+        lanes_of(low_pass, 0), lanes_of(out, _COLUMNS), beyond,
     )  # fmt: skip
     failed = np.empty(WIDTH)
     for j in range(WIDTH):

@@ -11,7 +11,19 @@ from __future__ import annotations
 from ssmr_ident.core.simd.arithmetic import floor, power_of_two
 from ssmr_ident.core.simd.choice import anywhere, first, where
 from ssmr_ident.core.simd.each import lane, lanewise
-from ssmr_ident.core.simd.rows import lanes_of, space
+from ssmr_ident.core.simd.rows import gathered, lanes_of, space
 from ssmr_ident.core.simd.vector import WIDTH
 
-__all__ = ["WIDTH", "anywhere", "first", "floor", "lane", "lanes_of", "lanewise", "power_of_two", "space", "where"]
+__all__ = [
+    "WIDTH",
+    "anywhere",
+    "first",
+    "floor",
+    "gathered",
+    "lane",
+    "lanes_of",
+    "lanewise",
+    "power_of_two",
+    "space",
+    "where",
+]

@@ -9,9 +9,20 @@ import numpy as np
 from llvmlite import ir
 from numba import types
 from numba.core.typing.templates import AbstractTemplate, infer_global, signature
-from numba.extending import lower_builtin
+from numba.extending import lower_builtin, overload
 
-from ssmr_ident.core.simd.vector import INDEX, LANES, NUMBERS, WIDTH, LaneArrayType, LanesType, of_literals
+from ssmr_ident.core.simd.vector import (
+    BITS,
+    INDEX,
+    LANES,
+    NUMBERS,
+    WIDTH,
+    LaneArrayType,
+    LanesType,
+    instructions,
+    of_literals,
+    spread,
+)
 
 
 @of_literals
@@ -98,3 +109,32 @@ class _SetItem(AbstractTemplate):
 def _set_item(context: Any, builder: Any, sig: Any, args: Any) -> Any:
     builder.store(args[2], _at(context, builder, sig, args), align=8)
     return context.get_dummy_value()
+
+
+@instructions
+def _gathered(typingctx: Any, table: Any, index: Any) -> Any:
+    pointers = ir.VectorType(ir.PointerType(ir.DoubleType()), WIDTH)
+
+    def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+        data = context.make_array(sig.args[0])(context, builder, args[0]).data
+        first = builder.ptrtoint(data, ir.IntType(64))
+        offset = builder.shl(builder.fptosi(args[1], BITS), ir.Constant(BITS, [3] * WIDTH))
+        places = builder.inttoptr(builder.add(spread(builder, first, BITS), offset), pointers)
+        mask, nought = ir.VectorType(ir.IntType(1), WIDTH), ir.Constant(NUMBERS, [0.0] * WIDTH)
+        called = ir.FunctionType(NUMBERS, [pointers, ir.IntType(32), mask, NUMBERS])
+        gather = builder.module.declare_intrinsic(f"llvm.masked.gather.v{WIDTH}f64.v{WIDTH}p0", (), called)
+        return builder.call(gather, [places, ir.IntType(32)(8), ir.Constant(mask, [1] * WIDTH), nought])
+
+    return LANES(table, LANES), codegen
+
+
+def gathered(table: Any, index: Any) -> Any:
+    """Numbers of a one-dimensional table at whole numbers, which are in it."""
+    return table[int(index)]
+
+
+@overload(gathered, strict=False)
+def _gathered_or_read(table: Any, index: Any) -> Any:
+    if isinstance(index, LanesType):
+        return lambda table, index: _gathered(table, index)
+    return lambda table, index: table[int(index)]

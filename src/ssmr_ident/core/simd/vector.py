@@ -74,7 +74,8 @@ class _LaneArrayModel(models.PrimitiveModel):
         super().__init__(dmm, fe_type, ir.PointerType(ir.DoubleType()))
 
 
-def _spread(builder: Any, value: Any, vector: Any) -> Any:
+def spread(builder: Any, value: Any, vector: Any) -> Any:
+    """One value in every lane."""
     one = builder.insert_element(ir.Constant(vector, ir.Undefined), value, INDEX(0))
     return builder.shuffle_vector(
         one, ir.Constant(vector, ir.Undefined), ir.Constant(ir.VectorType(INDEX, WIDTH), [0] * WIDTH)
@@ -84,9 +85,9 @@ def _spread(builder: Any, value: Any, vector: Any) -> Any:
 @lower_cast(types.Float, LanesType)
 @lower_cast(types.Integer, LanesType)
 def _from_number(context: Any, builder: Any, fromty: types.Type, toty: types.Type, value: Any) -> Any:
-    return _spread(builder, context.cast(builder, value, fromty, types.float64), NUMBERS)
+    return spread(builder, context.cast(builder, value, fromty, types.float64), NUMBERS)
 
 
 @lower_cast(types.Boolean, MaskType)
 def _from_choice(context: Any, builder: Any, fromty: types.Type, toty: types.Type, value: Any) -> Any:
-    return _spread(builder, builder.zext(context.cast(builder, value, fromty, types.boolean), ir.IntType(64)), BITS)
+    return spread(builder, builder.zext(context.cast(builder, value, fromty, types.boolean), ir.IntType(64)), BITS)

@@ -2,25 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ssmr_ident.compare.turning import AXES, turning_robot, with_floor
-from ssmr_ident.core.errors import Impossible, SimulationError
+from ssmr_ident.compare.turning import turning_robot, with_floor
+from ssmr_ident.core.errors import Impossible
 from ssmr_ident.core.parameter import Estimate, ParameterSet
+from ssmr_ident.core.simd import WIDTH
 from ssmr_ident.core.threads import side_by_side
 from ssmr_ident.diagnose.turning.conditions import Condition
 from ssmr_ident.diagnose.turning.spectra import Look, average, levels_of, look
 from ssmr_ident.experiments.scenario import Scenario
+from ssmr_ident.physics.robot import Robot
 from ssmr_ident.physics.slots import Effects
-from ssmr_ident.simulate.simulation import simulate
+from ssmr_ident.simulate.many import simulate_alike
 
 RATE = 500.0  # Hz; what folds back from above 450 Hz has passed a sensor of 80 Hz
 STEP = 5e-4  # s; frequencies to 2e-4, checked against 1.25e-4 s in the tests
 COARSE = 1e-3  # s; 0.2 to 2.4 dB off, most of it alike with and without an effect: for differences of spectra only
 Values = Mapping[str, float]
+Job = tuple[Condition, Values, Effects, int]
+"""Condition, baseline's parameters, effects, seed of floor and start."""
+
+LOADS = ("load_1", "load_2", "load_3", "load_4")
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,20 +78,22 @@ class Bench:
             min(one.least_load for one in kept),
         )
 
-    def prefetch(self, jobs: Iterable[tuple[Condition, Values, Effects, int]], step: float = STEP) -> None:
-        """Run what is not yet remembered, several at a time (the compiled loop leaves the interpreter free)."""
+    def prefetch(self, jobs: Iterable[Job], step: float = STEP) -> None:
+        """Run what is not yet remembered, what is alike in lanes (the compiled loop leaves the interpreter free)."""
         keyed = {self._key(*job, step): job for job in jobs}
         fresh = {key: job for key, job in keyed.items() if key not in self.memory}
-        if fresh:
-            self.work += sum((job[0].settling + job[0].duration) / step for job in fresh.values())
-            runs = side_by_side(lambda job: self._simulate(*job, step), list(fresh.values()))
-            self.memory.update(zip(fresh, runs, strict=True))
+        groups: dict[tuple, list[tuple]] = {}
+        for key, (condition, _, effects, _) in fresh.items():
+            groups.setdefault((condition.kind, tuple(sorted(effects))), []).append(key)
+        parts = [keys[k : k + WIDTH] for keys in groups.values() for k in range(0, len(keys), WIDTH)]
+        asked = [[fresh[key] for key in part] for part in parts]
+        for part, runs in zip(parts, side_by_side(lambda jobs: self._simulate(jobs, step), asked), strict=True):
+            self.memory.update(zip(part, runs, strict=True))
 
     def _one(self, condition: Condition, baseline: Values, effects: Effects, seed: int, step: float) -> Run | None:
         key = self._key(condition, baseline, effects, seed, step)
         if key not in self.memory:
-            self.work += (condition.settling + condition.duration) / step
-            self.memory[key] = self._simulate(condition, baseline, effects, seed, step)
+            (self.memory[key],) = self._simulate([(condition, baseline, effects, seed)], step)
         return self.memory[key]
 
     @staticmethod
@@ -93,14 +101,27 @@ class Bench:
         named = tuple((name, tuple(sorted(values.items()))) for name, values in sorted(effects.items()))
         return condition.kind, seed, step, tuple(sorted(baseline.items())), named
 
-    def _simulate(
-        self, condition: Condition, baseline: Values, effects: Effects, seed: int, step: float = STEP
-    ) -> Run | None:
-        self.count += 1
-        try:
-            return measure(simulated(self.parameters, condition, baseline, effects, seed, step), condition, seed)
-        except (Impossible, SimulationError):  # a robot that falls over
-            return None
+    def _simulate(self, jobs: Sequence[Job], step: float) -> list[Run | None]:
+        """Runs under one condition; None of a robot that falls over."""
+        condition = jobs[0][0]
+        self.count += len(jobs)
+        self.work += len(jobs) * (condition.settling + condition.duration) / step
+        seen = _seen(condition)
+        made = [_scenario(self.parameters, *job) for job in jobs]
+        there = [one for one in made if one is not None]
+        ran = iter(simulate_alike(there, RATE, step, seen) if there else ())
+        outs = [next(ran) if one is not None else None for one in made]
+        return [
+            None
+            if out is None or np.isnan(out[0, 0])
+            else measure(dict(zip(seen, out.T, strict=True)), condition, job[-1])
+            for out, job in zip(outs, jobs, strict=True)
+        ]
+
+
+def _seen(condition: Condition) -> tuple[str, ...]:
+    """Channels that are looked at."""
+    return tuple(dict.fromkeys((*condition.names, "wz", *LOADS)))
 
 
 def changed(parameters: ParameterSet, values: Values) -> ParameterSet:
@@ -112,10 +133,10 @@ def changed(parameters: ParameterSet, values: Values) -> ParameterSet:
     return parameters.updated(changes)
 
 
-def simulated(
-    parameters: ParameterSet, condition: Condition, baseline: Values, effects: Effects, seed: int, step: float = STEP
-):
-    """The simulation itself; see ``Bench.run``."""
+def _scenario(
+    parameters: ParameterSet, condition: Condition, baseline: Values, effects: Effects, seed: int
+) -> tuple[Robot, Effects, Scenario] | None:
+    """What is simulated; None where the values make no robot."""
     now = changed(parameters, baseline)
     active = with_floor(effects, now)
     if "seed" not in effects.get("ground_roughness", {}):
@@ -127,20 +148,20 @@ def simulated(
         wheel_rates=condition.rates,
         wheel_rate_step=condition.rate_step,
     )
-    return simulate(turning_robot(now), scenario, RATE, step, active)
+    try:
+        return turning_robot(now), active, scenario
+    except Impossible:
+        return None
 
 
-def measure(simulation, condition: Condition, seed: int) -> Run:
-    """What the recording's sensor would have seen of a simulation."""
+def measure(simulation: Mapping[str, np.ndarray], condition: Condition, seed: int) -> Run:
+    """What the recording's sensor would have seen of a simulation, by its channels."""
     skip = round(condition.settling * RATE)
     samples = np.column_stack([simulation[name][skip:] for name in condition.names])
     one = look(samples, RATE)
     random = np.random.default_rng(seed)
     levels = levels_of(samples + condition.disturbance * random.standard_normal(samples.shape))
-    loads = min(float(simulation[f"load_{i}"][skip:].min()) for i in (1, 2, 3, 4))
+    loads = min(float(simulation[name][skip:].min()) for name in LOADS)
     bins = len(condition.mean.frequency)
     seen = replace(one, frequency=one.frequency[:bins], cross=one.cross[:bins], levels=levels)
     return Run(seen, float(simulation["wz"][skip:].mean()), loads)
-
-
-__all__ = ["AXES", "Bench", "Run", "changed", "measure", "simulated"]

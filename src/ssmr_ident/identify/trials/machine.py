@@ -18,7 +18,7 @@ from ssmr_ident.physics.robot import Robot
 from ssmr_ident.physics.slots import Effects
 from ssmr_ident.session import Entry
 from ssmr_ident.simulate.bench import load_wheel, pull_block
-from ssmr_ident.simulate.many import simulate_pulls
+from ssmr_ident.simulate.many import simulate_alike
 from ssmr_ident.simulate.simulation import simulate
 
 Head = tuple[Values, Effects, Array]
@@ -62,7 +62,7 @@ def force_model(
         if inner is None:  # each has a step of its own
             return np.array([_by_its_own_step(*one, step) for one in pulls])
         longest = min(inner, SPINNING_STEP) if entry.wheel_rate_rad_s else inner
-        return simulate_pulls(pulls, 1.0 / step, longest, ("force",))[:, :, 0]
+        return simulate_alike(pulls, 1.0 / step, longest, ("force",))[:, :, 0]
 
     return pulled
 
