@@ -217,6 +217,16 @@ def test_friction_is_a_function_of_speed_where_drag_is_beside_it() -> None:
     assert decide([BASE, friction, drag, over_speed, pair, other]).chosen is not pair
 
 
+def test_the_other_effect_beside_any_shape_of_friction_is_not_friction_alone() -> None:
+    kinds = "memory memory"
+    branch = row("viscoelastic_relaxation", "memory", 4100.0, 26_762.0, 3.1)
+    friction = row("dry_friction", "memory", 8400.0, 18_156.0, 2.37)
+    pair = row("dry_friction viscoelastic_relaxation", kinds, 13_649.0, 7648.0, 1.146)
+    other = row("unlisted viscoelastic_relaxation", "static_force memory", 13_571.0, 7759.0, 1.168, True, ("v", ""))
+    pair = replace(pair, variables=("", ""))
+    assert decide([BASE, branch, friction, pair, other]).chosen is pair
+
+
 def test_friction_is_needed_where_a_smooth_shape_alone_is_worse() -> None:
     """A shape with a step where the motion turns has friction in it, and says nothing against it."""
     friction = row("dry_friction", "static_force", 21_000.0, 8000.0, 1.3, variables=("v",))

@@ -195,7 +195,8 @@ def held_against(pair: Row, which: int, rows: Sequence[Row]) -> list[Row]:
 
     def belongs(r: Row) -> bool:
         others = [i for i, name in enumerate(r.ids) if name != law]
-        return (r.generic or not others) and all(shape(r, i) for i in others)
+        both = pair.ids[1 - which] in r.ids and pair.ids[1 - which] != UNLISTED
+        return not both and (r.generic or not others) and all(shape(r, i) for i in others)
 
     return [r for r in rows if r is not pair and r.ids and belongs(r)]
 
