@@ -30,7 +30,7 @@ from ssmr_ident.physics.motor import wheel_rates
 from ssmr_ident.physics.robot import Robot, robot_from_parameters
 from ssmr_ident.session import read_parameters
 from ssmr_ident.simulate import simulate
-from ssmr_ident.simulate.many import Release, simulate_many, simulate_alike
+from ssmr_ident.simulate.many import Release, simulate_alike, simulate_many
 
 STEP = 2e-5  # s
 YAW_RATE = np.radians(45.0)

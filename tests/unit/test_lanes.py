@@ -140,7 +140,8 @@ def test_swivels_over_uneven_floors_in_lanes(robot: Robot, sliding_speed: float)
     """Each on a floor of its own, of its own height."""
     robot = replace(robot, sliding_speed=sliding_speed)
     rates = np.array([[-3.0, 3.0]])
-    floors = [{"ground_roughness": {"height_m": 1e-4 * (1 + k % 3), "seed": 1.0 + k % 2}} for k in range(WIDTH + FEWEST)]
+    heights = [(1e-4 * (1 + k % 3), 1.0 + k % 2) for k in range(WIDTH + FEWEST)]
+    floors = [{"ground_roughness": {"height_m": height, "seed": seed}} for height, seed in heights]
     for effect in (
         {},
         {"ground_joints": {"depth_m": 2e-4, "pitch_m": 0.02}},
