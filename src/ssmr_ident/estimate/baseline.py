@@ -59,11 +59,17 @@ def fitted_baseline(problem: Problem) -> tuple[Problem, Fit]:
     It begins as a search does.
     """
     few, fit, begins, _ = on_few_samples(problem)
-    return under_own_noise(problem, on_every_sample(problem, few, fit, begins))
+    order = BOTH_WHITE if problem.drifts else LARGEST_ORDER
+    return under_own_noise(problem, on_every_sample(problem, few, fit, begins), order)
 
 
 def on_every_sample(problem: Problem, few: Problem, fit: Fit, begins: tuple[int, ...]) -> Fit:
-    """A fit of fewer samples to its end on all; ``begins`` are the numbers of each recording's first stretch."""
+    """A fit of fewer samples to its end on all; ``begins`` are the numbers of each recording's first stretch.
+
+    Where no spring holds the mass it goes on under the noise of the fewer.
+    """
+    if problem.drifts:
+        problem = with_noises(problem, [few.noises[first] for first in begins])
     return polish(problem, fit.node, earlier(few, fit, problem, begins), STEPS)
 
 

@@ -110,13 +110,11 @@ class Bench:
         made = [_scenario(self.parameters, *job) for job in jobs]
         there = [one for one in made if one is not None]
         ran = iter(simulate_alike(there, RATE, step, seen) if there else ())
-        outs = [next(ran) if one is not None else None for one in made]
-        return [
-            None
-            if out is None or np.isnan(out[0, 0])
-            else measure(dict(zip(seen, out.T, strict=True)), condition, job[-1])
-            for out, job in zip(outs, jobs, strict=True)
-        ]
+        found: list[Run | None] = []
+        for one, (*_, seed) in zip(made, jobs, strict=True):
+            out = {} if one is None else dict(zip(seen, next(ran).T, strict=True))
+            found.append(measure(out, condition, seed) if out and np.isfinite(out["wz"][0]) else None)
+        return found
 
 
 def _seen(condition: Condition) -> tuple[str, ...]:

@@ -36,8 +36,8 @@ def with_friction(problem: Problem, fit: Fit) -> tuple[Problem, Fit] | None:
     form = next(f for f in FORMS if f.effect == FRICTION and f.kind == STATIC)
     # along the baseline's own motion the baseline leaves no force at all
     (offer,) = proposals(few, base, paths_of(few, base.node, base.point), forms=[form])
-    loud, _ = under_own_noise(problem, fit, BOTH_WHITE)
-    quiet, found = under_own_noise(problem, on_every_sample(loud, few, begun(few, offer, base), begins), BOTH_WHITE)
+    found = on_every_sample(problem, few, begun(few, offer, base), begins)
+    quiet, found = under_own_noise(problem, found, BOTH_WHITE)
     plain = polish(quiet, fit.node, Start(fit.point, fit.nuisances), STEPS)
     gained = log_evidence(found, quiet.samples) - log_evidence(plain, quiet.samples)
     return (quiet, found) if gained > CERTAIN else None
