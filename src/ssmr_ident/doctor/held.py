@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ssmr_ident.doctor.fitted import carried
+from ssmr_ident.doctor.fitted import FAR_OFF, carried
 from ssmr_ident.estimate.exact import polish
 from ssmr_ident.estimate.generic import BY_RECORDING
 from ssmr_ident.estimate.network import paths_of
@@ -93,12 +93,16 @@ def held_fit(kept: Problem, fit: Fit, near: Fit | None = None) -> Fit | None:
     """
     if any(BY_RECORDING in m.form for m in fit.node.members):
         return None
-    start = Start(fit.point, paths=tuple(paths_of(kept, fit.node, fit.point)))
-    if near is not None:
-        start = Start(fit.point, carried(fit.node, near))
-    elif math.isfinite(kept.horizon):
-        start = shot(kept, fit.node, start, held=True)
-    else:
-        start = Start(fit.point, tuple(starts_of(kept, fit.node, start)))
-    found = polish(kept, fit.node, start, STEPS, freeze=range(len(fit.point)))
+    paths = Start(fit.point, paths=tuple(paths_of(kept, fit.node, fit.point)))
+    begun = tuple(starts_of(kept, fit.node, paths)) if near is None else carried(fit.node, near)
+    still = range(len(fit.point))
+    found = polish(kept, fit.node, Start(fit.point, begun), STEPS, freeze=still)
+    if found.chi2 / _count(found) > FAR_OFF * fit.chi2 / _count(fit):  # from there it has lost its way
+        joined = shot(kept, fit.node, paths, held=True)
+        found = min(found, polish(kept, fit.node, joined, STEPS, freeze=still), key=lambda f: f.cost)
     return found if math.isfinite(found.cost) else None
+
+
+def _count(fit: Fit) -> int:
+    """Of samples that a fit is held against."""
+    return sum(rest.size for rest in fit.residuals)

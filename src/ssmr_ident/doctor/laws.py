@@ -33,6 +33,12 @@ LEAST = 1e-3
 SINE = "sine"
 """Of what turns alone."""
 
+SHARES = ("knee_share", "sine_share")
+"""Amplitudes that are shares of the spring's stiffness."""
+
+SOFTEST = 0.05
+"""Of the stiffness that a fit has, what a regression along its path may make of it at the least."""
+
 HYSTERESIS = "hysteresis"
 """A share of the spring's own stiffness: where there is no spring there is no loop."""
 
@@ -55,7 +61,8 @@ class Form:
     unit : callable
         ``unit(shape, k, x, v, f)``: the effect's parameters at an amplitude of about one ``f``.
     settle : callable
-        ``settle(coefficient, unit, k)``: the same at the amplitude that least squares found.
+        ``settle(coefficient, unit, share)``: the same at the amplitude that least squares found; ``share`` : the
+        coefficient of what is a share of the spring's stiffness, which least squares finds as well.
     moved : mapping of str to bool
         Parameters that are fitted; True for a logarithm.
     variable : str
@@ -73,15 +80,15 @@ class Form:
 
 
 def _scaled(*names: str) -> Callable[[float, Shape, float], Shape]:
-    return lambda c, unit, k: {**unit, **{name: c * unit[name] for name in names}}
+    return lambda c, unit, share: {**unit, **{n: (share if n in SHARES else c) * unit[n] for n in names}}
 
 
 def _none(x: float, v: float, f: float) -> Sequence[Shape]:
     return ({},)
 
 
-def _loop(c: float, unit: Shape, k: float) -> Shape:
-    return {**unit, "alpha": float(np.clip(1.0 - c * (1.0 - unit["alpha"]), 0.02, 0.98))}
+def _loop(c: float, unit: Shape, share: float) -> Shape:
+    return {**unit, "alpha": float(np.clip(1.0 - share * (1.0 - unit["alpha"]), 0.02, 0.98))}
 
 
 def _term(term: str, size: Callable[[float, float, float], float], variable: str = "") -> Form:
@@ -114,7 +121,7 @@ FORMS = (
     Form("nonlinear_stiffness", STATIC, SINE, _none,
          lambda s, k, x, v, f: {"sine_share": 1.0}, _scaled("sine_share"), {"sine_share": False}, "x"),
     Form("free_play", STATIC, "", _grid("gap_m", 0.05, 0.15, 0.3, 0.5, 0.8, 1.2),
-         lambda s, k, x, v, f: {"rounding": 0.1, **s}, lambda c, unit, k: unit, {"gap_m": True, "rounding": True},
+         lambda s, k, x, v, f: {"rounding": 0.1, **s}, lambda c, unit, share: unit, {"gap_m": True, "rounding": True},
          "x"),
     Form("quadratic_damping", STATIC, "", _none, lambda s, k, x, v, f: {"d2_N_s2_m2": f / v**2}, _scaled("d2_N_s2_m2"),
          {"d2_N_s2_m2": False}, "v"),
@@ -206,7 +213,7 @@ def proposals(
         rest, shape, k, d, values = best_shape(along, form.shapes(*sizes))
         member = member_of(form, values, form.unit(shape, stiff, *sizes), reach)
         node = Node(found.node.baseline, (*beside, member))
-        point = _begun(node, found, (mass, max(d, 0.0), max(k, 0.05 * stiff)), member, values)
+        point = _begun(node, found, (mass, max(d, 0.0), k), member, values)
         count = len(force)
         promise = -0.5 * (np.log(max(rest, 1e-300)) + len(form.moved) * np.log(count) / count)
         result.append(Proposal(node, Start(point, paths=tuple(paths)), promise))
@@ -261,9 +268,9 @@ def on_path(
     coefficients, _, _, _ = np.linalg.lstsq(design, force, rcond=None)
     rest = float(np.sum((force - design @ coefficients) ** 2))
     k, d, c = coefficients[0] / sizes[0], coefficients[1] / sizes[1], coefficients[-1] / norm
-    if form.effect == HYSTERESIS:
-        c = c * stiffness / max(k, 1e-3 * stiffness)
-    return rest, shape, k, d, form.settle(c, unit, k)
+    k = max(k, SOFTEST * stiffness)
+    share = c * stiffness / k if stiffness > 0.0 else c
+    return rest, shape, k, d, form.settle(c, unit, share)
 
 
 def member_of(form: Form, values: Shape, unit: Shape, reach: float) -> Member:
