@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
 
+from ssmr_ident.core.errors import SimulationError
 from ssmr_ident.core.shown import Shown
 from ssmr_ident.signals.band import passed
 from ssmr_ident.signals.filters import ORDER
@@ -79,3 +80,11 @@ class Prediction(Shown):
         lines = [f"{', '.join(self.names)}: {len(self.time)} samples at {self.sample_rate:.6g} Hz, by {self.metric}"]
         lines += [f"  refitted for this recording: {name} = {value:.4g}" for name, value in self.nuisances.items()]
         return "\n".join(lines)
+
+
+def left_the_numbers(recording: str, effects: Iterable[str]) -> SimulationError:
+    """What is raised where a model's answer is no number."""
+    return SimulationError(
+        f"what the model says of {recording} left the finite numbers, with effects {', '.join(effects) or 'none'}. "
+        "Compare the size of what was measured with that of the parameters"
+    )

@@ -15,7 +15,7 @@ from ssmr_ident.doctor.table import Row, log_evidence, row_of
 from ssmr_ident.estimate.exact import polish
 from ssmr_ident.estimate.motion import motion
 from ssmr_ident.estimate.network import paths_of
-from ssmr_ident.estimate.node import Member, Node
+from ssmr_ident.estimate.node import STATES_OF, Member, Node
 from ssmr_ident.estimate.noise import LARGEST_ORDER, own_noise
 from ssmr_ident.estimate.regression import regressed
 from ssmr_ident.estimate.shooting import shot
@@ -95,14 +95,13 @@ def joined(node: Node, fit: Fit) -> Array:
 def carried(node: Node, fit: Fit) -> tuple[Array, ...]:
     """A fit's nuisances for a node with other linear states."""
     was, now, found = fit.node, node, []
-    sizes = {"lag": 2, "branch": 1, "rider": 2}
     for nuisance in fit.nuisances:
         at, kept = was.motion_states, {}
         for member in (m for m in was.members if m.linear):
-            kept[id(member)] = nuisance[at : at + sizes[member.linear]]
-            at += sizes[member.linear]
+            kept[id(member)] = nuisance[at : at + STATES_OF[member.linear]]
+            at += STATES_OF[member.linear]
         states = [nuisance[: was.motion_states]]
-        states += [kept.get(id(m), np.zeros(sizes[m.linear])) for m in now.members if m.linear]
+        states += [kept.get(id(m), np.zeros(STATES_OF[m.linear])) for m in now.members if m.linear]
         hidden = nuisance[was.linear_states : was.states]
         states.append(hidden if len(hidden) == now.hidden_states else np.zeros(now.hidden_states))
         found.append(np.concatenate([*states, nuisance[was.states :]]))

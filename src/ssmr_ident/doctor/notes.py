@@ -14,6 +14,8 @@ from ssmr_ident.estimate.values import Problem
 
 NOT_QUITE = "its form, or a smaller effect beside it, is not quite the world's"
 
+NO_FILE = "no parameter file holds a force of any shape: after.yaml is before.yaml, and the curve is in diagnosis.yaml"
+
 
 def notes_on(
     problem: Problem, rows: Sequence[Row], decision: Decision, chosen: Row, heldout: PredictionQuality
@@ -42,14 +44,15 @@ def wandering_zeros(problem: Problem, chosen: Row) -> tuple[str, ...]:
 
 
 def _nearest(decision: Decision, rows: Sequence[Row], base: Row) -> tuple[str, ...]:
-    """The law that comes nearest to what no listed one makes."""
+    """What of a force of any shape a file can hold, and the law that comes nearest to what no listed one makes."""
     if decision.verdict != MISSING or decision.listed:
         return ()
     least = min(r.chi2 for r in rows if math.isfinite(r.chi2))
     laws = [r for r in rows if len(r.ids) == 1 and not r.generic and "unlisted" not in r.ids]
     nearest = min(laws, key=lambda r: r.chi2, default=base)
     share = (base.chi2 - nearest.chi2) / max(base.chi2 - least, 1e-300)
-    return (f"the nearest law is {nearest.name}, which takes {100 * share:.0f} % of it",) if share > HALVED else ()
+    near = (f"the nearest law is {nearest.name}, which takes {100 * share:.0f} % of it",) if share > HALVED else ()
+    return (NO_FILE, *near)
 
 
 def _left(problem: Problem, decision: Decision, chosen: Row, heldout: PredictionQuality) -> tuple[str, ...]:

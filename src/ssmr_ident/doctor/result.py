@@ -78,7 +78,7 @@ def answer(found: Examined) -> Diagnosis:
     named = decision.verdict == MISSING
     before_file = exported(base.fit, found.known)
     after_file = exported(chosen.fit, found.known) if named else before_file
-    effects = named_effects(decision, chosen, after_file, found.search.problem) if named else ()
+    effects = named_effects(found, decision, chosen, after_file) if named else ()
     conflicts = conflicting(base.fit)
     names = {r.name for r in found.rows}
     fits = {r.name: r.fit for r in (*found.search.far, *found.rows) if r.fit is not None}
@@ -109,7 +109,7 @@ def answer(found: Examined) -> Diagnosis:
         heldout=heldout,
         next_experiment=next_recording(found.search.problem, found.rows, decision, decision.verdict == UNDETERMINED),
         before=before_file,
-        after=after_file,
+        after=before_file if chosen.generic else after_file,  # a force of any shape has no place in a file
         summary=summary,
         notes=(*found.notes, *notes_on(found.search.problem, found.rows, decision, chosen, heldout)),
         evidence=Evidence(overlays=drawn),
@@ -162,13 +162,15 @@ def exported(fit: Fit, known: ParameterSet) -> ParameterSet:
     for effect, full in effects_of(node, fit.point).items():
         if effect in {m.id for m in bodies}:
             continue
-        fitted = {c.name for m in held if m.id == effect for c in m.coordinates}
+        fitted = {c.name for m in held if m.id == effect for c in m.coordinates if c.std >= EXACTLY}
         units = {p.name: p.unit for p in CATALOGUE[effect].parameters}
         blocks[effect] = {
             n: Estimate(float(full[n]), None, units[n], "not fitted", fixed=True) for n in needed(effect, full, fitted)
         }
     for member in held:
         for c in member.coordinates if member.id in blocks and not member.tables else ():
+            if c.std < EXACTLY:
+                continue
             k = place[id(c)]
             std = math.hypot(stds[k], scaled * values[k] if c.unit.startswith("N") else 0.0)
             blocks[member.id][c.name] = Estimate(
@@ -210,10 +212,12 @@ def _scaled_by_mass(fit: Fit, known: ParameterSet) -> float:
     return mass.std / float(mass.value) if alone and mass.std and not mass.fixed else 0.0
 
 
-def named_effects(decision: Decision, chosen: Row, after: ParameterSet, problem: Problem) -> tuple[NamedEffect, ...]:
+def named_effects(found: Examined, decision: Decision, chosen: Row, after: ParameterSet) -> tuple[NamedEffect, ...]:
+    """What was chosen, first of it what explains most alone."""
     assert chosen.fit is not None
-    found = []
-    for member in chosen.fit.node.members:
+    problem, named = found.search.problem, []
+    alone = {r.ids: r.log_evidence for r in reversed(found.rows) if len(r.ids) == 1 and not r.generic}
+    for member in sorted(chosen.fit.node.members, key=lambda m: -alone.get((m.id,), -math.inf)):
         effect = member.id if decision.listed else "unlisted"
         further = member in riders(chosen.fit)
         block = {} if member.tables else after.effects.get(at_element(member.id, member.element), {})
@@ -227,13 +231,13 @@ def named_effects(decision: Decision, chosen: Row, after: ParameterSet, problem:
         if further:
             sentence = f"A body that the file has not moves on {member.element}. {shapes_told(after)}"
         values = values | _riding_mass(values, after) | _cubic_of_sine(values, after)
-        found.append(
+        named.append(
             NamedEffect(
                 effect, sentence, text, values, min(decision.confidence, 1.0), decision.ties, member.form,
                 kind=member.kind, element=element_of(member), curve=drawn or law_curve(problem, chosen.fit, member),
             )
         )  # fmt: skip
-    return tuple({e.id: e for e in reversed(found)}.values())[::-1]
+    return tuple({e.id: e for e in reversed(named)}.values())[::-1]
 
 
 def _riding_mass(values: Mapping[str, Estimate], after: ParameterSet) -> dict[str, Estimate]:

@@ -23,9 +23,11 @@ from ssmr_ident.doctor.named import named_along
 from ssmr_ident.doctor.networks import members_of_network
 from ssmr_ident.doctor.second import FULL_KINDS, exchanged, in_other_formulas, paired, second
 from ssmr_ident.estimate.baseline import BOTH_WHITE, on_few_samples
+from ssmr_ident.estimate.exact import polish
 from ssmr_ident.estimate.held_force import held, is_held
 from ssmr_ident.estimate.network import paths_of
 from ssmr_ident.estimate.noise import left_white
+from ssmr_ident.estimate.two_modes import riding
 from ssmr_ident.estimate.values import Problem
 from ssmr_ident.physics.network import ONE
 
@@ -57,6 +59,7 @@ def searched(problem: Problem, budget: float = math.inf, progress: Progress | No
             search.untried.append(member.name)
             continue
         short.append(beside(problem, base, member, SHORT))
+    short += [polish(problem, *own.start(base, paths), SHORT) for own in riding(problem)] if alone else []
     best = {f.node.name: f for f in sorted(short, key=lambda f: -f.cost)}  # of several starts of one
     for rank, fit in enumerate(sorted(best.values(), key=lambda f: f.cost)):
         search.add(finished(search, fit, base, paths) if rank < FULL_KINDS and not search.late else fit)

@@ -28,6 +28,7 @@ from ssmr_ident.doctor.table import grain, log_evidence
 from ssmr_ident.estimate.exact import polish
 from ssmr_ident.estimate.generic import STATIC, memory, static
 from ssmr_ident.estimate.motion import motion
+from ssmr_ident.estimate.two_modes import riding
 from ssmr_ident.estimate.values import Fit, Start
 
 FULL_KINDS = 4
@@ -140,7 +141,7 @@ def _beside(search: Search, say: Progress, first: Fit) -> bool:
     """Every kind in any shape beside a named effect, and named ones along the best of these; whether any may stand."""
     law, problem = first.node.members[0], search.problem
     paths = motion(problem, first)
-    offers = kinds(problem, paths)
+    offers = [*kinds(problem, paths), *(own.member for own in riding(problem))]
     own = [m for m in offers if m.tables and m.kind == law.kind]
     own += [static(problem, paths, law.variable)] if law.variable else []
     if law.id == FRICTION:

@@ -11,7 +11,7 @@ from scipy.interpolate import BSpline
 from scipy.linalg import eigh
 
 from ssmr_ident.estimate.coordinate import Coordinate
-from ssmr_ident.estimate.node import BRANCH, LAG, MEMORY, RIDER, Member, Tables
+from ssmr_ident.estimate.node import BRANCH, LAG, LAG_1, MEMORY, RIDER, Member, Tables
 from ssmr_ident.estimate.pieces import Piece
 from ssmr_ident.estimate.values import Problem
 from ssmr_ident.physics.network import ONE
@@ -39,6 +39,9 @@ SIDE = 0.1
 
 YIELDS = (0.01, 0.04, 0.12, 0.25, 0.5, 0.9)
 """Deflections at which spring-slider elements slide, in the largest."""
+
+RANGES = {"m/s^2": "range_m_s2", "m": "range_m", "m/s": "range_m_s", "rad": "range_rad", "rad/s": "range_rad_s"}
+"""Parameters of ``sensor_saturation`` by the unit of what is read."""
 
 LOOSE = 3.0
 """Prior standard deviation of a coefficient, in the forces that the linear rig shows."""
@@ -154,13 +157,15 @@ def branch(problem: Problem, seconds: float, form: str = "one branch") -> Member
     )  # fmt: skip
 
 
-def lag(hz: float, known_hz: float = math.inf) -> Member:
-    """A slow accelerometer: second-order Butterworth, in place of the one that is known."""
-    bandwidth = Coordinate("bandwidth_hz", hz, True, 0.05 * hz, min(50.0 * hz, 0.999 * known_hz), 0.0, 2.0, "Hz")
-    known = Coordinate("known_hz", known_hz, False, known_hz, known_hz, 1.0, 1e-9, "Hz")
-    return Member(
-        "sensor_bandwidth", SENSOR, "", (bandwidth, known) if math.isfinite(known_hz) else (bandwidth,), linear=LAG
-    )
+def lag(hz: float, known_hz: float = math.inf, order: float = 2.0) -> Member:
+    """A slow accelerometer: a Butterworth low-pass of second order or first, in place of the one that is known."""
+    most = (0.999 if order == 2.0 else 0.7) * known_hz  # there the two delay alike
+    bandwidth = Coordinate("bandwidth_hz", hz, True, 0.05 * hz, min(50.0 * hz, most), 0.0, 2.0, "Hz")
+    held = {"order": order} if order < 2.0 else {}
+    held |= {"known_hz": known_hz} if math.isfinite(known_hz) else {}
+    fixed = (Coordinate(name, value, False, value, value, 1.0, 1e-9, "") for name, value in held.items())
+    form, linear = ("first order", LAG_1) if order < 2.0 else ("", LAG)
+    return Member("sensor_bandwidth", SENSOR, form, (bandwidth, *fixed), linear=linear)
 
 
 def delay(step: float, longest: float) -> Member:

@@ -29,7 +29,7 @@ def at_outputs(problem: Problem) -> list[Member]:
     """A member for every place where such an effect of a rig is looked for first."""
     sizes = sizes_of(problem)
     chosen = [e for e in CATALOGUE.values() if e.rig and Site.OUTPUT in e.acts and e.id not in OF_THEIR_OWN]
-    return [_member(e, probe, sizes) for e in chosen for probe in (*e.probes, *e.rig_probes)]
+    return [at_output(e, probe, sizes) for e in chosen for probe in (*e.probes, *e.rig_probes)]
 
 
 def sizes_of(problem: Problem) -> dict[str, float]:
@@ -44,7 +44,8 @@ def sizes_of(problem: Problem) -> dict[str, float]:
     }  # fmt: skip
 
 
-def _member(effect: Effect, probe: Mapping[str, float | Sized], sizes: Mapping[str, float]) -> Member:
+def at_output(effect: Effect, probe: Mapping[str, float | Sized], sizes: Mapping[str, float]) -> Member:
+    """A member of one effect, begun at given parameters."""
     declared = {p.name: p for p in effect.parameters}
     coordinates = []
     for name, value in probe.items():

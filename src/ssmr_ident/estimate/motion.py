@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from ssmr_ident.estimate.instrument import OUTPUT
-from ssmr_ident.estimate.node import Node
+from ssmr_ident.estimate.node import LAGS, STATES_OF, Node
 from ssmr_ident.estimate.simulated import Compiled, motions
 from ssmr_ident.estimate.values import Fit, Problem
 
@@ -21,15 +21,17 @@ def motion(problem: Problem, found: Fit) -> list[Array]:
         for p in problem.pieces
     ]
     node, begun = found.node, []
-    bare = Node(node.baseline, tuple(m for m in node.members if m.linear != "lag" and m.after not in ("clip", OUTPUT)))
+    bare = Node(
+        node.baseline, tuple(m for m in node.members if m.linear not in LAGS and m.after not in ("clip", OUTPUT))
+    )
     names = [id(c) for c in node.coordinates]
     point = np.array([found.point[names.index(id(c))] for c in bare.coordinates])
     model = Compiled.of(problem, bare, point, pieces)
     for nuisance in found.nuisances:
         own, at = [], 2
         for member in (m for m in node.members if m.linear):
-            size = {"lag": 2, "branch": 1, "rider": 2}[member.linear]
-            own += list(nuisance[at : at + size]) if member.linear != "lag" else []
+            size = STATES_OF[member.linear]
+            own += list(nuisance[at : at + size]) if member.linear not in LAGS else []
             at += size
         begun.append(np.array([*nuisance[:2], *own, *nuisance[node.linear_states :]]))
     return motions(model, begun)

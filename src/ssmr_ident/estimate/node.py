@@ -21,8 +21,13 @@ from ssmr_ident.simulate.kicks import kicks, seen_by
 
 Array = np.ndarray
 
-LAG, BRANCH, RIDER = "lag", "branch", "rider"
-"""Linear members: a slow sensor, a Maxwell branch, a part of the mass on a spring of its own."""
+LAG, LAG_1, BRANCH, RIDER = "lag", "first-order lag", "branch", "rider"
+"""Linear members: a slow sensor of second order or first, a Maxwell branch, a part of the mass on its own spring."""
+
+LAGS = (LAG, LAG_1)
+
+STATES_OF = {LAG: 2, LAG_1: 1, BRANCH: 1, RIDER: 2}
+"""States that each has."""
 
 MEMORY = "memory"
 """The kind of what has states of its own that no log shows."""
@@ -114,7 +119,7 @@ class Member:
     tables : Tables or None
         Of a generic member.
     linear : str
-        ``lag``, ``branch`` or ``rider``.
+        Of ``STATES_OF``; empty for what is not linear.
     law : mapping of str to float
         Parameters of the effect that are held, where it is a law of the catalogue.
     after : str
@@ -198,7 +203,7 @@ class Node:
 
     @property
     def linear_states(self) -> int:
-        return self.motion_states + sum({LAG: 2, BRANCH: 1, RIDER: 2}[m.linear] for m in self.members if m.linear)
+        return self.motion_states + sum(STATES_OF[m.linear] for m in self.members if m.linear)
 
     @property
     def motion_states(self) -> int:
@@ -266,7 +271,7 @@ def matrices(node: Node, values: Array, seen: Seen) -> tuple[Array, ...]:
         names = layout.springs if member.linear == BRANCH else layout.bodies
         element = names.index(member.element) if member.element else 0
         places.setdefault(member.linear, []).append((place, element, own))
-        at, place = at + size, place + {LAG: 2, BRANCH: 1, RIDER: 2}[member.linear]
+        at, place = at + size, place + STATES_OF[member.linear]
         if member.linear == RIDER:
             share[..., element] += own[0]
     body = mass * (1.0 - share)
@@ -300,15 +305,22 @@ def matrices(node: Node, values: Array, seen: Seen) -> tuple[Array, ...]:
             rows[..., c, on + count * order] = 1.0
         else:
             rows[..., c, :], by_drive[..., c], by_force[..., c] = a[..., at, :], drive[..., at] + felt, -kick[..., at]
+    # logs are rid of the low-pass that is known: these take its place, so that the two delay as one does
     for i, on, (hz, *known) in places.get(LAG, []):
-        # logs are rid of the low-pass that is known: this one takes its place, so that the two delay as one does
         turning, at = 2.0 * math.pi / (1.0 / hz - sum(1.0 / f for f in known)), count + on
-        a[..., i, i + 1] = 1.0
-        a[..., i + 1, :] = (turning**2)[..., None] * a[..., at, :]
-        a[..., i + 1, i] -= turning**2
+        a[..., i, i + 1] = turning
+        a[..., i + 1, :] = turning[..., None] * a[..., at, :]
+        a[..., i + 1, i] -= turning
         a[..., i + 1, i + 1] -= math.sqrt(2.0) * turning
-        kick[..., i + 1] = turning**2 * kick[..., at]
-        drive[..., i + 1] = turning**2 * (drive[..., at] + felt)
+        kick[..., i + 1] = turning * kick[..., at]
+        drive[..., i + 1] = turning * (drive[..., at] + felt)
+    for i, on, (hz, _, *known) in places.get(LAG_1, []):
+        turning, at = 2.0 * math.pi / (1.0 / hz - sum(math.sqrt(2.0) / f for f in known)), count + on
+        a[..., i, :] = turning[..., None] * a[..., at, :]
+        a[..., i, i] -= turning
+        kick[..., i] = turning * kick[..., at]
+        drive[..., i] = turning * (drive[..., at] + felt)
+    for i, on, _ in (*places.get(LAG, []), *places.get(LAG_1, [])):
         for c in (c for c, order in enumerate(seen.orders) if order == 2 and seen.bodies[c] == on):
             rows[..., c, :], by_drive[..., c], by_force[..., c] = 0.0, 0.0, 0.0
             rows[..., c, i] = 1.0

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from ssmr_ident.estimate.node import Node
+from ssmr_ident.estimate.node import BRANCH, LAG, LAG_1, RIDER, Node
 from ssmr_ident.estimate.pieces import Piece
 from ssmr_ident.estimate.values import Problem
 
@@ -60,7 +60,9 @@ def state_sizes(problem: Problem, node: Node) -> Array:
     bodies = len(node.layout.bodies)
     sizes = [x] * bodies + [x * turning] * bodies
     for member in (m for m in node.members if m.linear):
-        sizes += {"lag": [x * turning**2, x * turning**3], "branch": [x], "rider": [x, x * turning]}[member.linear]
+        sizes += {
+            LAG: [x * turning**2] * 2, LAG_1: [x * turning**2], BRANCH: [x], RIDER: [x, x * turning]
+        }[member.linear]  # fmt: skip
     return np.array(sizes + [x] * node.hidden_states)
 
 

@@ -50,14 +50,16 @@ class Accelerometer:
         return self.polarity[axis] * (volts - self.volts_zero) / self.volts_per_m_s2
 
 
-def low_pass_coefficients(bandwidth_hz: float, step: float) -> np.ndarray:
-    """Second-order Butterworth low-pass as a difference equation (bilinear, frequency pre-warped).
+def low_pass_coefficients(bandwidth_hz: float, step: float, order: float = 2.0) -> np.ndarray:
+    """Butterworth low-pass as a difference equation (bilinear, frequency pre-warped).
 
     Parameters
     ----------
     bandwidth_hz : float [Hz]
         ``inf`` passes everything.
     step : float [s]
+    order : float
+        2, or 1.
 
     Returns
     -------
@@ -67,6 +69,8 @@ def low_pass_coefficients(bandwidth_hz: float, step: float) -> np.ndarray:
     if not math.isfinite(bandwidth_hz) or bandwidth_hz * step >= 0.45:
         return np.array([1.0, 0.0, 0.0, 0.0, 0.0])
     k = math.tan(math.pi * bandwidth_hz * step)
+    if order < 2.0:
+        return np.array([k, k, 0.0, k - 1.0, 0.0]) / (1.0 + k)
     norm = 1.0 + math.sqrt(2.0) * k + k * k
     return np.array([k * k, 2 * k * k, k * k, 2 * (k * k - 1), 1 - math.sqrt(2.0) * k + k * k]) / norm
 

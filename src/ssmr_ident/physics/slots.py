@@ -114,6 +114,8 @@ def checked_for_robot(effects: Effects) -> dict[str, dict[str, float]]:
     for name, values in active.items():
         if not (CATALOGUE[name].robot or CATALOGUE[name].is_off(values)):
             raise InputError(f"effects: {name}", "acts in the gears of a rig's drive", "A robot has no such joint")
+    if active.get("sensor_bandwidth", {}).get("order", 2.0) < 2.0:
+        raise InputError("effects: sensor_bandwidth.order", "is 1, of rigs alone", "Leave it out")
     if active.get("nonlinear_stiffness", {}).get("sine_share"):
         raise InputError("effects: nonlinear_stiffness.sine_share", "is of a rig that turns: a pendulum's moment")
     return active

@@ -92,8 +92,9 @@ def simulate_rig(
     if active.get("nonlinear_stiffness", {}).get("sine_share") and not rig.rotary:
         where = "effects: nonlinear_stiffness.sine_share"
         raise InputError(where, "is of a rig that turns", "Give the rig inertia_kg_m2 in place of its mass")
-    if "sensor_bandwidth" in active:
-        bandwidth_hz = min(bandwidth_hz, active["sensor_bandwidth"]["bandwidth_hz"])
+    order, slow = 2.0, active.get("sensor_bandwidth", {"bandwidth_hz": math.inf})
+    if slow["bandwidth_hz"] < bandwidth_hz:
+        bandwidth_hz, order = slow["bandwidth_hz"], slow["order"]
     if math.isfinite(bandwidth_hz) and not fine:  # the bilinear low-pass is true to 0.1 % in phase from here on
         oversampling = max(oversampling, math.ceil(8.0 * bandwidth_hz / sample_rate))
     if motor is not None:
@@ -104,7 +105,7 @@ def simulate_rig(
     motion = _motion(rig, effect_vector(active), driving, given, (position, velocity), step)
     out = motion[::oversampling].copy()
     if math.isfinite(bandwidth_hz):
-        out[:, 2] = _low_passed(motion[:, 2], low_pass_coefficients(bandwidth_hz, step))[::oversampling]
+        out[:, 2] = _low_passed(motion[:, 2], low_pass_coefficients(bandwidth_hz, step, order))[::oversampling]
     if not np.isfinite(out[-1]).all():
         row = int(np.flatnonzero(~np.isfinite(out).all(axis=1))[0])
         raise SimulationError(

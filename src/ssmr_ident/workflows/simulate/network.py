@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.signal import lfilter, lfilter_zi
 
-from ssmr_ident.compare.network import laws_of
 from ssmr_ident.core.errors import InputError, SimulationError, did_you_mean
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.core.recording import Recording
 from ssmr_ident.estimate.foot import foot_motion
+from ssmr_ident.estimate.from_file import laws_of
 from ssmr_ident.estimate.network import bare
 from ssmr_ident.estimate.node import Member
 from ssmr_ident.estimate.pieces import STEPS, Piece
