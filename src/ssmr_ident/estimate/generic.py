@@ -159,8 +159,7 @@ def branch(problem: Problem, seconds: float, form: str = "one branch") -> Member
 
 def lag(hz: float, known_hz: float = math.inf, order: float = 2.0) -> Member:
     """A slow accelerometer: a Butterworth low-pass of second order or first, in place of the one that is known."""
-    most = (0.999 if order == 2.0 else 0.7) * known_hz  # there the two delay alike
-    bandwidth = Coordinate("bandwidth_hz", hz, True, 0.05 * hz, min(50.0 * hz, most), 0.0, 2.0, "Hz")
+    bandwidth = Coordinate("bandwidth_hz", hz, True, 0.05 * hz, min(50.0 * hz, 0.999 * known_hz), 0.0, 2.0, "Hz")
     held = {"order": order} if order < 2.0 else {}
     held |= {"known_hz": known_hz} if math.isfinite(known_hz) else {}
     fixed = (Coordinate(name, value, False, value, value, 1.0, 1e-9, "") for name, value in held.items())

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -299,32 +299,46 @@ def matrices(node: Node, values: Array, seen: Seen) -> tuple[Array, ...]:
     rows = np.zeros((*lead, channels, n))
     by_drive, by_force = np.zeros((*lead, channels)), np.zeros((*lead, channels))
     felt = 1.0 if seen.based else 0.0
+    lagging: list[tuple[int, Array, dict[int, Array]]] = []
     for c, (order, on) in enumerate(zip(seen.orders, seen.bodies, strict=True)):
         at = count + on
         if order < 2:
             rows[..., c, on + count * order] = 1.0
         else:
             rows[..., c, :], by_drive[..., c], by_force[..., c] = a[..., at, :], drive[..., at] + felt, -kick[..., at]
-    # logs are rid of the low-pass that is known: these take its place, so that the two delay as one does
     for i, on, (hz, *known) in places.get(LAG, []):
-        turning, at = 2.0 * math.pi / (1.0 / hz - sum(1.0 / f for f in known)), count + on
+        turning, at = 2.0 * math.pi * hz, count + on
         a[..., i, i + 1] = turning
         a[..., i + 1, :] = turning[..., None] * a[..., at, :]
         a[..., i + 1, i] -= turning
         a[..., i + 1, i + 1] -= math.sqrt(2.0) * turning
         kick[..., i + 1] = turning * kick[..., at]
         drive[..., i + 1] = turning * (drive[..., at] + felt)
+        once, twice = _undone(turning, known)
+        lagging.append((on, twice, {i: 1.0 - twice, i + 1: once - math.sqrt(2.0) * twice}))
     for i, on, (hz, _, *known) in places.get(LAG_1, []):
-        turning, at = 2.0 * math.pi / (1.0 / hz - sum(math.sqrt(2.0) / f for f in known)), count + on
+        turning, at = 2.0 * math.pi * hz, count + on
         a[..., i, :] = turning[..., None] * a[..., at, :]
         a[..., i, i] -= turning
         kick[..., i] = turning * kick[..., at]
         drive[..., i] = turning * (drive[..., at] + felt)
-    for i, on, _ in (*places.get(LAG, []), *places.get(LAG_1, [])):
+        once, _ = _undone(turning, known)
+        lagging.append((on, once, {i: 1.0 - once}))
+    for on, passed, states in lagging:
         for c in (c for c, order in enumerate(seen.orders) if order == 2 and seen.bodies[c] == on):
-            rows[..., c, :], by_drive[..., c], by_force[..., c] = 0.0, 0.0, 0.0
-            rows[..., c, i] = 1.0
+            rows[..., c, :] = passed[..., None] * rows[..., c, :]
+            by_drive[..., c] = passed * by_drive[..., c]
+            by_force[..., c] = passed * by_force[..., c]
+            for state, share in states.items():
+                rows[..., c, state] += share
     return a, drive, kick, rows, by_drive, by_force
+
+
+def _undone(turning: Array, known: Sequence[Array]) -> tuple[Array, Array]:
+    """What a slow sensor's rate and its rate's rate count in a log that is rid of the low-pass that is known, which it
+    takes the place of: 1 + sqrt(2) s/w + (s/w)^2 of that, in powers of its own turning rate; nought where none is."""
+    over = sum((turning / (2.0 * math.pi * f) for f in known), np.zeros_like(turning))
+    return math.sqrt(2.0) * over, over**2
 
 
 def _pull(hz: Array, ratio: Array) -> Array:
