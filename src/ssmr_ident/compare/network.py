@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
 from ssmr_ident.compare.outcome import Prediction, left_the_numbers
 from ssmr_ident.core.parameter import ParameterSet
+from ssmr_ident.estimate.finer import finer
 from ssmr_ident.estimate.from_file import node_of
 from ssmr_ident.estimate.network import followed, network_problem
 from ssmr_ident.estimate.problem import natural_hz, problem_of
@@ -34,6 +36,11 @@ def predict(parameters: ParameterSet, measurement: Measurement) -> Prediction:
     """Simulate one recording."""
     problem = (network_problem if parameters.between else problem_of)([measurement], parameters)
     node, point = node_of(problem, parameters)
+    if any(member.after == "clip" for member in node.members):  # single samples are clipped, not means over several
+        as_logged = replace(problem, fastest=measurement.recording.sample_rate)
+        problem = problem_of([measurement], parameters, as_logged)
+        node, point = node_of(problem, parameters)
+    problem = finer(problem) if node.beside else problem
     fit = followed(problem, node, point)
     if node.beside and (horizon := predictable(problem, fit)) < math.inf:  # chaotic: a start tells no more than this
         problem = in_stretches(problem, horizon)

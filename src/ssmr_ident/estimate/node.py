@@ -395,15 +395,12 @@ def law_places(node: Node) -> tuple[Array, Array]:
 
 def effects_of(node: Node, point: Array) -> dict[str, dict[str, float]]:
     """The members that the simulator knows, with their parameters."""
-    found: dict[str, dict[str, float]] = {}
-    for member in node.members:
-        own = node.of(member, point)
-        if member.law is not None:
-            found[member.id] = CATALOGUE[member.id].begun({**member.law, **own})
-        elif member.linear or member.after:
-            declared = {p.name for p in CATALOGUE[member.id].parameters}
-            found[member.id] = CATALOGUE[member.id].begun({n: v for n, v in own.items() if n in declared})
-    return found
+    given: dict[str, dict[str, float]] = {}
+    for member in (m for m in node.members if m.law is not None or m.linear or m.after):
+        declared = {p.name for p in CATALOGUE[member.id].parameters}
+        own = {**(member.law or {}), **node.of(member, point)}
+        given[member.id] = {**given.get(member.id, {}), **{n: v for n, v in own.items() if n in declared}}
+    return {effect: CATALOGUE[effect].begun(values) for effect, values in given.items()}
 
 
 def law_vector(node: Node, point: Array) -> Array:
