@@ -29,6 +29,14 @@ def test_nothing_beats_the_baseline() -> None:
     assert found.chosen is None
 
 
+def test_what_predicts_unseen_recordings_worse_is_no_finding() -> None:
+    quiet = replace(row("", "", 0.0, 5000.0, 1.0), heldout=3.63)
+    rides = row("unlisted", "extra_motion", 23.0, 4930.0)
+    assert decide([quiet, replace(rides, heldout=3.64)]).verdict == NOTHING
+    assert decide([quiet, replace(rides, heldout=3.60)]).chosen is not None
+    assert decide([quiet, rides]).chosen is not None  # nothing was kept back
+
+
 def test_much_is_left_and_nothing_takes_it() -> None:
     found = decide([BASE, row("dry_friction", "static_force", 4.0, 49_990.0, 3.0)])
     assert found.verdict == UNDETERMINED
