@@ -86,6 +86,19 @@ def test_a_pull_of_one_friction_coefficient_moves_smoothly_with_what_it_hardly_d
         assert 0.0 <= np.std(moved - plain) < 0.01, name
 
 
+def test_tires_that_a_fit_has_made_drive_hold_still_at_every_step() -> None:
+    """Of a damping below nought, as a fit may leave it, a robot that slides would run away in a full simulation."""
+    known = read_parameters("p3at-extended")
+    known = known.updated({"tire.damping_x_N_s_m": Estimate(-40.0, None, "N s/m")})
+    time = np.arange(900) / 100.0
+    log = Recording(time, (Channel("force", 8.0 * time, "N"),), Provenance("made", "", "test"))
+    trial = pull_trial(Measurement(Entry("pull.csv", "pull", direction="longitudinal", speed_mm_s=2.0), log), known)
+    whole = trial.course.run({}, {}, np.array([0.02]))
+    assert np.isfinite(whole).all()
+    quick = np.interp(trial.times, trial.course.times, whole[:, 0])
+    assert np.std(trial.run({}, {}, np.array([0.02]))[:, 0] - quick) < 0.5
+
+
 def test_a_slack_is_found_while_wheels_spin() -> None:
     """They have turned by the time the cable tightens: the force over the travel that is left is another."""
     known = read_parameters("p3at-extended")

@@ -31,6 +31,8 @@ QUICK = 2e-3
 simulator's own choice (the body's swing after the start), of a dragged wheel by less than 0.1 N; a load cell's noise is
 some 0.5 N."""
 
+DAMPINGS = "tire.damping_"
+
 SPINNING_STEP = 5e-4
 """The same where wheels spin, whose grip (4.12) changes with their slip: 2 ms would leave up to 0.8 N and a mean of
 2 N, this leaves less than 0.1 N."""
@@ -54,10 +56,13 @@ def force_model(
             )
         )
 
+    dampings = {name: parameters.number(name) for name in parameters if name.startswith(DAMPINGS)}
+
     def pulled(asked: Sequence[Head], step: float, inner: float | None) -> Array:
         pulls = []
         for values, effects, head in asked:
-            seen = {name: _passive(name, value) for name, value in values.items() if name not in unseen}
+            seen = dampings | {name: value for name, value in values.items() if name not in unseen}
+            seen = {name: _passive(name, value) for name, value in seen.items()}
             pulls.append((builder(seen), effects, _scenario(entry, head, step)))
         if inner is None:  # each has a step of its own
             return np.array([_by_its_own_step(*one, step) for one in pulls])
@@ -69,7 +74,7 @@ def force_model(
 
 def _passive(name: str, value: float) -> float:
     """A tire's value, its damping at least none: decays may ask for less, and a robot that slides on it runs away."""
-    return max(value, 0.0) if name.startswith("tire.damping_") else value
+    return max(value, 0.0) if name.startswith(DAMPINGS) else value
 
 
 def _by_its_own_step(robot: Robot, effects: Effects, scenario: Scenario, step: float) -> Array:
