@@ -97,7 +97,7 @@ def decide(rows: Sequence[Row]) -> Decision:
 def certain(row: Row, base: Row) -> bool:
     """Whether a row says that something is missing: by what was fitted, and not against what was kept back."""
     least = STATED if set(row.kinds) == {GEOMETRY} else CERTAIN
-    return bool(row.ids) and row.log_evidence - base.log_evidence >= least and not row.unseen > base.unseen
+    return bool(row.ids) and row.log_evidence - base.log_evidence >= least and not row.heldout > base.heldout
 
 
 def needed(law: Row, left: float, rows: Sequence[Row]) -> bool:
