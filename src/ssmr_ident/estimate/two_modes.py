@@ -13,11 +13,18 @@ from ssmr_ident.estimate.node import Member, Node
 from ssmr_ident.estimate.pieces import Piece
 from ssmr_ident.estimate.values import Fit, Problem, Start
 from ssmr_ident.signals.common_response import TWO_MODES, fitted_response
+from ssmr_ident.signals.noise.mains import MAINS_HZ
 
 Array = np.ndarray
 
 HIGHEST = 0.9
 """Of the half of a rate, up to which bins are used."""
+
+REACH = 4.0
+"""Times the frequency of the motion up to which modes are looked for: farther off lines are disturbances' as well."""
+
+APART = 4.0
+"""Bins about a line of the mains that are passed over: it rings on undriven, and would be taken for a mode."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,22 +81,31 @@ def riding(problem: Problem) -> list[Riding]:
 def two_modes(problem: Problem) -> tuple[float, float, float] | None:
     """Two natural frequencies [rad/s], lower first, and the mean damping ratio, of the recording that a response of two
     modes explains best; None where none of them has two."""
-    found = [own for own in map(_of_piece, problem.pieces) if own is not None]
+    found = [own for piece in problem.pieces if (own := _of_piece(piece, problem.frequency)) is not None]
     return min(found, key=lambda own: own[0])[1:] if found else None
 
 
-def _of_piece(piece: Piece) -> tuple[float, float, float, float] | None:
-    """What two modes leave of the first channel, and they."""
+def _of_piece(piece: Piece, hz: float) -> tuple[float, float, float, float] | None:
+    """What two modes leave of the first channel, and they; ``hz`` : frequency of the motion."""
     y = piece.y[:, 0] - piece.y[:, 0].mean()
     u = piece.drive[:: piece.every][: len(y)] if piece.driven else np.zeros(len(y))
-    last = int(0.5 * HIGHEST * len(y))
+    width = piece.rate / len(y)
+    last = min(int(0.5 * HIGHEST * len(y)), int(REACH * hz / width))
+    if last < TWO_MODES.size:
+        return None
     bins = np.arange(1, last + 1)
+    weight = np.where(np.abs(bins[:, None] * width - MAINS_HZ).min(axis=1) > APART * width, 1.0, 0.0)
     output = np.fft.rfft(y)[bins]
-    response = fitted_response(1j * bins / last, np.fft.rfft(u)[bins], output, np.ones(last), TWO_MODES)
+    response = fitted_response(1j * bins / last, np.fft.rfft(u)[bins], output, weight, TWO_MODES)
     poles = np.roots([1.0, *response.coefficients[TWO_MODES.order - 1 :: -1]])
     pairs = poles[poles.imag > 0.0]
     if len(pairs) < 2 or not np.isfinite(response.residual).all():
         return None
-    turning = np.sort(np.abs(pairs)) * 2.0 * math.pi * last * piece.rate / len(y)
-    left = float(np.sum(np.abs(response.residual) ** 2) / max(float(np.sum(np.abs(output) ** 2)), 1e-300))
-    return left, float(turning[0]), float(turning[1]), float(np.mean(np.abs(pairs.real) / np.abs(pairs)))
+    turning = np.sort(np.abs(pairs)) * 2.0 * math.pi * last * width
+    rest, power = (float(np.sum(weight * np.abs(x) ** 2)) for x in (response.residual, output))
+    return (
+        rest / max(power, 1e-300),
+        float(turning[0]),
+        float(turning[1]),
+        float(np.mean(np.abs(pairs.real) / np.abs(pairs))),
+    )
