@@ -20,7 +20,7 @@ Array = np.ndarray
 HIGHEST = 0.9
 """Of the half of a rate, up to which bins are used."""
 
-REACH = 4.0
+REACH = 5.0
 """Times the frequency of the motion up to which modes are looked for: farther off lines are disturbances' as well."""
 
 APART = 4.0
