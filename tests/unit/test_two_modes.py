@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -49,6 +50,16 @@ def test_two_modes_are_read_off_one_recording(share: float, hz: float, driven: b
     found = two_modes(problem)
     assert found is not None
     assert found[:2] == pytest.approx(exact, rel=5e-3)
+
+
+def test_the_mains_are_no_mode() -> None:
+    """Far above the noise; nothing drives them."""
+    problem, exact = recorded(0.3, 9.0, True, seed=4)
+    piece = problem.pieces[0]
+    hum = 0.02 * piece.y.std() * np.sin(2.0 * np.pi * 50.02 * piece.time)[:, None]
+    found = two_modes(replace(problem, pieces=(replace(piece, y=piece.y + hum),)))
+    assert found is not None
+    assert found[:2] == pytest.approx(exact, rel=0.01)
 
 
 def test_starts_have_the_modes_that_were_found() -> None:
