@@ -72,11 +72,9 @@ def numbers(robot: Robot, gains: Array, effects: Effects) -> Array:
     row[STIFFNESS:DAMPING], row[DAMPING:SENSOR] = robot.stiffness, robot.damping
     row[SENSOR:GAIN], row[GAIN:BANDWIDTH] = robot.accelerometer.position, gains
     row[BANDWIDTH] = robot.accelerometer.bandwidth_hz
+    row[BANDWIDTH] = min(row[BANDWIDTH], effects.get(SLOW, {}).get("bandwidth_hz", math.inf))
     for effect, values in effects.items():
-        for name, value in values.items():
-            if effect == SLOW:
-                row[BANDWIDTH] = min(row[BANDWIDTH], value)
-                continue
+        for name, value in values.items() if effect != SLOW else ():
             for place, factor in PLACES[f"{effect}.{name}"]:
                 row[place] += factor * value
     return row
