@@ -44,6 +44,7 @@ FORMS = {
     ("nonlinear_stiffness", "knee_share"): "F = K s + knee_share K sign(s) max(|s| - knee, 0)",
     ("dry_friction", "rounding_m_s"): "F = F_c tanh(v/rounding)",
     ("dry_friction", "slider"): "F = k z, z follows s and slides at |z| = F_c/k",
+    ("sensor_bandwidth", "order"): "H(s) = 1/(1 + s/w), w = 2 pi bandwidth",
 }
 """The same where parameters that are not 0 choose another formula; the first that they choose."""
 
