@@ -210,7 +210,8 @@ def test_a_page_takes_a_time_in_proportion_to_its_rows() -> None:
         return time.process_time() - begun
 
     spent(10)
-    assert spent(1600) < 10.0 * min(spent(400), spent(400))
+    # the garbage of other tests may be collected within one of them
+    assert min(spent(1600) for _ in range(3)) < 10.0 * min(spent(400) for _ in range(3))
 
 
 def test_results_print_on_a_screen(tmp_path: Path) -> None:
