@@ -20,9 +20,6 @@ Array = np.ndarray
 HIGHEST = 0.9
 """Of the half of a rate, up to which bins are used."""
 
-REACH = 5.0
-"""Times the frequency of the motion up to which modes are looked for: farther off lines are disturbances' as well."""
-
 APART = 4.0
 """Bins about a line of the mains that are passed over: it rings on undriven, and would be taken for a mode."""
 
@@ -86,15 +83,20 @@ def two_modes(problem: Problem) -> tuple[float, float, float] | None:
 
 
 def _of_piece(piece: Piece, hz: float) -> tuple[float, float, float, float] | None:
-    """What two modes leave of the first channel, and they; ``hz`` : frequency of the motion."""
+    """What two modes leave of the first channel, and they.
+
+    Bins count by what they are of the deflection: far above the motion, which goes at ``hz``, an acceleration holds a
+    structure's own modes and the mains, whose deflections are next to nothing.
+    """
     y = piece.y[:, 0] - piece.y[:, 0].mean()
     u = piece.drive[:: piece.every][: len(y)] if piece.driven else np.zeros(len(y))
     width = piece.rate / len(y)
-    last = min(int(0.5 * HIGHEST * len(y)), int(REACH * hz / width))
+    last = int(0.5 * HIGHEST * len(y))
     if last < TWO_MODES.size:
         return None
     bins = np.arange(1, last + 1)
-    weight = np.where(np.abs(bins[:, None] * width - MAINS_HZ).min(axis=1) > APART * width, 1.0, 0.0)
+    weight = (1.0 + (bins * width / hz) ** 2) ** (-0.5 * piece.orders[0])
+    weight[np.abs(bins[:, None] * width - MAINS_HZ).min(axis=1) < APART * width] = 0.0
     output = np.fft.rfft(y)[bins]
     response = fitted_response(1j * bins / last, np.fft.rfft(u)[bins], output, weight, TWO_MODES)
     poles = np.roots([1.0, *response.coefficients[TWO_MODES.order - 1 :: -1]])
@@ -102,7 +104,7 @@ def _of_piece(piece: Piece, hz: float) -> tuple[float, float, float, float] | No
     if len(pairs) < 2 or not np.isfinite(response.residual).all():
         return None
     turning = np.sort(np.abs(pairs)) * 2.0 * math.pi * last * width
-    rest, power = (float(np.sum(weight * np.abs(x) ** 2)) for x in (response.residual, output))
+    rest, power = (float(np.sum(np.abs(weight * x) ** 2)) for x in (response.residual, output))
     return (
         rest / max(power, 1e-300),
         float(turning[0]),
