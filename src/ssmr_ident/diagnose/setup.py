@@ -176,8 +176,8 @@ def split_in_time(trial: Trial) -> tuple[Trial, Trial]:
     early[cut:], late[:cut] = False, False
     times = trial.times
     # what is shortened would lose the mask
-    first = replace(trial, counts=early, shorten=None, part=(float(times[0]), float(times[cut - 1])))
-    return first, replace(trial, counts=late, shorten=None, part=(float(times[cut]), float(times[-1])))
+    first = replace(trial, counts=early, shorten=None, delay=None, part=(float(times[0]), float(times[cut - 1])))
+    return first, replace(trial, counts=late, shorten=None, delay=None, part=(float(times[cut]), float(times[-1])))
 
 
 def twin(path: str, parameters: ParameterSet) -> str | None:

@@ -13,25 +13,33 @@ import numpy as np
 
 from ssmr_ident.doctor.decays.linear import LinearFit, fit_linear
 from ssmr_ident.doctor.decays.recordings import Decay, thinned
+from ssmr_ident.doctor.decays.small_motions import small_motions
 from ssmr_ident.doctor.robots.cooled import led, variances
 from ssmr_ident.doctor.robots.found import Found, cost_of
 from ssmr_ident.doctor.robots.members import Member
 from ssmr_ident.identify.fitting.coordinates import Model
 from ssmr_ident.identify.fitting.descent import descend
 from ssmr_ident.identify.fitting.joint import JointFit, evaluate
+from ssmr_ident.identify.trials import Trial
 from ssmr_ident.identify.trials.decay import SCALES, STATES
 from ssmr_ident.physics.extended import BODY, SLOW
 
 Array = np.ndarray
 
-BEGINS_S = 0.35, 1.4
-"""Length of the first part of a recording by which its state at the release is found; and of a longer one."""
+BEGINS_S = 0.12, 0.35, 1.4
+"""Lengths of the first parts of a recording by which its state at the release is found: one period of the fastest mode,
+some of the slowest one, more of it."""
+
+IS_RATE = np.array([name.endswith("_rate") for name in STATES])
 
 SCREENED_S = 0.7, 1.4
 """Length of the first part that laws are fitted to under the first variance of what counts as noise, and later."""
 
 LAST = 3
 """Steps of states alone."""
+
+FOLLOWS = 1.5
+"""RMS of whitened residuals up to which states that were begun at linear ones follow a recording."""
 
 FAR = 3.0
 """Standard deviations of what is known that a baseline may have moved before laws are begun from what is known, too."""
@@ -60,12 +68,15 @@ def loudest(decays: Sequence[Decay]) -> list[int]:
 
 
 def starts(decays: Sequence[Decay], which: Sequence[int], first: Found, follows: bool) -> list[Start]:
-    """From a fit, and from what is known of the robot where that fit does not follow the recordings or has left it."""
+    """From a fit; and where that does not follow the recordings or has left what is known of the robot, from what their
+    small motions say of it, or from what is known."""
     assert first.fit is not None
     fit = first.fit
     found = [Start(fit.point, tuple(fit.nuisances[index] for index in which))]
     if not follows or left_known(fit):
-        known = released([decays[index] for index in which], fit.model, fit.model.as_known(fit.point))
+        point = small_motions(decays, fit.model)
+        point = fit.model.as_known(fit.point) if point is None else point
+        known = released([decays[index] for index in which], fit.model, point)
         found += [Start(known.point, known.nuisances)] if np.isfinite(known.rss) else []
     return found
 
@@ -94,14 +105,33 @@ def on_whole(decays: Sequence[Decay], fit: JointFit, near: Sequence[Array]) -> J
 
 
 def released(decays: Sequence[Decay], model: Model, point: Array) -> JointFit:
-    """A model at a point, its states at the release found over longer and longer beginnings."""
+    """A model at a point, its states at the release found over longer and longer beginnings.
+
+    Large motions are not linear, so that a linear state may be far from them: where it does not follow, what it is
+    displaced by is let go at rest, as a hand does; of every recording the better.
+    """
     trials = [d.trial for d in decays]
-    states = linear_states([thinned(d, BEGINS_S[0], 1) for d in decays], model, point)
-    states = states or [np.zeros(len(STATES)) for _ in trials]
+    linear = linear_states([thinned(d, BEGINS_S[0], 1) for d in decays], model, point)
+    linear = linear or [np.zeros(len(STATES)) for _ in trials]
+    found = _longer(trials, model, point, linear)
+    if not found.rss < FOLLOWS**2 * found.size:
+        other = _longer(trials, model, point, [np.where(IS_RATE, 0.0, x) for x in linear])
+        better = [
+            a if left < right else b
+            for a, b, left, right in zip(found.nuisances, other.nuisances, found.parts, other.parts, strict=True)
+        ]
+        found = evaluate(trials, model, point, better)
+    return evaluate(trials, model, point, found.nuisances)
+
+
+def _longer(trials: Sequence[Trial], model: Model, point: Array, states: Sequence[Array]) -> JointFit:
+    """States alone over longer and longer beginnings, over the first from all that they leave as noise."""
     for seconds in BEGINS_S:
-        short = evaluate([t.until(seconds) for t in trials], model, point, states)
-        states = list(descend(short, LAST, shared=False, plain=True).nuisances)
-    return evaluate(trials, model, point, states)
+        found = evaluate([t.until(seconds) for t in trials], model, point, states)
+        for variance in variances(found) if seconds == BEGINS_S[0] and np.isfinite(found.rss) else (1.0,):
+            found = descend(found, LAST, shared=False, plain=True, temper=variance)
+        states = found.nuisances
+    return found
 
 
 def linear_states(decays: Sequence[Decay], model: Model, point: Array) -> list[Array] | None:

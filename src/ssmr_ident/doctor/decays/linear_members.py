@@ -8,12 +8,10 @@ from dataclasses import replace
 import numpy as np
 
 from ssmr_ident.doctor.decays.laws import LAST, exact
-from ssmr_ident.doctor.decays.linear import LinearFit, fit_linear
-from ssmr_ident.doctor.decays.recordings import Decay, thinned
-from ssmr_ident.doctor.robots.cooled import TRUSTED
+from ssmr_ident.doctor.decays.linear import fit_linear
+from ssmr_ident.doctor.decays.recordings import thinned
 from ssmr_ident.doctor.robots.found import Found, Search, cost_of
 from ssmr_ident.doctor.robots.members import Member
-from ssmr_ident.identify.fitting.coordinates import Model
 from ssmr_ident.identify.fitting.descent import descend
 from ssmr_ident.identify.fitting.joint import evaluate
 
@@ -28,17 +26,6 @@ CHOSEN, LAST_ONES = 3, 2
 
 OFFERED = 2
 """Models, the best ones, that are offered to those below them."""
-
-
-def annealed(decays: Sequence[Decay], model: Model) -> LinearFit | None:
-    """The baseline from what is known: all that this leaves of the recordings counts as noise at first, then ever less,
-    or the robot would leave what is known to follow what no robot does."""
-    fit = fit_linear(decays, model, np.zeros(len(model.unknowns)), 0)
-    temper = 0.0 if fit is None else fit.chi2 / sum(d.trial.size for d in decays)
-    while fit is not None and temper > 1.0:
-        fit = fit_linear(decays, model, fit.point, temper=temper)
-        temper *= TRUSTED
-    return None if fit is None else fit_linear(decays, model, fit.point)
 
 
 def from_all_starts(search: Search, first: Found, ways: Sequence[Member]) -> Found | None:

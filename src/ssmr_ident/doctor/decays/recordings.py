@@ -67,6 +67,11 @@ class Decay:
         shorten = self.trial.shorten
         return self if shorten is None else replace(self, trial=shorten(1e6).with_noises(self.trial.noises))
 
+    def later(self, seconds: float) -> Decay:
+        """The same from so long after its release on; itself where it cannot be cut."""
+        delay = self.trial.delay
+        return self if delay is None else replace(self, trial=delay(seconds).with_noises(self.trial.noises))
+
     def whitened(self, columns: Array) -> Array:
         """(n, k) to (c, n', k), through each channel's noise, its zero and mains lines taken out."""
         count, channels = columns.shape[1], len(self.axes)
@@ -109,5 +114,5 @@ def thinned(decay: Decay, seconds: float, every: int) -> Decay:
     drift = None if trial.drift is None else trial.drift[kept]
     counts = None if trial.counts is None else trial.counts[kept]
     trial = replace(trial, times=trial.times[kept], target=trial.target[kept], basis=trial.basis[kept], drift=drift,
-                    counts=counts, shorten=None)  # fmt: skip
+                    counts=counts, shorten=None, delay=None)  # fmt: skip
     return replace(decay, trial=trial, step=decay.step * every)

@@ -26,13 +26,13 @@ from ssmr_ident.doctor.decays.laws import (
 from ssmr_ident.doctor.decays.linear import fit_linear
 from ssmr_ident.doctor.decays.linear_members import (
     OFFERED,
-    annealed,
     from_all_starts,
     offered_back,
     offered_down,
     simulated,
 )
 from ssmr_ident.doctor.decays.recordings import Decay
+from ssmr_ident.doctor.decays.small_motions import annealed
 from ssmr_ident.doctor.decide import certain
 from ssmr_ident.doctor.robots.answer import table
 from ssmr_ident.doctor.robots.cooled import (

@@ -240,8 +240,18 @@ def _trial(whole: BodyDecay, kept: int, facts: _Facts) -> Trial:
         shorten=lambda seconds: _trial(
             whole, min(kept, max(FEWEST, round(seconds / whole.step))), replace(facts, step=ROUGH_STEP)
         ),
+        delay=lambda seconds: _later(whole, kept, facts, round(seconds / whole.step)),
     )
     return trial
+
+
+def _later(whole: BodyDecay, kept: int, facts: _Facts, blocks: int) -> Trial:
+    """The same decay from so many blocks after its release on."""
+    record, cut = whole.record, blocks * whole.block
+    record = replace(record, samples=record.samples[cut:], start_s=record.start_s + cut * record.step)
+    rest = replace(whole, samples=whole.samples[blocks:], record=record)
+    own = replace(facts, basis=facts.basis[blocks:], drift=facts.drift[blocks:], step=ROUGH_STEP)
+    return _trial(rest, kept - blocks, own)
 
 
 def _window(decay: BodyDecay) -> tuple[int, int]:

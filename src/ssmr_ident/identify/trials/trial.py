@@ -87,6 +87,8 @@ class Trial:
         ``begin`` finds the nuisances by a search that does not get caught where a descent does.
     shorten : callable or None
         ``shorten(seconds)`` is the same recording up to there, for fits that are led from its beginning to its end.
+    delay : callable or None
+        ``delay(seconds)`` is the same recording from there on, for fits that are led from its end to its beginning.
     part : (float, float) or None [s]
         Times that count, where a lone recording is split into a part that is fitted and one that is kept back.
     quiet : bool
@@ -130,6 +132,7 @@ class Trial:
     even: tuple[str, ...] = ()
     searched: bool = False
     shorten: Callable[[float], Trial] | None = None
+    delay: Callable[[float], Trial] | None = None
     part: tuple[float, float] | None = None
     quiet: bool = False
     jolt: tuple[float, float] | None = None
