@@ -14,7 +14,7 @@ from ssmr_ident.diagnose.diagnosis import Diagnosis
 from ssmr_ident.diagnose.setup import Setup, set_up
 from ssmr_ident.doctor.decays.linear_members import simulated
 from ssmr_ident.doctor.decays.recordings import Decay, decay_of
-from ssmr_ident.doctor.decays.search import MATTERS, MORE_OVER, NEAR, begun, completed, in_turn, promised_beside
+from ssmr_ident.doctor.decays.search import MATTERS, MORE_OVER, begun, completed, in_turn, promised_beside
 from ssmr_ident.doctor.decide import MISSING, Decision, certain, decide
 from ssmr_ident.doctor.robots.answer import GROWS, answered, table
 from ssmr_ident.doctor.robots.calibrated import informed
@@ -30,7 +30,7 @@ from ssmr_ident.physics.slots import effect_values
 Progress = Callable[[str, int, int], None]
 
 PREDICTS = 1.25
-"""Error over the noise floor up to which a law's answer may be given before all others have been tried."""
+"""Error over the noise floor up to which an answer may be given before all others have been tried."""
 
 
 def diagnose(
@@ -81,8 +81,7 @@ def _certain(setup: Setup, search: Search, known: ParameterSet, seed: int) -> Di
     if decision.verdict != MISSING or not decision.listed or decision.chosen is None:
         return None
     chosen = next(found for row, found in rows if row is decision.chosen)
-    linear = all(m.linear for m in chosen.members)
-    if search.over(chosen) > (NEAR if linear else MORE_OVER) or _imitates(search, chosen):
+    if search.over(chosen) > MORE_OVER or _imitates(chosen):
         return None
     if not alone(decision.chosen, [row for row, _ in rows]):
         return None
@@ -91,9 +90,8 @@ def _certain(setup: Setup, search: Search, known: ParameterSet, seed: int) -> Di
     found = answered(setup, search, rows, decision, known, seed)
     most = GROWS if set(decision.chosen.kinds) == {GEOMETRY} else MATTERS
     qualities = (found.training, found.heldout)
-    falls = all(q.after < most * q.before for q in qualities)
-    follows = linear or all(q.after < PREDICTS * q.noise_floor for q in qualities)
-    return found if falls and follows else None
+    predicts = all(q.after < min(most * q.before, PREDICTS * q.noise_floor) for q in qualities)
+    return found if predicts else None
 
 
 def _more_is_promised(search: Search, chosen: Found) -> bool:
@@ -115,12 +113,10 @@ def alone(chosen: Row, rows: Sequence[Row]) -> bool:
     return all(r.log_evidence < chosen.log_evidence - CERTAIN for r in others)
 
 
-def _imitates(search: Search, chosen: Found) -> bool:
-    """Whether relaxation may stand for a friction or a loop that was not fitted in its place: beside another effect, or
-    where no law was fitted and more than noise is left."""
-    relaxes = any(m.id == BRANCH for m in chosen.members)
-    compared = search.over(search.baseline) < NEAR or search.has_laws
-    return relaxes and (len(chosen.members) > 1 or not (compared or search.over(chosen) < MORE_OVER))
+def _imitates(chosen: Found) -> bool:
+    """Whether relaxation stands beside another effect, for it may be there for a friction or a loop that was not fitted
+    in its place."""
+    return len(chosen.members) > 1 and any(m.id == BRANCH for m in chosen.members)
 
 
 def takes(campaign: Campaign, known: ParameterSet) -> bool:

@@ -100,14 +100,13 @@ def in_turn(search: Search, progress: Progress | None = None) -> Iterator[None]:
     say = progress or _silent
     _linear_beside(search, search.baseline, say)
     offered_back(search)
-    if search.over(search.best) <= NEAR and _compared(search, say):
-        yield
     if search.over(search.best) <= MORE_OVER:
+        if _compared(search, say):
+            yield
         return
-    if not search.has_laws:
-        _single_laws(search, say)
-        _finished(search, say)
-        yield
+    _single_laws(search, say)
+    _finished(search, say)
+    yield
     if not _leaves_a_second(search):
         return
     for first in _firsts(search, linear=True):
