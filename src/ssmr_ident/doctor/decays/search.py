@@ -70,7 +70,8 @@ RELEASED = 3
 """Times that a law's states at the release are looked for anew, at the most."""
 
 ALIKE = 1.2
-"""Factor on the cost of an effect's best fit up to which another formula, or start, of it goes on."""
+"""Factor on the cost of an effect's best fit up to which another formula, or start, of it goes on; and on the least of
+all, up to which laws go on where a model leaves noise alone."""
 
 REACH, SHARE = 50.0, 0.02
 """Cost above the least, of what is linear too, and share of the baseline's misfit, up to which a linear model is led on
@@ -271,6 +272,8 @@ def _laws_beside(search: Search, first: Found, say: Progress) -> None:
     ended += [pair for member, fit in ended if member.generic for pair in parts_of(member, fit, laws)]
     least = min((cost_of(f) for _, f in ended), default=math.inf)
     for index, (member, fit) in enumerate(going := field(ended, LAWS, FAR_OFF * least, ALIKE)):
+        if cost_of(fit) > ALIKE * least and search.over(search.best) < MORE_OVER:
+            break
         say("laws on whole recordings", index, len(going))
         search.add(Found((*first.members, member), None, on_whole(search.decays, fit, first.fit.nuisances)))
 
