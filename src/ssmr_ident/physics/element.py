@@ -78,11 +78,11 @@ def element_force(s, v, z, stiffness, ratio, gap_share, tangential, e):
         f += _cubic(s, e[CUBIC])
     if first(e[CUBIC_SHARE]) != 0.0:
         f += _cubic(s, e[CUBIC_SHARE] * stiffness)
-    if first(e[KNEE_SHARE]) != 0.0:
-        f += _beyond(s, stiffness, e[KNEE_SHARE], e[KNEE])
     if first(e[RELAXATION_STIFFNESS]) != 0.0:
         f += _relaxation(z[2], ratio * e[RELAXATION_STIFFNESS])
     if tangential:
+        if first(e[KNEE_SHARE]) != 0.0:
+            f += _beyond(s, stiffness, e[KNEE_SHARE], e[KNEE])
         if first(e[SINE_SHARE]) != 0.0:
             f += _pendulum(s, stiffness, e[SINE_SHARE])
         if first(e[QUADRATIC]) != 0.0:

@@ -92,7 +92,7 @@ def added(effects: Effects) -> tuple[bool, bool, bool]:
 def tilted(row: Array) -> tuple[Array, Array]:
     """Sinking and tilt of the robot at rest, and the wheels' loads over K_z: (3, 3) rotation, (4,) float."""
     points = row[POINTS:STIFFNESS].reshape(4, 3)
-    height, roll, pitch = resting(points, float(row[MASS]), float(row[STIFFNESS + 2]), 0.0, 0.0, 1.0)
+    height, roll, pitch = resting(points, float(row[MASS]), float(row[STIFFNESS + 2]), 0.0)
     rotation = tilt(roll, pitch)
     return rotation, -(height + (points @ rotation.T)[:, 2])
 

@@ -11,7 +11,7 @@ from ssmr_ident.core.kernel import kernel
 from ssmr_ident.physics.robot import GRAVITY, Robot
 
 
-def rest_pose(robot: Robot, cubic: float = 0.0, knee_share: float = 0.0, knee: float = 1.0) -> np.ndarray:
+def rest_pose(robot: Robot, cubic: float = 0.0) -> np.ndarray:
     """Sinking and tilt at which the tires carry the weight, by Newton's method on the exact geometry.
 
     Parameters
@@ -19,9 +19,6 @@ def rest_pose(robot: Robot, cubic: float = 0.0, knee_share: float = 0.0, knee: f
     robot : Robot
     cubic : float [N/m^3]
         k3 of each tire beside its K_z.
-    knee_share : float
-        Slope beyond the knee over K_z, less one.
-    knee : float [m]
 
     Returns
     -------
@@ -29,19 +26,18 @@ def rest_pose(robot: Robot, cubic: float = 0.0, knee_share: float = 0.0, knee: f
         Height of the CoM above the floor, roll and pitch.
     """
     known = _FOUND.setdefault(robot, {})
-    law = cubic, knee_share, knee
-    if law not in known:
-        known[law] = resting(robot.contact_points, robot.mass, float(robot.stiffness[2]), *law)
-    return known[law].copy()
+    if cubic not in known:
+        known[cubic] = resting(robot.contact_points, robot.mass, float(robot.stiffness[2]), cubic)
+    return known[cubic].copy()
 
 
-_FOUND: WeakKeyDictionary[Robot, dict[tuple[float, float, float], np.ndarray]] = WeakKeyDictionary()
+_FOUND: WeakKeyDictionary[Robot, dict[float, np.ndarray]] = WeakKeyDictionary()
 """Rest poses of robots that are still in use: one robot is let go from many starts."""
 
 
 @kernel
-def resting(points, mass, stiffness, cubic, knee_share, knee):
-    """``rest_pose`` of numbers: (4, 3) float [m], [kg], [N/m], [N/m^3], [1], [m]."""
+def resting(points, mass, stiffness, cubic):
+    """``rest_pose`` of numbers: (4, 3) float [m], [kg], [N/m], [N/m^3]."""
     sink = mass * GRAVITY / (4.0 * stiffness)
     height, roll, pitch = -points[:, 2].mean() - sink, 0.0, 0.0
     for _ in range(30):
@@ -54,9 +50,8 @@ def resting(points, mass, stiffness, cubic, knee_share, knee):
             raised = sr * y + cr * z
             lateral, along = cr * y - sr * z, -(cp * x + sp * raised)
             depth = sp * x - cp * raised - height
-            further = knee_share * stiffness if depth > knee else 0.0
-            force = stiffness * depth + cubic * depth**3 + further * (depth - knee)
-            slope = stiffness + 3.0 * cubic * depth**2 + further
+            force = stiffness * depth + cubic * depth**3
+            slope = stiffness + 3.0 * cubic * depth**2
             up, about_x, about_y = up + force, about_x + lateral * force, about_y + along * force
             uu, ux, uy = uu + slope, ux + lateral * slope, uy + along * slope
             xx, xy, yy = xx + lateral**2 * slope, xy + lateral * along * slope, yy + along**2 * slope

@@ -9,12 +9,14 @@ import numpy as np
 from ssmr_ident.core.kernel import kernel
 from ssmr_ident.experiments import Experiment
 from ssmr_ident.physics.effect import Site
-from ssmr_ident.physics.effects import CATALOGUE, stribeck, unlisted
+from ssmr_ident.physics.effects import CATALOGUE, nonlinear_stiffness, stribeck, unlisted
 from ssmr_ident.physics.element import STATES, element_advance, element_force
 from ssmr_ident.physics.rig import Block
 from ssmr_ident.physics.robot import GRAVITY, Robot
 from ssmr_ident.physics.slots import (
     KINETIC_SHARE,
+    KNEE,
+    KNEE_SHARE,
     STRIBECK_EXPONENT,
     STRIBECK_SPEED,
     UNLISTED,
@@ -29,7 +31,7 @@ from ssmr_ident.simulate.sensed import sensed
 LONGEST_STEP = 2e-4
 """s; a tenth of the carcass' time constant D/K."""
 
-_friction_law, _unlisted = stribeck.coefficient, unlisted.force
+_friction_law, _unlisted, _beyond = stribeck.coefficient, unlisted.force, nonlinear_stiffness.beyond
 
 
 def drag_wheel(
@@ -217,5 +219,7 @@ def _press(stiffness, damping, ratio, e, depth, step, out):
         out[n] = 0.0
         if depth[n] > 0.0:
             beside = element_force(depth[n], rate, hidden, stiffness, ratio, 0.0, False, e)
+            # from the unloaded tire on; K_z of a robot that stands is its slope there, short of the knee or beyond
+            beside += _beyond(depth[n], stiffness, e[KNEE_SHARE], e[KNEE])
             out[n] = max(0.0, stiffness * depth[n] + damping * rate + beside)
             element_advance(hidden, rate, step, False, e)

@@ -20,8 +20,6 @@ from ssmr_ident.physics.slots import (
     CUBIC_SHARE,
     ECCENTRICITY,
     JOINT_DEPTH,
-    KNEE,
-    KNEE_SHARE,
     ROUGHNESS,
     Effects,
     checked_for_robot,
@@ -108,8 +106,7 @@ class Body:
     @cached_property
     def rest(self) -> np.ndarray:
         """Height, roll and pitch at rest, (3,) float."""
-        cubic = float(self.e[CUBIC] + self.e[CUBIC_SHARE] * self.robot.stiffness[2])
-        return rest_pose(self.robot, cubic, float(self.e[KNEE_SHARE]), float(self.e[KNEE]))
+        return rest_pose(self.robot, float(self.e[CUBIC] + self.e[CUBIC_SHARE] * self.robot.stiffness[2]))
 
     @cached_property
     def packed(self) -> np.ndarray:

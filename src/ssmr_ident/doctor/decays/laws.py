@@ -20,7 +20,6 @@ from ssmr_ident.doctor.robots.members import Member
 from ssmr_ident.identify.fitting.coordinates import Model
 from ssmr_ident.identify.fitting.descent import descend
 from ssmr_ident.identify.fitting.joint import JointFit, evaluate
-from ssmr_ident.identify.trials import Trial
 from ssmr_ident.identify.trials.decay import SCALES, STATES
 from ssmr_ident.physics.extended import BODY, SLOW
 
@@ -111,26 +110,28 @@ def released(decays: Sequence[Decay], model: Model, point: Array) -> JointFit:
     displaced by is let go at rest, as a hand does; of every recording the better.
     """
     trials = [d.trial for d in decays]
-    linear = linear_states([thinned(d, BEGINS_S[0], 1) for d in decays], model, point)
-    linear = linear or [np.zeros(len(STATES)) for _ in trials]
-    found = _longer(trials, model, point, linear)
+    found = _longer(decays, model, point, BEGINS_S[1:], 1.0)
     if not found.rss < FOLLOWS**2 * found.size:
-        other = _longer(trials, model, point, [np.where(IS_RATE, 0.0, x) for x in linear])
+        other = _longer(decays, model, point, BEGINS_S, 0.0)
         better = [
-            a if left < right else b
+            a if left < right or not np.isfinite(right) else b
             for a, b, left, right in zip(found.nuisances, other.nuisances, found.parts, other.parts, strict=True)
         ]
-        found = evaluate(trials, model, point, better)
+        return evaluate(trials, model, point, better)
     return evaluate(trials, model, point, found.nuisances)
 
 
-def _longer(trials: Sequence[Trial], model: Model, point: Array, states: Sequence[Array]) -> JointFit:
-    """States alone over longer and longer beginnings, over the first from all that they leave as noise."""
-    for seconds in BEGINS_S:
-        found = evaluate([t.until(seconds) for t in trials], model, point, states)
-        for variance in variances(found) if seconds == BEGINS_S[0] and np.isfinite(found.rss) else (1.0,):
+def _longer(decays: Sequence[Decay], model: Model, point: Array, lengths: Sequence[float], moving: float) -> JointFit:
+    """States alone over longer and longer beginnings, from the linear ones, their rates times ``moving``; over the
+    first from all that those leave as noise."""
+    states = linear_states([thinned(d, lengths[0], 1) for d in decays], model, point)
+    states = states or [np.zeros(len(STATES)) for _ in decays]
+    states = [np.where(IS_RATE, moving * x, x) for x in states]
+    for seconds in lengths:
+        found = evaluate([d.trial.until(seconds) for d in decays], model, point, states)
+        for variance in variances(found) if seconds == lengths[0] and np.isfinite(found.rss) else (1.0,):
             found = descend(found, LAST, shared=False, plain=True, temper=variance)
-        states = found.nuisances
+        states = list(found.nuisances)
     return found
 
 
