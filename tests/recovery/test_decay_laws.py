@@ -7,6 +7,8 @@ from bank.decays import draw_decays
 from doctor.sources import drawn_by
 
 from ssmr_ident.doctor.decays import run, search
+from ssmr_ident.doctor.decays.laws import left_known
+from ssmr_ident.doctor.decays.small_motions import small_motions
 
 
 @pytest.mark.slow
@@ -38,3 +40,23 @@ def test_a_stiffness_that_changes_over_each_recording_is_of_that_kind(monkeypatc
     best = found.best
     assert [m.kind for m in best.members] == ["changing"]
     assert found.over(best) < 1.1
+
+
+@pytest.mark.slow
+def test_small_motions_show_the_robot_that_large_ones_hide(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Wheels that leave the floor: the baseline of whole recordings leaves what is known, that of their ends does not,
+    and the law begun there follows them."""
+    members = search.members
+    monkeypatch.setattr(search, "members", lambda fit: [m for m in members(fit) if m.id == "wheel_lift"])
+    drawn = draw_decays("one", 910003, "wheel_lift", 1.0, False)
+    setup, decays = run._prepared(drawn.campaign, drawn.campaign.parameters)
+    found = search.begun(decays, setup.model)
+    assert found.baseline.fit is not None
+    assert left_known(found.baseline.fit)
+    point = small_motions(found.decays, setup.model)
+    assert point is not None
+    assert abs(point).max() < 3.0
+    search._laws_beside(found, found.baseline, lambda *_: None)
+    search._settled(found, lambda *_: None)
+    assert [m.id for m in found.best.members] == ["wheel_lift"]
+    assert found.over(found.best) < 1.2

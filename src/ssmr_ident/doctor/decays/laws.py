@@ -73,9 +73,12 @@ def starts(decays: Sequence[Decay], which: Sequence[int], first: Found, follows:
     fit = first.fit
     found = [Start(fit.point, tuple(fit.nuisances[index] for index in which))]
     if not follows or left_known(fit):
-        point = small_motions(decays, fit.model)
-        point = fit.model.as_known(fit.point) if point is None else point
-        known = released([decays[index] for index in which], fit.model, point)
+        loud, small = [decays[index] for index in which], small_motions(decays, fit.model)
+        known = (
+            released(loud, fit.model, fit.model.as_known(fit.point))
+            if small is None
+            else let_go(loud, fit.model, small)
+        )
         found += [Start(known.point, known.nuisances)] if np.isfinite(known.rss) else []
     return found
 
@@ -95,7 +98,7 @@ def on_whole(decays: Sequence[Decay], fit: JointFit, near: Sequence[Array]) -> J
     """A law that was fitted to some recordings, on all of them: from states of their own, or from those ``near``."""
     trials = [d.trial for d in decays]
     by_near = descend(evaluate(trials, fit.model, fit.point, near), LAST, shared=False, plain=True)
-    begun = min((by_near, released(decays, fit.model, fit.point)), key=cost_of)
+    begun = min((by_near, let_go(decays, fit.model, fit.point)), key=cost_of)
     if not np.isfinite(begun.rss):
         return begun
     for variance in variances(begun):
@@ -104,21 +107,21 @@ def on_whole(decays: Sequence[Decay], fit: JointFit, near: Sequence[Array]) -> J
 
 
 def released(decays: Sequence[Decay], model: Model, point: Array) -> JointFit:
-    """A model at a point, its states at the release found over longer and longer beginnings.
-
-    Large motions are not linear, so that a linear state may be far from them: where it does not follow, what it is
-    displaced by is let go at rest, as a hand does; of every recording the better.
-    """
-    trials = [d.trial for d in decays]
+    """A model at a point, its states at the release found over longer and longer beginnings from the linear ones."""
     found = _longer(decays, model, point, BEGINS_S[1:], 1.0)
+    return evaluate([d.trial for d in decays], model, point, found.nuisances)
+
+
+def let_go(decays: Sequence[Decay], model: Model, point: Array) -> JointFit:
+    """The same of large motions, which are not linear, so that a linear state may be far from theirs: where it does not
+    follow, what it is displaced by is let go at rest, as a hand does; of every recording the better."""
+    found = _longer(decays, model, point, BEGINS_S[1:], 1.0)
+    states: Sequence[Array] = found.nuisances
     if not found.rss < FOLLOWS**2 * found.size:
         other = _longer(decays, model, point, BEGINS_S, 0.0)
-        better = [
-            a if left < right or not np.isfinite(right) else b
-            for a, b, left, right in zip(found.nuisances, other.nuisances, found.parts, other.parts, strict=True)
-        ]
-        return evaluate(trials, model, point, better)
-    return evaluate(trials, model, point, found.nuisances)
+        better = other.parts < found.parts if np.isfinite(found.rss) else np.ones(len(decays), dtype=bool)
+        states = [b if use else a for a, b, use in zip(found.nuisances, other.nuisances, better, strict=True)]
+    return evaluate([d.trial for d in decays], model, point, states)
 
 
 def _longer(decays: Sequence[Decay], model: Model, point: Array, lengths: Sequence[float], moving: float) -> JointFit:
