@@ -13,7 +13,7 @@ import numpy as np
 
 from ssmr_ident.doctor.decays.linear import LinearFit, fit_linear
 from ssmr_ident.doctor.decays.recordings import Decay, thinned
-from ssmr_ident.doctor.decays.small_motions import small_motions
+from ssmr_ident.doctor.decays.small_motions import FAR, small_motions
 from ssmr_ident.doctor.robots.cooled import led, variances
 from ssmr_ident.doctor.robots.found import Found, cost_of
 from ssmr_ident.doctor.robots.members import Member
@@ -39,9 +39,6 @@ LAST = 3
 
 FOLLOWS = 1.5
 """RMS of whitened residuals up to which states that were begun at linear ones follow a recording."""
-
-FAR = 3.0
-"""Standard deviations of what is known that a baseline may have moved before laws are begun from what is known, too."""
 
 
 @dataclass(frozen=True, eq=False)

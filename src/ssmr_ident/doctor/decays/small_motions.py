@@ -17,6 +17,10 @@ Array = np.ndarray
 ENDS = 0.1, 0.2, 0.4, 0.6
 """Shares of the shortest recording from which on it is looked at."""
 
+FAR = 3.0
+"""Standard deviations of what is known beyond which a fit is not the robot: what friction leaves of a motion as it ends,
+a linear model follows by leaving all that is known."""
+
 NOISE_OVER = 1.1
 """RMS of whitened residuals up to which a linear model leaves noise alone: as ``search.MORE_OVER``."""
 
@@ -34,13 +38,14 @@ def annealed(decays: Sequence[Decay], model: Model) -> LinearFit | None:
 
 def small_motions(decays: Sequence[Decay], model: Model) -> Array | None:
     """A linear model where the recordings' ends say it is, when motions have become so small that it leaves noise
-    alone; None where it never does."""
+    alone and is the robot that is known; None where it never is."""
     if not set(model.held) <= set(LINEAR):
         return None
     shortest = min(float(d.times[-1]) for d in decays)
     for share in ENDS:
         ends = [d.later(share * shortest) for d in decays]
         fit = annealed(ends, model)
-        if fit is not None and fit.chi2 < NOISE_OVER**2 * sum(d.trial.size for d in ends):
+        follows = fit is not None and fit.chi2 < NOISE_OVER**2 * sum(d.trial.size for d in ends)
+        if fit is not None and follows and np.abs(fit.point[: len(model.physics)]).max() < FAR:
             return fit.point
     return None
