@@ -18,8 +18,8 @@ ENDS = 0.1, 0.2, 0.4, 0.6
 """Shares of the shortest recording from which on it is looked at."""
 
 FAR = 3.0
-"""Standard deviations of what is known beyond which a fit is not the robot: what friction leaves of a motion as it ends,
-a linear model follows by leaving all that is known."""
+"""Standard deviations of what is known beyond which a fit is not the robot: what friction leaves of a motion as it
+ends, a linear model follows by leaving all that is known."""
 
 NOISE_OVER = 1.1
 """RMS of whitened residuals up to which a linear model leaves noise alone: as ``search.MORE_OVER``."""
