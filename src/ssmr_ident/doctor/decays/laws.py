@@ -64,19 +64,17 @@ def loudest(decays: Sequence[Decay]) -> list[int]:
 
 
 def starts(decays: Sequence[Decay], which: Sequence[int], first: Found, follows: bool) -> list[Start]:
-    """From a fit; and where that does not follow the recordings or has left what is known of the robot, from what their
-    small motions say of it, or from what is known."""
+    """From a fit; and where that does not follow the recordings or has left what is known of the robot, from that, and
+    from what their small motions say of it."""
     assert first.fit is not None
     fit = first.fit
     found = [Start(fit.point, tuple(fit.nuisances[index] for index in which))]
     if not follows or left_known(fit):
-        loud, small = [decays[index] for index in which], small_motions(decays, fit.model)
-        known = (
-            released(loud, fit.model, fit.model.as_known(fit.point))
-            if small is None
-            else let_go(loud, fit.model, small)
-        )
-        found += [Start(known.point, known.nuisances)] if np.isfinite(known.rss) else []
+        loud = [decays[index] for index in which]
+        further = [released(loud, fit.model, fit.model.as_known(fit.point))]
+        if (small := small_motions(decays, fit.model)) is not None:
+            further.append(let_go(loud, fit.model, small))
+        found += [Start(one.point, one.nuisances) for one in further if np.isfinite(one.rss)]
     return found
 
 

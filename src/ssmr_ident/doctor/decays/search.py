@@ -18,9 +18,9 @@ from ssmr_ident.doctor.decays.laws import (
     begun_at,
     exact,
     left_known,
+    let_go,
     loudest,
     on_whole,
-    released,
     starts,
 )
 from ssmr_ident.doctor.decays.linear import fit_linear
@@ -305,7 +305,7 @@ def _settled(search: Search, say: Progress, found: Found | None = None) -> None:
     say("the best law to its end", 0, 1)
     best = replace(best, fit=to_the_end(best.fit))
     for _ in range(RELEASED):
-        anew = released(search.decays, best.model, best.point)
+        anew = let_go(search.decays, best.model, best.point)
         if search.over(best) < MORE_OVER or not cost_of(anew) < best.cost - 1.0:
             break
         best = replace(best, fit=min(anew, to_the_end(cooled_alone(anew)), key=cost_of))
