@@ -30,6 +30,7 @@ BEGINS_S = 0.12, 0.35, 1.4
 some of the slowest one, more of it."""
 
 IS_RATE = np.array([name.endswith("_rate") for name in STATES])
+"""Which of a release's states are rates."""
 
 SCREENED_S = 0.7, 1.4
 """Length of the first part that laws are fitted to under the first variance of what counts as noise, and later."""

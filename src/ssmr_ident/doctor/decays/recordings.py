@@ -69,8 +69,7 @@ class Decay:
 
     def later(self, seconds: float) -> Decay:
         """The same from so long after its release on; itself where it cannot be cut."""
-        delay = self.trial.delay
-        return self if delay is None else replace(self, trial=delay(seconds).with_noises(self.trial.noises))
+        return replace(self, trial=self.trial.since(seconds))
 
     def whitened(self, columns: Array) -> Array:
         """(n, k) to (c, n', k), through each channel's noise, its zero and mains lines taken out."""

@@ -233,6 +233,13 @@ class Trial:
         short = self.shorten(seconds)
         return replace(short, noises=self.noises, basis=self.basis[: len(short.times)], lined=self.lined)
 
+    def since(self, seconds: float) -> Trial:
+        """Its part from there on, with the noise that it has; itself where it cannot be cut."""
+        if self.delay is None:
+            return self
+        late = self.delay(seconds)
+        return replace(late, noises=self.noises, basis=self.basis[-len(late.times) :], lined=self.lined)
+
     def renoised(self, simulated: Array) -> Trial:
         """The same with each channel's noise taken from what a simulation leaves at its fastest: white noise shows in
         second differences, and a slow misfit hardly does."""
