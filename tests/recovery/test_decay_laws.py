@@ -8,7 +8,9 @@ from doctor.sources import drawn_by
 
 from ssmr_ident.doctor.decays import run, search
 from ssmr_ident.doctor.decays.laws import left_known
+from ssmr_ident.doctor.decays.linear import fit_linear
 from ssmr_ident.doctor.decays.small_motions import small_motions
+from ssmr_ident.identify.trials.decay import FEWEST
 
 
 @pytest.mark.slow
@@ -56,6 +58,22 @@ def test_small_motions_show_the_robot_that_large_ones_hide(monkeypatch: pytest.M
     point = small_motions(found.decays, setup.model)
     assert point is not None
     assert abs(point).max() < 3.0
+    ends = [d.later(0.6 * float(d.times[-1])) for d in found.decays]
+    at_ends, known = (fit_linear(ends, setup.model, x, 0) for x in (point, 0.0 * point))
+    assert at_ends is not None
+    assert known is not None
+    assert at_ends.chi2 < 1.2 * sum(d.trial.size for d in ends) < 0.5 * known.chi2
     search._laws_beside(found, found.baseline, lambda *_: None)
     (law,) = (f for f in found.found if not f.members[0].generic)
     assert found.over(law) < 0.25 * found.over(found.baseline)
+
+
+@pytest.mark.slow
+def test_an_end_of_a_decay_is_its_last_part() -> None:
+    drawn = draw_decays("none", 910003, None, None, True)
+    _, decays = run._prepared(drawn.campaign, drawn.campaign.parameters)
+    whole = decays[0].trial
+    late, cut = whole.since(0.25), round(0.25 / whole.step)
+    assert late.times == pytest.approx(whole.times[cut:])
+    assert (late.target == whole.target[cut:]).all()
+    assert len(whole.since(1e3).times) == FEWEST

@@ -52,6 +52,22 @@ def test_two_modes_are_read_off_one_recording(share: float, hz: float, driven: b
     assert found[:2] == pytest.approx(exact, rel=5e-3)
 
 
+def test_what_a_structure_rings_with_far_above_is_none_of_the_two() -> None:
+    """A third of the acceleration, and a thousandth of the deflection."""
+    problem, exact = recorded(0.3, 9.0, True, seed=4)
+    piece = problem.pieces[0]
+    random = np.random.default_rng(5)
+    turning = 2.0 * np.pi * 150.0
+    plate = StateSpace(
+        [[0.0, 1.0], [-(turning**2), -0.02 * turning]], [[0.0], [1.0]], [[-(turning**2), -0.02 * turning]], [[1.0]]
+    )
+    _, ringing, _ = lsim(plate, random.standard_normal(len(piece.time)), piece.time)
+    ringing *= 0.3 * piece.y.std() / ringing.std()
+    found = two_modes(replace(problem, pieces=(replace(piece, y=piece.y + ringing[:, None]),)))
+    assert found is not None
+    assert found[:2] == pytest.approx(exact, rel=1e-2)
+
+
 def test_the_mains_are_no_mode() -> None:
     """Far above the noise; nothing drives them."""
     problem, exact = recorded(0.3, 9.0, True, seed=4)

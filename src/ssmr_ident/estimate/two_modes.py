@@ -98,7 +98,8 @@ def _of_piece(piece: Piece, hz: float) -> tuple[float, float, float, float] | No
     weight = (1.0 + (bins * width / hz) ** 2) ** (-0.5 * piece.orders[0])
     weight[np.abs(bins[:, None] * width - MAINS_HZ).min(axis=1) < APART * width] = 0.0
     output = np.fft.rfft(y)[bins]
-    response = fitted_response(1j * bins / last, np.fft.rfft(u)[bins], output, weight, TWO_MODES)
+    about = ((hz / (last * width)) ** 2 + (bins / last) ** 2) ** 2  # two modes at the motion's frequency
+    response = fitted_response(1j * bins / last, np.fft.rfft(u)[bins], output, weight, TWO_MODES, first=about)
     poles = np.roots([1.0, *response.coefficients[TWO_MODES.order - 1 :: -1]])
     pairs = poles[poles.imag > 0.0]
     if len(pairs) < 2 or not np.isfinite(response.residual).all():

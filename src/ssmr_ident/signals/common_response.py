@@ -96,7 +96,13 @@ class Response:
 
 
 def fitted_response(
-    s: Array, u: Array, y: Array, weight: Array, structure: Structure, rounds: int = REWEIGHTINGS
+    s: Array,
+    u: Array,
+    y: Array,
+    weight: Array,
+    structure: Structure,
+    rounds: int = REWEIGHTINGS,
+    first: Array | None = None,
 ) -> Response:
     """Linear least squares, re-weighted by the last denominator.
 
@@ -110,9 +116,12 @@ def fitted_response(
         One over the standard deviation of the output's error.
     structure : Structure
     rounds : int
+    first : (k,) float, optional
+        Size of the denominator by which the first one is weighted: where modes are expected. Without, the highest bins
+        count most, by the power of s that is the order.
     """
     basis = _Basis.of(s, structure)
-    last = np.ones(len(s))
+    last = np.ones(len(s)) if first is None else first
     best, least = np.zeros(structure.size), np.inf
     for _ in range(rounds if structure.order else 1):
         scale = weight / last

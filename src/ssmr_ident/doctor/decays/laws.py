@@ -38,8 +38,9 @@ SCREENED_S = 0.7, 1.4
 LAST = 3
 """Steps of states alone."""
 
-FOLLOWS = 1.5
-"""RMS of whitened residuals up to which states that were begun at linear ones follow a recording."""
+NEAR = 1.5
+"""RMS of whitened residuals up to which a model follows the recordings: laws' releases are then taken to be the
+baseline's, and a law's own those that were begun at linear ones."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,7 +114,7 @@ def let_go(decays: Sequence[Decay], model: Model, point: Array) -> JointFit:
     follow, what it is displaced by is let go at rest, as a hand does; of every recording the better."""
     found = _longer(decays, model, point, BEGINS_S[1:], 1.0)
     states: Sequence[Array] = found.nuisances
-    if not found.rss < FOLLOWS**2 * found.size:
+    if not found.rss < NEAR**2 * found.size:
         other = _longer(decays, model, point, BEGINS_S, 0.0)
         better = other.parts < found.parts if np.isfinite(found.rss) else np.ones(len(decays), dtype=bool)
         states = [b if use else a for a, b, use in zip(found.nuisances, other.nuisances, better, strict=True)]

@@ -14,7 +14,8 @@ from ssmr_ident.diagnose.diagnosis import Diagnosis
 from ssmr_ident.diagnose.setup import Setup, set_up
 from ssmr_ident.doctor.decays.linear_members import simulated
 from ssmr_ident.doctor.decays.recordings import Decay, decay_of
-from ssmr_ident.doctor.decays.search import MATTERS, MORE_OVER, begun, completed, in_turn, promised_beside
+from ssmr_ident.doctor.decays.search import MATTERS, begun, completed, in_turn, promised_beside
+from ssmr_ident.doctor.decays.small_motions import MORE_OVER
 from ssmr_ident.doctor.decide import MISSING, Decision, certain, decide
 from ssmr_ident.doctor.robots.answer import GROWS, answered, table
 from ssmr_ident.doctor.robots.calibrated import informed

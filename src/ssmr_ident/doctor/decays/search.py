@@ -14,6 +14,7 @@ from ssmr_ident.diagnose.scan import promising, scan
 from ssmr_ident.doctor.decays.formulas import in_other_formulas, parts_of
 from ssmr_ident.doctor.decays.laws import (
     LAST,
+    NEAR,
     SCREENED_S,
     begun_at,
     exact,
@@ -32,7 +33,7 @@ from ssmr_ident.doctor.decays.linear_members import (
     simulated,
 )
 from ssmr_ident.doctor.decays.recordings import Decay
-from ssmr_ident.doctor.decays.small_motions import annealed
+from ssmr_ident.doctor.decays.small_motions import MORE_OVER, annealed
 from ssmr_ident.doctor.decide import certain
 from ssmr_ident.doctor.robots.answer import table
 from ssmr_ident.doctor.robots.cooled import (
@@ -55,13 +56,6 @@ from ssmr_ident.identify.fitting.joint import differentiate, evaluate
 from ssmr_ident.physics.effects import CATALOGUE
 
 Array = np.ndarray
-
-MORE_OVER = 1.1
-"""RMS of whitened residuals from which more than noise is left: 1,500 samples at rest tell its size to 5 % (300 drawn
-sensors), twice that."""
-
-NEAR = 1.5
-"""RMS of the baseline's whitened residuals up to which a law's releases are taken to be the baseline's."""
 
 MATTERS = 0.95
 """Factor on the error, noise included, below which an effect makes it that matters on what it was not fitted to."""

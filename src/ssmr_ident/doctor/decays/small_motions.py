@@ -21,8 +21,9 @@ FAR = 3.0
 """Standard deviations of what is known beyond which a fit is not the robot: what friction leaves of a motion as it
 ends, a linear model follows by leaving all that is known."""
 
-NOISE_OVER = 1.1
-"""RMS of whitened residuals up to which a linear model leaves noise alone: as ``search.MORE_OVER``."""
+MORE_OVER = 1.1
+"""RMS of whitened residuals from which more than noise is left: 1,500 samples at rest tell its size to 5 % (300 drawn
+sensors), twice that."""
 
 
 def annealed(decays: Sequence[Decay], model: Model) -> LinearFit | None:
@@ -45,7 +46,7 @@ def small_motions(decays: Sequence[Decay], model: Model) -> Array | None:
     for share in ENDS:
         ends = [d.later(share * shortest) for d in decays]
         fit = annealed(ends, model)
-        follows = fit is not None and fit.chi2 < NOISE_OVER**2 * sum(d.trial.size for d in ends)
+        follows = fit is not None and fit.chi2 < MORE_OVER**2 * sum(d.trial.size for d in ends)
         if fit is not None and follows and np.abs(fit.point[: len(model.physics)]).max() < FAR:
             return fit.point
     return None

@@ -246,7 +246,8 @@ def _trial(whole: BodyDecay, kept: int, facts: _Facts) -> Trial:
 
 
 def _later(whole: BodyDecay, kept: int, facts: _Facts, blocks: int) -> Trial:
-    """The same decay from so many blocks after its release on."""
+    """The same decay from so many blocks after its release on, or from where the fewest are left."""
+    blocks = max(0, min(blocks, kept - FEWEST))
     record, cut = whole.record, blocks * whole.block
     record = replace(record, samples=record.samples[cut:], start_s=record.start_s + cut * record.step)
     rest = replace(whole, samples=whole.samples[blocks:], record=record)
