@@ -28,13 +28,13 @@ from bank.swivels import DRAWS, VISIBLE, draw_session
 from scipy.stats import beta
 
 from ssmr_ident.diagnose.diagnosis import MISSING, NOTHING
-from ssmr_ident.diagnose.turning.anchor import scale_of
-from ssmr_ident.diagnose.turning.assemble import MODEL_SPREAD, diagnosis_of
-from ssmr_ident.diagnose.turning.bench import Bench
-from ssmr_ident.diagnose.turning.conditions import conditions_of
-from ssmr_ident.diagnose.turning.engine import LEFT, Outcome, examine, repeated
-from ssmr_ident.diagnose.turning.search import SPREAD_FACTOR
-from ssmr_ident.diagnose.turning.verdict import findings_of
+from ssmr_ident.doctor.swivels.anchor import scale_of
+from ssmr_ident.doctor.swivels.assemble import MODEL_SPREAD, SPREAD_FACTOR, diagnosis_of
+from ssmr_ident.doctor.swivels.bench import Bench
+from ssmr_ident.doctor.swivels.conditions import conditions_of
+from ssmr_ident.doctor.swivels.engine import examine, repeated
+from ssmr_ident.doctor.swivels.outcome import Outcome
+from ssmr_ident.doctor.swivels.verdict import LEFT, findings_of
 from ssmr_ident.experiments.campaign import Campaign
 
 

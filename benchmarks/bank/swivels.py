@@ -15,8 +15,8 @@ import numpy as np
 
 from ssmr_ident.core.errors import SimulationError
 from ssmr_ident.core.parameter import Estimate, ParameterSet
-from ssmr_ident.diagnose.turning.spectra import look
-from ssmr_ident.diagnose.turning.spectral_distance import channel_logs, distance_db
+from ssmr_ident.doctor.swivels.spectra import look
+from ssmr_ident.doctor.swivels.spectral_distance import channel_logs, distance_db
 from ssmr_ident.experiments.campaign import Campaign, Measurement
 from ssmr_ident.experiments.quantities import to_quantities
 from ssmr_ident.experiments.swivel import swivel

@@ -6,13 +6,13 @@ import pytest
 from simulated_swivels import campaign, run
 
 from ssmr_ident.compare import compare
-from ssmr_ident.diagnose.turning import diagnose_turning
+from ssmr_ident.doctor.swivels import diagnose_swivels
 
 JOINTS = {"ground_joints": {"pitch_m": 0.03, "depth_m": 6e-4, "width_m": 6e-3}}
 
 
 def test_joints_are_named_and_their_distance_found():
-    found = diagnose_turning(
+    found = diagnose_swivels(
         campaign(
             run(40, "calibration", {}, 1), run(40, "target", JOINTS, 2), run(28, "heldout", JOINTS, 3),
         )

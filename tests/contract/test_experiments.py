@@ -28,7 +28,7 @@ COMPARING = {
     "ssmr_ident/workflows/simulate/request.py": "the name that a person typed, looked up once",
     "ssmr_ident/workflows/new/run.py": "the same of `ident new`, which does without the simulators",
     "ssmr_ident/workflows/effects/panels.py": "what a page draws of an effect in each kind of experiment",
-    "ssmr_ident/diagnose/turning/anchor.py": "two runs of one kind are compared with each other, not with a name",
+    "ssmr_ident/doctor/swivels/anchor.py": "two runs of one kind are compared with each other, not with a name",
 }
 """Places outside experiments/ that may compare, each with its reason."""
 

@@ -103,9 +103,9 @@ def _diagnosed(
     if campaign.session.baseline == BLOCK:
         return diagnose_block(campaign, known, progress)
     if not all(m.experiment.repeats for m in campaign.measurements):
-        from ssmr_ident.diagnose.turning import diagnose_turning
+        from ssmr_ident.doctor.swivels import diagnose_swivels
 
-        return diagnose_turning(campaign, known, seed, progress)
+        return diagnose_swivels(campaign, known, seed, progress)
     if campaign.session.baseline == "decoupled":
         return diagnose_decoupled(campaign, known, seed, progress)
     search = diagnose_decays if of_decays(campaign, known) else diagnose_robot
