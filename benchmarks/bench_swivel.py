@@ -4,6 +4,7 @@
     python benchmarks/bench_swivel.py null 20 --seed 2 -o null.jsonl
     python benchmarks/bench_swivel.py repeat 200 --seed 3 -o repeat.jsonl
     python benchmarks/bench_swivel.py loose 20 --seed 4 -o loose.jsonl
+    python benchmarks/bench_swivel.py drawn 29180:ground_joints:calibrated 29181:stribeck:loose -o drawn.jsonl
     python benchmarks/bench_swivel.py ten 4 --seed 5 -o ten.jsonl
     python benchmarks/bench_swivel.py report effects.jsonl repeat.jsonl loose.jsonl
 
@@ -63,13 +64,25 @@ def run_many(kind: str, count: int, seed: int, output: Path) -> None:
         if number in done:
             continue
         effect = names[i % len(names)] if kind == "effects" else None
-        campaign, truth = draw_session(number, effect, calibrated=kind != "loose" and (i + i // len(names)) % 3 != 2)
-        begun = time.perf_counter()
-        row = truth if campaign is None else row_of(examine(campaign), truth, begun)
-        with output.open("a") as file:
-            file.write(json.dumps(row) + "\n")
-        said = (row["verdict"], row["named"], np.round(row["heldout_db"], 1).tolist()) if campaign else "cannot be seen"
-        print(number, effect, row.get("calibrated"), row.get("seconds"), said, flush=True)
+        one(number, effect, kind != "loose" and (i + i // len(names)) % 3 != 2, output)
+
+
+def drawn(tokens: list[str], output: Path) -> None:
+    """Sessions by name: SEED:EFFECT:calibrated or SEED:EFFECT:loose, ``none`` for nothing missing."""
+    for token in tokens:
+        number, effect, how = token.split(":")
+        one(int(number), None if effect == "none" else effect, {"calibrated": True, "loose": False}[how], output)
+
+
+def one(number: int, effect: str | None, calibrated: bool, output: Path) -> None:
+    """Draw one session, diagnose it, and append what was said."""
+    campaign, truth = draw_session(number, effect, calibrated)
+    begun = time.perf_counter()
+    row = truth if campaign is None else row_of(examine(campaign), truth, begun)
+    with output.open("a") as file:
+        file.write(json.dumps(row) + "\n")
+    said = (row["verdict"], row["named"], np.round(row["heldout_db"], 1).tolist()) if campaign else "cannot be seen"
+    print(number, effect, row.get("calibrated"), row.get("seconds"), said, flush=True)
 
 
 def repeats(count: int, seed: int, output: Path) -> None:
@@ -188,13 +201,15 @@ def _inside(row: dict, width: float) -> list[bool]:
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("kind", choices=("effects", "null", "loose", "repeat", "ten", "report"))
+    parser.add_argument("kind", choices=("effects", "null", "loose", "drawn", "repeat", "ten", "report"))
     parser.add_argument("arguments", nargs="+")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("-o", "--output", type=Path, default=Path("swivel.jsonl"))
     given = parser.parse_args()
     if given.kind == "report":
         report([Path(path) for path in given.arguments])
+    elif given.kind == "drawn":
+        drawn(given.arguments, given.output)
     elif given.kind == "repeat":
         repeats(int(given.arguments[0]), given.seed, given.output)
     elif given.kind == "ten":

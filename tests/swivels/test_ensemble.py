@@ -70,7 +70,7 @@ def _of_lines(noise: float, seed: int) -> tuple[np.ndarray, np.ndarray, np.ndarr
 
 
 def test_what_chance_adds_to_slopes_is_taken_off_their_curvature() -> None:
-    """Over draws of the runs the mean is that of the true slopes, to 3 %; as they come, they have a third more."""
+    """Over draws of the runs the mean is that of the true slopes, to 3 %; as they come, they have a quarter more."""
     found, raw = [], []
     for seed in range(20):
         slopes, places, data = _of_lines(0.3, seed)
@@ -81,7 +81,7 @@ def test_what_chance_adds_to_slopes_is_taken_off_their_curvature() -> None:
         found.append(np.trace(curvature) / true)
         raw.append(weight_of(1.0) * np.sum(one.slopes**2) / true)
     assert np.mean(found) == pytest.approx(1.0, abs=0.03)
-    assert np.mean(raw) > 1.05
+    assert np.mean(raw) > 1.2
 
 
 def test_the_gradient_is_that_of_the_residual_at_the_place() -> None:

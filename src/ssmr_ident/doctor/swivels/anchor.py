@@ -145,10 +145,9 @@ class Anchor:
         conditions: tuple[Condition, ...],
         effects: Effects,
         share: float,
-        values: Mapping[str, float] | None = None,
     ) -> list[Block] | None:
         """Measured less predicted, with ``share`` of what the baseline misses carried over; None where nothing runs."""
-        result = [self._block(condition, effects, share, values, self.seeds) for condition in conditions]
+        result = [self._block(condition, effects, share, self.seeds) for condition in conditions]
         there = [block for block in result if block is not None]
         return there if len(there) == len(result) else None
 
@@ -157,13 +156,12 @@ class Anchor:
         conditions: tuple[Condition, ...],
         effects: Effects,
         share: float,
-        values: Mapping[str, float] | None = None,
     ) -> list[list[Block]] | None:
         """Of each condition the block by the mean over all floors, and by each of several floors alone."""
         result = []
         several = [self.seeds, *((seed,) for seed in self.seeds)] if len(self.seeds) > 1 else [self.seeds]
         for condition in conditions:
-            blocks = [self._block(condition, effects, share, values, seeds) for seeds in several]
+            blocks = [self._block(condition, effects, share, seeds) for seeds in several]
             there = [block for block in blocks if block is not None]
             if len(there) < len(blocks):
                 return None
@@ -175,10 +173,9 @@ class Anchor:
         condition: Condition,
         effects: Effects,
         share: float,
-        values: Mapping[str, float] | None,
         seeds: tuple[int, ...],
     ) -> Block | None:
-        run = self.bench.run(condition, self.values if values is None else values, effects, seeds)
+        run = self.bench.run(condition, self.values, effects, seeds)
         if run is None:
             return None
         measured, predicted = condition.mean.log_density(self.scale), self.log_density(run, condition)
@@ -206,16 +203,14 @@ class Anchor:
             level_variance = np.append(level_variance, YAW_STD**2)
         return Block((measured - predicted).ravel(), variance, level, level_variance)
 
-    def score(
-        self, conditions: tuple[Condition, ...], effects: Effects, values: Mapping[str, float] | None = None
-    ) -> tuple[Score, float] | None:
+    def score(self, conditions: tuple[Condition, ...], effects: Effects) -> tuple[Score, float] | None:
         """The best share to carry over, and the score with it."""
         best: tuple[Score, float] | None = None
         shares = self.shares if self.calibration else (0.0,)
-        if not effects and values is None and self.calibration:
+        if not effects and self.calibration:
             shares = (1.0,)
         for share in shares:
-            asked = self.alternatives(conditions, effects, share, values)
+            asked = self.alternatives(conditions, effects, share)
             if asked is None:
                 return None
             found = score(asked)

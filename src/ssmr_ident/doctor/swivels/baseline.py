@@ -18,7 +18,7 @@ from ssmr_ident.physics.robot import contact_named
 
 LAWS = {"cone": "Coulomb's cone, both axes together", "relay": "a relay on each axis (6.4)"}
 FIRST, LAST = 2, 8  # rounds after which the laws are compared, and more of them at most
-REACH = 150.0  # of evidence that more rounds may gain a law that is behind
+REACH = 150.0  # of evidence that rounds may add: what lies further behind is not led on
 GRID = ((-1.8, -0.9, 0.0, 0.9, 1.8), (-1.5, 0.0, 1.5))
 """Sliding speeds and heights of the floor's grain that a search begins from, in standard deviations."""
 

@@ -13,7 +13,7 @@ from ssmr_ident.compare.turning import turning_robot
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.doctor.swivels.anchor import SEEDS, Anchor, scale_of, stiffness_known
-from ssmr_ident.doctor.swivels.baseline import FIRST, LAST, fitted_baseline
+from ssmr_ident.doctor.swivels.baseline import FIRST, LAST, REACH, fitted_baseline
 from ssmr_ident.doctor.swivels.bench import Bench
 from ssmr_ident.doctor.swivels.candidates import candidates
 from ssmr_ident.doctor.swivels.conditions import Condition, brief, conditions_of, held_back
@@ -33,7 +33,6 @@ from ssmr_ident.physics.robot import contact_named
 
 RACE = (8, 5)  # starts that are led on, round by round
 SETTLED = 3  # that go on while they gain
-REACH = 150.0  # of evidence that rounds may add: what lies further behind is not led on
 FINAL_SEEDS = (1, 2, 3, 4)
 
 

@@ -29,7 +29,7 @@ DROP = 1.92  # of the log likelihood at the ends of a 95 % interval
 
 @dataclass(frozen=True, eq=False)
 class GripProfile(Shown):
-    """Log likelihood over lambda_max, everything else refitted at each value.
+    """Log likelihood over lambda_max, everything else giving way at each value.
 
     ``lower`` is None where every smaller value fits as well, ``upper`` where every larger one does; ``own_error_db``
     is the tau of the baseline, and ``anchor`` the baseline with the best value.

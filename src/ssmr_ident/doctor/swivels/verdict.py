@@ -9,6 +9,7 @@ import numpy as np
 
 from ssmr_ident.diagnose.diagnosis import MISSING, NOTHING, UNDETERMINED
 from ssmr_ident.doctor.swivels.candidates import UNLISTED
+from ssmr_ident.doctor.swivels.ensemble import TAU_DB
 from ssmr_ident.doctor.swivels.grip import FOREIGN_DB
 from ssmr_ident.doctor.swivels.outcome import Outcome
 
@@ -26,7 +27,7 @@ TEMPER = 0.5
 """Of the evidence when it is turned into confidence: errors of the model go with each other from bin to bin."""
 CLOSE = 100.0
 """Evidence from which on recordings kept back that show nothing of an effect do not speak against it."""
-QUIET_DB = 0.8  # own error, as simulations are off anyway
+QUIET_DB = TAU_DB[0]  # own error, as simulations are off anyway
 
 
 @dataclass(frozen=True)
