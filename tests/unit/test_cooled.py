@@ -9,13 +9,13 @@ import pytest
 
 from ssmr_ident.core.errors import InputError
 from ssmr_ident.doctor.robots import cooled
-from ssmr_ident.doctor.robots.cooled import cooled_alone, fewer, from_known, variances
+from ssmr_ident.doctor.robots.cooled import cooled_alone, distinct, fewer, from_known, variances
 from ssmr_ident.doctor.robots.members import Member
 from ssmr_ident.physics.linear import responses
 
 
 def fit(rss: float, size: int = 100) -> SimpleNamespace:
-    return SimpleNamespace(rss=rss, size=size, penalty=0.0)
+    return SimpleNamespace(rss=rss, size=size, penalty=0.0, point=np.zeros(1))
 
 
 def member(name: str) -> Member:
@@ -34,6 +34,13 @@ def test_two_fits_of_an_effect_go_on_and_none_that_leaves_far_more() -> None:
     first = [(m.id, f.rss) for m, f in fewer(tried, 0, 10.0)]  # type: ignore[arg-type]
     assert first == [("a", 10.0), ("a", 12.0), ("b", 90.0)]
     assert [m.id for m, _ in fewer(tried, 1, 10.0)] == ["a", "a"]  # type: ignore[arg-type]
+
+
+def test_starts_that_have_come_to_one_place_are_one() -> None:
+    near, apart = fit(10.2), fit(10.2)
+    apart.point = np.ones(1)
+    tried = [(member("a"), fit(10.0)), (member("a"), near), (member("a"), apart), (member("b"), fit(10.0))]
+    assert [f for _, f in distinct(tried)] == [tried[0][1], apart, tried[3][1]]  # type: ignore[arg-type]
 
 
 def test_what_cannot_be_simulated_is_said_of_the_file(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -11,8 +11,10 @@ import pytest
 from ssmr_ident.core.parameter import Estimate
 from ssmr_ident.core.recording import Channel, Provenance, Recording
 from ssmr_ident.diagnose.setup import unknowns_of
-from ssmr_ident.doctor.decays.laws import exact
+from ssmr_ident.doctor.decays.closed_slopes import closed_slopes
+from ssmr_ident.doctor.decays.laws import exact, linear_states
 from ssmr_ident.doctor.decays.linear import fit_linear, system
+from ssmr_ident.doctor.decays.linear_members import within_reach
 from ssmr_ident.doctor.decays.recordings import Decay, decay_of, thinned
 from ssmr_ident.doctor.decays.run import alone, diagnose, takes
 from ssmr_ident.doctor.robots.answer import WEIGHED
@@ -22,6 +24,7 @@ from ssmr_ident.experiments import Scenario
 from ssmr_ident.experiments.campaign import Campaign, Measurement
 from ssmr_ident.identify.body.builder import RobotBuilder
 from ssmr_ident.identify.fitting.coordinates import Model
+from ssmr_ident.identify.fitting.joint import differentiate, evaluate
 from ssmr_ident.identify.trials.decay import decay_trial
 from ssmr_ident.physics.robot import robot_from_parameters
 from ssmr_ident.session import Entry, Session, read_parameters
@@ -51,6 +54,11 @@ def released(effects, trials: int = 1, seconds: float = 2.0) -> Campaign:
             made.append(Measurement(entry, Recording(run.time, channels, Provenance(name, "", "test"))))
     entries = tuple(m.entry for m in made)
     return Campaign(Session("test", Path("test"), "robot.yaml", "rigid6", entries), KNOWN, tuple(made))
+
+
+def stacked(slopes) -> np.ndarray:
+    """Shared columns of all recordings, (N, p) float."""
+    return np.concatenate([one.shared for one in slopes])
 
 
 def prepared(campaign: Campaign) -> tuple[list[Decay], Model]:
@@ -177,7 +185,62 @@ def test_branches_hold_what_the_release_has_left_in_them(stiffness: float, tau: 
     model, own = model.with_effect("viscoelastic_relaxation", branch, branch)
     fit = fit_linear(decays, model, np.concatenate([np.zeros(len(model.physics)), own]))
     assert fit is not None
-    assert cost_of(exact(decays, fit, 3)) < 1.02 * fit.cost
+    assert cost_of(exact(decays, fit)) < 1.02 * fit.cost
+
+
+OTHERS = {
+    "motor_belt": {"K_b_N_m": 1.2e4, "D_b_N_s_m": 40.0, "rim_mass_kg": 0.8},
+    "viscoelastic_relaxation": {"K_m_N_m": 2e3, "tau_s": 0.03},
+    "sensor_misalignment": {"angle_x_rad": 0.02, "angle_y_rad": -0.01, "angle_z_rad": 0.03},
+    "com_offset": {"offset_x_m": 0.01, "offset_y_m": -0.01},
+    "quadratic_damping": {"d2_N_s2_m2": 20.0},
+}
+
+
+@pytest.mark.compiles
+@pytest.mark.parametrize("effect", ["", "flexible_mast", *OTHERS])
+def test_slopes_in_closed_form_are_those_of_small_simulations(effect: str) -> None:
+    """Two independent ways: eigenvectors, and differences between runs of the time-stepping loop."""
+    values = {"flexible_mast": MAST, **OTHERS}.get(effect, {})
+    decays, model = prepared(released({effect: values} if effect else {}, seconds=1.0))
+    own = np.zeros(0)
+    if effect:
+        model, own = model.with_effect(effect, values, values)
+    point = np.concatenate([np.zeros(len(model.physics)), own])
+    states = linear_states(decays, model, point)
+    assert states is not None
+    small = [0.1 * state for state in states]  # of large motions a tenth is geometry
+    fit = evaluate([d.trial for d in decays], model, point, small)
+    closed = stacked(closed_slopes(decays)(fit, True).slopes)
+    differences = stacked(differentiate(fit).slopes)
+    size = np.linalg.norm(differences, axis=0)
+    seen = size > 1e-3 * size.max()
+    assert seen.sum() > 20
+    off = np.linalg.norm(closed - differences, axis=0)[seen] / size[seen]
+    assert np.median(off) < 0.03
+    assert off.max() < 0.15  # the sensor's bandwidth, which is simulated in steps of 1 ms
+
+
+@pytest.mark.compiles
+def test_a_slow_sensor_follows_from_what_it_had_read_before() -> None:
+    slow = {"bandwidth_hz": 18.0}
+    decays, model = prepared(released({"sensor_bandwidth": slow}, seconds=1.0))
+    model, own = model.with_effect("sensor_bandwidth", slow, slow)
+    point = np.concatenate([np.zeros(len(model.physics)), own])
+    states = linear_states(decays, model, point)
+    assert states is not None
+    fit = evaluate([d.trial for d in decays], model, point, [0.1 * state for state in states])
+    closed, differences = closed_slopes(decays)(fit, True).slopes, differentiate(fit).slopes
+    for one, other in zip(closed, differences, strict=True):
+        size = np.linalg.norm(other.own[:, :12], axis=0)
+        off = np.linalg.norm(one.own[:, :12] - other.own[:, :12], axis=0) / size
+        assert off[size > 0.01 * size.max()].max() < 0.05
+
+
+def test_a_model_may_come_near_the_least_by_ten_more_steps_like_its_last() -> None:
+    assert within_reach(120.0, 130.0, 30.0)  # 120 - 10 * 10 < 30 + 20
+    assert not within_reach(160.0, 170.0, 30.0)
+    assert within_reach(45.0, 45.0, 30.0)
 
 
 @pytest.mark.slow

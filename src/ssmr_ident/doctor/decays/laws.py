@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ssmr_ident.doctor.decays.closed_slopes import closed_slopes
 from ssmr_ident.doctor.decays.linear import LinearFit, fit_linear
 from ssmr_ident.doctor.decays.recordings import Decay, thinned
 from ssmr_ident.doctor.decays.small_motions import FAR, small_motions
@@ -18,10 +19,10 @@ from ssmr_ident.doctor.robots.cooled import led, variances
 from ssmr_ident.doctor.robots.found import Found, cost_of
 from ssmr_ident.doctor.robots.members import Member
 from ssmr_ident.identify.fitting.coordinates import Model
-from ssmr_ident.identify.fitting.descent import descend
-from ssmr_ident.identify.fitting.joint import JointFit, evaluate
+from ssmr_ident.identify.fitting.descent import Differentiated, descend
+from ssmr_ident.identify.fitting.joint import JointFit, differentiate, evaluate
 from ssmr_ident.identify.trials.decay import SCALES, STATES
-from ssmr_ident.physics.extended import BODY, SLOW
+from ssmr_ident.physics.extended import BODY, BRANCH, SLOW
 
 Array = np.ndarray
 
@@ -37,6 +38,9 @@ SCREENED_S = 0.7, 1.4
 
 LAST = 3
 """Steps of states alone."""
+
+RELEASED, CLOSED = 2, 3
+"""Steps by slopes in closed form, of states alone, and of all."""
 
 NEAR = 1.5
 """RMS of whitened residuals up to which a model follows the recordings: laws' releases are then taken to be the
@@ -91,15 +95,17 @@ def begun_at(start: Start, decays: Sequence[Decay], way: Member) -> JointFit:
     return evaluate(trials, way.model, np.concatenate([start.point, way.own]), start.nuisances)
 
 
-def on_whole(decays: Sequence[Decay], fit: JointFit, near: Sequence[Array]) -> JointFit:
+def on_whole(
+    decays: Sequence[Decay], fit: JointFit, near: Sequence[Array], slopes: Differentiated = differentiate
+) -> JointFit:
     """A law that was fitted to some recordings, on all of them: from states of their own, or from those ``near``."""
     trials = [d.trial for d in decays]
-    by_near = descend(evaluate(trials, fit.model, fit.point, near), LAST, shared=False, plain=True)
+    by_near = descend(evaluate(trials, fit.model, fit.point, near), LAST, shared=False, plain=True, slopes=slopes)
     begun = min((by_near, let_go(decays, fit.model, fit.point)), key=cost_of)
     if not np.isfinite(begun.rss):
         return begun
     for variance in variances(begun):
-        begun = led(begun, variance)
+        begun = led(begun, variance, slopes=slopes)
     return begun
 
 
@@ -151,13 +157,16 @@ def nuisance_of(state: Array, model: Model) -> Array:
     return found / SCALES
 
 
-def exact(decays: Sequence[Decay], fit: LinearFit, steps: int) -> JointFit:
-    """A linear fit led on by the simulator, in which nothing is small.
+def exact(decays: Sequence[Decay], fit: LinearFit) -> JointFit:
+    """A linear fit led on by the simulator, in which nothing is small, by slopes in closed form.
 
     There branches hold a share of what the release is displaced by, and a slow sensor lags by a share of the first
-    acceleration; in closed form by anything, so that its states at the release are no begin.
+    acceleration; in closed form by anything, so that all states are looked for anew, from rest.
     """
     trials, nuisances = [d.trial for d in decays], [nuisance_of(x, fit.model) for x in fit.states]
-    if {"viscoelastic_relaxation", SLOW} & set(fit.model.held):
-        return descend(released(decays, fit.model, fit.point), steps, plain=True)
-    return descend(evaluate(trials, fit.model, fit.point, nuisances), steps, plain=True)
+    slopes = closed_slopes(decays)
+    anew = not {BRANCH, SLOW}.isdisjoint(fit.model.held)
+    begun = evaluate(trials, fit.model, fit.point, [0.0 * n if anew else n for n in nuisances])
+    if anew:
+        begun = descend(begun, RELEASED, shared=False, plain=True, slopes=slopes)
+    return descend(begun, CLOSED, plain=True, slopes=slopes)

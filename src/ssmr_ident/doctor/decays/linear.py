@@ -157,29 +157,47 @@ def _of_decay(
 ) -> tuple[Array, Array, Array, Array] | None:
     """Scaled states at the release, residuals, and slopes with the states' share taken out and in; None where no state
     can be told, for modes fall together or grow beyond all numbers."""
-    axes, k = list(decay.axes), len(modes.kept)
-    read = modes.read[axes]
-    amplitude = (read[:, modes.keep] * sensed.gain * modes.weight)[:, :, None] * (modes.into * scales)[modes.keep]
-    columns = np.concatenate([amplitude.real, -amplitude.imag], axis=1)
-    design = (white[:, :, : 2 * k] @ columns).reshape(-1, columns.shape[2])
+    design = design_of(decay, white, modes, sensed) * scales
     try:
         factor = np.linalg.inv(np.linalg.cholesky(design.T @ design + np.eye(design.shape[1])))
     except np.linalg.LinAlgError:  # not positive definite, or not finite
         return None
     x = factor.T @ (factor @ (design.T @ target))
     rest = target - design @ x
-    own = modes.into @ (scales * x)
+    slope = linear_slopes(decay, white, modes, moved, sensed, scales * x)
+    return x, rest, slope - design @ (factor.T @ (factor @ (design.T @ slope))), slope
+
+
+def design_of(decay: Decay, white: Array, modes: Modes, sensed: Sensed) -> Array:
+    """Whitened recordings over the states at the release, (N, k) float."""
+    count = len(modes.kept)
+    read = modes.read[list(decay.axes)]
+    amplitude = (read[:, modes.keep] * sensed.gain * modes.weight)[:, :, None] * modes.into[modes.keep]
+    columns = np.concatenate([amplitude.real, -amplitude.imag], axis=1)
+    return np.asarray((white[:, :, : 2 * count] @ columns).reshape(-1, columns.shape[2]))
+
+
+def linear_slopes(decay: Decay, white: Array, modes: Modes, moved: Slopes, sensed: Sensed, state: Array) -> Array:
+    """Whitened recordings' slopes by the coordinates where the states at the release are given, (N, p) float."""
+    axes = list(decay.axes)
+    read = modes.read[axes]
+    own = modes.into @ state
     # what each exponential's amplitude changes by, and that of the same times t
     change = moved.read[:, axes] * own + read * (moved.between @ own)[:, None, :] - moved.back[:, axes] * own
-    change = change + read * (moved.start @ (scales * x))[:, None, :]
+    change = change + read * (moved.start @ state)[:, None, :]
     drift = (read * own)[:, modes.keep] * modes.weight
     pole = moved.poles[:, None, modes.keep]
     plain = change[:, :, modes.keep] * sensed.gain * modes.weight + sensed.by_pole * drift * pole
     plain = plain + sensed.by_band * drift * moved.by_band[:, None, None]
     late = sensed.gain * drift * pole
     coefficients = np.concatenate([plain.real, -plain.imag, late.real, -late.imag], axis=2)
-    slope = np.matmul(white, coefficients.transpose(1, 2, 0)).reshape(len(rest), -1)
-    return x, rest, slope - design @ (factor.T @ (factor @ (design.T @ slope))), slope
+    slope = np.matmul(white, coefficients.transpose(1, 2, 0))
+    return np.asarray(slope.reshape(-1, slope.shape[2]))
+
+
+def state_count(modes: Modes) -> int:
+    """What is free at the release."""
+    return BODY + 4 * modes.sways + 6 * modes.relaxes + SENSOR_STATES * modes.slow
 
 
 def state_scales(modes: Modes) -> Array:

@@ -7,16 +7,17 @@ from dataclasses import replace
 
 import numpy as np
 
-from ssmr_ident.doctor.decays.laws import LAST, exact
+from ssmr_ident.doctor.decays.laws import LAST, NEAR, exact, loudest
 from ssmr_ident.doctor.decays.linear import fit_linear
 from ssmr_ident.doctor.decays.recordings import thinned
 from ssmr_ident.doctor.robots.found import Found, Search, cost_of
-from ssmr_ident.doctor.robots.members import Member
+from ssmr_ident.doctor.robots.members import Member, members
 from ssmr_ident.identify.fitting.descent import descend
 from ssmr_ident.identify.fitting.joint import evaluate
 
 THIN_S, EVERY = 1.5, 2
-"""Of a decay, what starts of linear members are chosen on: its first part, every so many blocks."""
+"""Of the loudest decay of each kind, what starts of linear members are chosen on: its first part, every so many
+blocks."""
 
 TRIED, CLOSER, FULL = 3, 6, 12
 """Steps of every start of a linear member, of the chosen ones, and of the best on whole recordings."""
@@ -24,13 +25,24 @@ TRIED, CLOSER, FULL = 3, 6, 12
 CHOSEN, LAST_ONES = 3, 2
 """Starts of a linear member that go on, and of these to whole recordings."""
 
+RACE, AHEAD, AT_REST, NEARLY = 20, 10.0, 1.0, 20.0
+"""Steps of linear models by the simulator, at the most; times the last gain that is still to be had; gain of the cost
+at which a model is at rest, and what it may lie above the least."""
+
 OFFERED = 2
 """Models, the best ones, that are offered to those below them."""
 
 
+def members_beside(search: Search, first: Found) -> list[Member]:
+    """All members beside a fit, from nought where that follows the recordings."""
+    assert first.fit is not None
+    follows = search.over(first) < NEAR
+    return [m.from_nothing() if first.members or follows else m for m in members(first.fit)]
+
+
 def from_all_starts(search: Search, first: Found, ways: Sequence[Member]) -> Found | None:
     """A linear member from all of its starts, beside a fit and beside what is known."""
-    thin = [thinned(d, THIN_S, EVERY) for d in search.decays]
+    thin = [thinned(search.decays[index], THIN_S, EVERY) for index in loudest(search.decays)]
     count = len(first.model.physics)
     starts = [first.point, np.concatenate([np.zeros(count), first.point[count:]])]
     tried = [
@@ -61,7 +73,7 @@ def simulated(search: Search, found: Found) -> Found:
     if found.fit is not None:
         return found
     assert found.linear is not None
-    fit = exact(search.decays, found.linear, LAST)
+    fit = exact(search.decays, found.linear)
     poorer = next((f.fit for f in search.all if f.members == found.members[:-1]), None)
     if poorer is not None and cost_of(poorer) < cost_of(fit):
         own = found.point[len(poorer.point) :], found.members[-1].own
@@ -69,9 +81,33 @@ def simulated(search: Search, found: Found) -> Found:
             evaluate(poorer.trials, found.model, np.concatenate([poorer.point, at]), poorer.nuisances) for at in own
         ]
         fit = min(fit, descend(min(begun, key=cost_of), LAST, plain=True), key=cost_of)
-    new = replace(found, fit=fit)
-    search.found = [new if f is found else f for f in search.found]
+    new = led_on(replace(found, fit=fit))
+    search.put(found, new)
     return new
+
+
+def within_reach(now: float, before: float, least: float) -> bool:
+    """Whether a cost may still come near the least one, by what its last step has gained."""
+    return now - AHEAD * (before - now) < least + NEARLY
+
+
+def led_on(found: Found) -> Found:
+    """One step further by differences."""
+    assert found.fit is not None
+    fit = descend(found.fit, 1, plain=True)
+    return replace(found, fit=fit, gained=found.cost - cost_of(fit))
+
+
+def raced(search: Search) -> None:
+    """Linear models that may still be the best, by what their last step has gained, a step at a time."""
+    for _ in range(RACE):
+        least = search.best.cost
+        going = [f for f in search.all if f.fit is not None and all(m.linear for m in f.members) and f.gained > AT_REST]
+        going = [f for f in going if within_reach(f.cost, f.cost + f.gained, least)]
+        if not going:
+            return
+        for found in going:
+            search.put(found, led_on(found))
 
 
 def offered_back(search: Search) -> None:
@@ -82,7 +118,7 @@ def offered_back(search: Search) -> None:
     for found in sorted(search.found, key=lambda f: f.cost)[:OFFERED]:
         fit = fit_linear(search.decays, base.model, found.point[:count])
         if fit is not None and fit.cost < base.linear.cost - 1.0:
-            base = Found((), fit, exact(search.decays, fit, 1))
+            base = Found((), fit, exact(search.decays, fit))
     search.baseline = base
 
 

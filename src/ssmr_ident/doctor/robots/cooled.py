@@ -16,8 +16,8 @@ from ssmr_ident.core.errors import InputError
 from ssmr_ident.doctor.robots.found import cost_of
 from ssmr_ident.doctor.robots.members import BY_KIND, Member
 from ssmr_ident.identify.fitting.coordinates import Model
-from ssmr_ident.identify.fitting.descent import ahead, descend
-from ssmr_ident.identify.fitting.joint import JointFit, evaluate
+from ssmr_ident.identify.fitting.descent import Differentiated, ahead, descend
+from ssmr_ident.identify.fitting.joint import JointFit, differentiate, evaluate
 from ssmr_ident.identify.trials import Trial
 
 Tried = tuple[Member, JointFit]
@@ -43,6 +43,9 @@ LAWS = 3
 """Effects with laws that go on after the second variance of what counts as noise, and to all recordings; two fits
 each."""
 
+SAME, NEAR = 0.5, 0.1
+"""Difference of the cost, and of coordinates, below which two fits are one."""
+
 FAR_OFF = 3.0
 """Factor on the least cost beyond which a law does not go on to all recordings."""
 
@@ -53,9 +56,9 @@ def variances(fit: JointFit) -> list[float]:
     return [max(left * TRUSTED**k, 1.0) for k in range(math.ceil(math.log(left) / -math.log(TRUSTED)) + 1)]
 
 
-def led(fit: JointFit, variance: float, steps: int = STEPS) -> JointFit:
+def led(fit: JointFit, variance: float, steps: int = STEPS, slopes: Differentiated = differentiate) -> JointFit:
     """A few steps while ``variance`` counts as noise."""
-    return descend(fit, steps, plain=True, temper=variance, secants=SECANTS)
+    return descend(fit, steps, plain=True, temper=variance, secants=SECANTS, slopes=slopes)
 
 
 def cooled_alone(fit: JointFit) -> JointFit:
@@ -88,7 +91,12 @@ def from_known(trials: Sequence[Trial], model: Model) -> JointFit:
 
 
 def cooled(
-    tried: Sequence[Tried], trials: Sequence[Trial], say: Progress, first: int = STEPS, reach: float = math.inf
+    tried: Sequence[Tried],
+    trials: Sequence[Trial],
+    say: Progress,
+    first: int = STEPS,
+    reach: float = math.inf,
+    slopes: Differentiated = differentiate,
 ) -> list[Tried]:
     """Laws led from all that each leaves as noise to the noise alone; fewer and fewer go on.
 
@@ -102,8 +110,11 @@ def cooled(
         Steps under the first variance.
     reach : float
         Factor on the least cost beyond which a model does not go on after the first variance.
+    slopes : callable
+        As ``descend`` takes it.
     """
-    running = [(member, fit, variances(fit)) for member, fit in tried if np.isfinite(fit.rss)]
+    begun = distinct([(member, fit) for member, fit in tried if np.isfinite(fit.rss)])
+    running = [(member, fit, variances(fit)) for member, fit in begun]
     for rung in range(max((len(v) for _, _, v in running), default=0)):
         if rung == 1:
             running = [(m, evaluate(trials, f.model, f.point, f.nuisances), v) for m, f, v in running]
@@ -111,7 +122,7 @@ def cooled(
         for index, (member, fit, own) in enumerate(running):
             say("laws from loose to exact", index, len(running))
             steps = STEPS if rung else first
-            onward.append((member, led(fit, own[min(rung, len(own) - 1)], steps), own))
+            onward.append((member, led(fit, own[min(rung, len(own) - 1)], steps, slopes), own))
         kept = fewer([(m, f) for m, f, _ in onward if np.isfinite(f.rss)], rung, reach)
         running = [one for one in onward if any(one[1] is fit for _, fit in kept)]
     return [(m, f) for m, f, _ in running]
@@ -126,13 +137,23 @@ def fewer(tried: Sequence[Tried], rung: int, reach: float) -> list[Tried]:
 def field(tried: Sequence[Tried], effects: int, most: float = math.inf, beside: float = math.inf) -> list[Tried]:
     """Of every effect the two best formulas or starts, up to a cost, the second up to a factor on the first one's; of
     all the first effects, and what takes any shape."""
-    ranked = sorted(tried, key=lambda pair: cost_of(pair[1]))
+    ranked = distinct(sorted(tried, key=lambda pair: cost_of(pair[1])))
     names = list(dict.fromkeys(m.id for m, _ in ranked if not m.generic))[:effects]
     found: list[Tried] = []
     for member, fit in ranked:
         fits = member.generic or (member.id in names and cost_of(fit) < most)
         alike = [cost_of(f) for m, f in found if (m.id, m.kind, m.generic) == (member.id, member.kind, member.generic)]
         if fits and (not alike or (len(alike) < 2 and cost_of(fit) < beside * alike[0])):
+            found.append((member, fit))
+    return found
+
+
+def distinct(tried: Sequence[Tried]) -> list[Tried]:
+    """Fits but for those that have come to where another one of their formula is."""
+    found: list[Tried] = []
+    for member, fit in tried:
+        same = (f for m, f in found if (m.id, m.kind, m.form) == (member.id, member.kind, member.form))
+        if not any(abs(cost_of(f) - cost_of(fit)) < SAME and np.abs(f.point - fit.point).max() < NEAR for f in same):
             found.append((member, fit))
     return found
 

@@ -33,11 +33,14 @@ class Found:
         In closed form.
     fit : JointFit or None
         By the simulator.
+    gained : float
+        Fall of the cost by the last step by differences between simulations; inf where none was made.
     """
 
     members: tuple[Member, ...]
     linear: LinearFit | None
     fit: JointFit | None
+    gained: float = math.inf
 
     @property
     def cost(self) -> float:
@@ -80,12 +83,15 @@ class Search:
         Where there is nothing else, and what is linear has been fitted in closed form; else empty.
     looked_at : int
         Effects that were tried beside the baseline, by fits or a score test.
+    has_laws : bool
+        Whether laws were tried beside the baseline.
     """
 
     baseline: Found
     found: list[Found] = field(default_factory=list)
     decays: tuple[Decay, ...] = ()
     looked_at: int = 0
+    has_laws: bool = False
 
     @property
     def all(self) -> list[Found]:
@@ -96,11 +102,6 @@ class Search:
         return min(self.all, key=lambda f: f.cost)
 
     @property
-    def has_laws(self) -> bool:
-        """Whether laws were fitted as well."""
-        return any(not m.linear for found in self.found for m in found.members)
-
-    @property
     def samples(self) -> int:
         assert self.baseline.fit is not None
         return self.baseline.fit.size
@@ -108,6 +109,12 @@ class Search:
     def over(self, found: Found) -> float:
         """RMS of the whitened residuals: 1 for noise alone."""
         return math.sqrt(found.chi2 / self.samples)
+
+    def put(self, found: Found, new: Found) -> None:
+        """One in place of another."""
+        if found is self.baseline:
+            self.baseline = new
+        self.found = [new if f is found else f for f in self.found]
 
     def add(self, found: Found) -> None:
         """Of one set of effects in one formula the better."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -12,8 +12,10 @@ from ssmr_ident.identify.fitting.curvature import Curvature
 from ssmr_ident.identify.fitting.joint import JointFit, Slopes, differentiate, evaluate, evaluate_all, over
 
 Array = np.ndarray
+Differentiated = Callable[[JointFit, bool], JointFit]
+"""``joint.differentiate``, or what stands in for it."""
 
-DAMPINGS = (0.0, 0.01, 0.1, 0.5, 2.0, 10.0, 100.0, 1e3)
+DAMPINGS = (0.0, 1e-4, 1e-3, 0.01, 0.1, 1.0, 10.0, 100.0, 1e3)
 """Shares by which the curvature is raised in steps that are tried (Marquardt 1963)."""
 
 SETTLED = 0.1
@@ -85,6 +87,7 @@ def descend(
     plain: bool = False,
     temper: float = 1.0,
     secants: int = SECANTS,
+    slopes: Differentiated = differentiate,
 ) -> JointFit:
     """Damped Gauss-Newton.
 
@@ -105,10 +108,12 @@ def descend(
         parameters then holds until a model begins to follow what moves.
     secants : int
         Steps with corrected slopes after each with exact ones.
+    slopes : callable
+        ``slopes(fit, shared)``: the same fit with its slopes.
     """
     rung = 0
     for _ in range(iterations if np.isfinite(fit.rss) else 0):
-        fit = differentiate(search_again(fit), shared)
+        fit = slopes(search_again(fit), shared)
         counted = fit.counted
         enough = max(settled, SLOW * float(counted.sum()))
         first = True

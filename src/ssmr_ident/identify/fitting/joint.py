@@ -10,7 +10,7 @@ Source: Gelman et al., Bayesian Data Analysis (2013), sections 2.7 and 14.2 (nor
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TypeVar
@@ -123,6 +123,10 @@ class JointFit:
         return float(self.counted.sum())
 
     @property
+    def most_nuisances(self) -> int:
+        return max((len(nuisance) for nuisance in self.nuisances), default=0)
+
+    @property
     def weights(self) -> Array:
         """(t,) float by which squares of each trial count, its own misfit being the measure."""
         result: Array = self.counted / self.parts
@@ -218,12 +222,18 @@ def differentiate(fit: JointFit, shared: bool = True) -> JointFit:
     """
     if fit.exact:
         return fit
+    count = len(fit.model.unknowns) if shared else 0
+    return replace(fit, slopes=differences(fit, range(count), range(fit.most_nuisances)), exact=shared)
+
+
+def differences(fit: JointFit, coordinates: Collection[int], nuisances: Collection[int]) -> tuple[Slopes, ...]:
+    """Slopes by some of the coordinates and nuisances, all others 0; of every trial."""
     model, point = fit.model, fit.point
-    names = [unknown.name for unknown in model.unknowns] if shared else []
+    names = [unknown.name for unknown in model.unknowns]
     here = model.split(point)
     # robots are asked for by their values: one that has been split once is built once for all trials
     most = MOVED / np.maximum(np.sqrt(sum(np.sum(s.shared**2, axis=0) for s in fit.slopes)), 1e-300)
-    asked_for = {trial.coarse for trial in fit.trials} if shared else set()
+    asked_for = {trial.coarse for trial in fit.trials} if coordinates else set()
     moved = {
         c: _moved(model, point, here, np.minimum(c * model.steps(), most if c == 1.0 else np.inf)) for c in asked_for
     }
@@ -231,9 +241,9 @@ def differentiate(fit: JointFit, shared: bool = True) -> JointFit:
     def one(index: int) -> Slopes:
         trial, nuisance = fit.trials[index], fit.nuisances[index]
         centre = trial.whitened(fit.simulated[index])
-        seen = [column for column, name in enumerate(names) if trial.sees(name)]
+        seen = [column for column in coordinates if trial.sees(names[column])]
         asked: list[Asked] = [(*moved[trial.coarse][column][1], nuisance) for column in seen]
-        own_columns, width = acting(trial, model), NUISANCE_STEP * trial.coarse
+        own_columns, width = [c for c in acting(trial, model) if c in nuisances], NUISANCE_STEP * trial.coarse
         for column in own_columns:
             sides = (1.0, -1.0) if trial.nuisances[column] in trial.even else (1.0,)
             for side in sides:
@@ -252,7 +262,7 @@ def differentiate(fit: JointFit, shared: bool = True) -> JointFit:
             own[:, column] = (ahead - next(found)) / (2.0 * width) if even else (ahead - centre) / width
         return Slopes(columns, np.where(np.abs(own) < STEEPEST, own, 0.0))
 
-    return replace(fit, slopes=tuple(over(fit.trials, one)), exact=shared)
+    return tuple(over(fit.trials, one))
 
 
 def _moved(model: Model, point: Array, here: Split, sizes: Array) -> list[tuple[float, Split]]:
