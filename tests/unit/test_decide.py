@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+import pytest
+
 from ssmr_ident.doctor.decide import MISSING, NOTHING, UNDETERMINED, decide
 from ssmr_ident.doctor.laws import best_shape
 from ssmr_ident.doctor.left import Left
@@ -63,6 +65,17 @@ def test_a_displaced_place_is_held_against_what_the_file_states() -> None:
     offset, mast = row("com_offset", "geometry", 9.0, 4990.0), row("flexible_mast", "extra_motion", 10.0, 4985.0)
     assert decide([quiet, offset, mast]).chosen is offset
     assert decide([quiet, replace(offset, log_evidence=7.0), mast]).verdict == NOTHING
+
+
+def test_a_law_that_leaves_half_of_the_misfit_is_named_without_much_confidence() -> None:
+    """The world's own law would leave noise alone; nothing else was any better."""
+    law = row("dry_friction", "memory", 9000.0, 25_000.0, 2.2)
+    found = decide([BASE, law])
+    assert found.chosen is law
+    left = (25_000 / 5000 - 1.21) / (BASE.chi2 / 5000 - 1.0)
+    assert found.confidence == pytest.approx(1.0 - left, abs=1e-6)
+    noisy = replace(law, chi2=1.2 * 5000)
+    assert decide([BASE, noisy]).confidence > 0.99
 
 
 def test_two_laws_fit_alike() -> None:

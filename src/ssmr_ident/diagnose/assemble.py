@@ -32,7 +32,7 @@ from ssmr_ident.diagnose.locate import located
 from ssmr_ident.diagnose.outcome import Outcome
 from ssmr_ident.diagnose.residual_map import residual_maps
 from ssmr_ident.diagnose.surface import surfaces
-from ssmr_ident.diagnose.weigh import Explanation, shares
+from ssmr_ident.diagnose.weigh import Explanation
 from ssmr_ident.diagnose.within import REACH, measure_of
 from ssmr_ident.diagnose.words import law, missing, nothing, readable, told, undetermined
 from ssmr_ident.diagnose.worth import (
@@ -210,21 +210,17 @@ def conflicting(outcome: Outcome) -> tuple[Conflict, ...]:
 
 def _named(outcome: Outcome, fitted: Mapping[str, Mapping[str, Estimate]]) -> tuple[NamedEffect, ...]:
     best = outcome.chosen
-    share = shares(outcome.found)
     found = []
     for effect_id in best.fit.model.ids:
         if effect_id in outcome.setup.model.held:
             continue
-        confidence = sum(s for name, s in share.items() if effect_id in name.split("+"))
         others = tuple(dict.fromkeys(o for r in outcome.rivals for o in r.fit.model.ids if o not in best.fit.model.ids))
         # a range or stiffness without limit is one that does not act
         values = {name: estimate for name, estimate in fitted[effect_id].items() if np.all(np.isfinite(estimate.value))}
         if effect_id == "unlisted":
             values = {name: estimate for name, estimate in values.items() if not estimate.fixed}
         found.append(
-            NamedEffect(
-                effect_id, told(effect_id, values), law(effect_id, values), values, min(confidence, 1.0), others
-            )
+            NamedEffect(effect_id, told(effect_id, values), law(effect_id, values), values, outcome.confidence, others)
         )
     return tuple(found)
 

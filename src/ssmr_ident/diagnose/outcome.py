@@ -26,6 +26,8 @@ class Outcome:
         Log evidence by id, the baseline's being 0.
     looked_at : int
         Effects that were tried, by a fit or by a score test.
+    confidence : float
+        In the chosen one, 0 … 1.
     withdrawn : str
         An answer that predicts recordings worse than the baseline does; empty where there is none.
     """
@@ -37,4 +39,5 @@ class Outcome:
     rivals: tuple[Explanation, ...]
     found: dict[str, float]
     looked_at: int
+    confidence: float = 0.0
     withdrawn: str = ""

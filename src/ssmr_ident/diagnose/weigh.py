@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -58,11 +57,3 @@ def _parameters(fit: JointFit) -> int:
     """Those of its effects; one that has none to fit counts as one."""
     own = {c.effect for c in fit.model.free}
     return len(fit.model.free) + sum(name not in own for name in fit.model.held)
-
-
-def shares(found: Mapping[str, float]) -> dict[str, float]:
-    """Posterior shares for equal prior odds."""
-    top = max(found.values())
-    weights = {name: math.exp(max(value - top, -700.0)) for name, value in found.items()}
-    total = sum(weights.values())
-    return {name: weight / total for name, weight in weights.items()}

@@ -11,6 +11,7 @@ from ssmr_ident.doctor.rules import (
     FOLLOWS,
     FORMULA,
     HALVED,
+    MORE_OVER,
     OVER_NOISE,
     SECOND,
     STATED,
@@ -82,16 +83,25 @@ def decide(rows: Sequence[Row]) -> Decision:
     named = [r for r in sure if not r.generic]
     top = max(named, key=lambda r: r.log_evidence, default=None)
     if top is None:
-        return Decision(MISSING, best, False, (), _confidence(best, [best], 0.0), shares)
+        return Decision(MISSING, best, False, (), _confidence(best, [best], unexplained(best, base)), shares)
     least = min(r.chi2 for r in rows if math.isfinite(r.chi2))
     span = max(base.chi2 - least, 1e-12)
     left = max(top.chi2 - least, 0.0) / span
     beaten = top.log_evidence < best.log_evidence - TIE and left > FORMULA
     if beaten and not needed(top, left, everything):
-        return Decision(MISSING, best, False, (), _confidence(best, [r for r in rows if r.ids], left), shares, left)
+        return Decision(
+            MISSING,
+            best,
+            False,
+            (),
+            _confidence(best, [r for r in rows if r.ids], max(left, unexplained(best, base))),
+            shares,
+            left,
+        )
     alike = [r for r in named if r.log_evidence > top.log_evidence - TIE]
     ties = tuple(dict.fromkeys(i for r in alike for i in (*r.ids, *r.equal) if i not in top.ids))
-    return Decision(MISSING, top, True, ties, _confidence(top, named, left), shares, left)
+    confidence = _confidence(top, named, max(left, unexplained(top, base)))
+    return Decision(MISSING, top, True, ties, confidence, shares, left)
 
 
 def certain(row: Row, base: Row) -> bool:
@@ -227,9 +237,16 @@ def _temper(row: Row) -> float:
     return max(row.chi2 / max(row.samples, 1.0), 1.0)
 
 
+def unexplained(row: Row, base: Row) -> float:
+    """Share of the baseline's misfit that a row leaves beyond what may be noise: the world's own law would leave none,
+    and nothing says that what leaves much of it is that law."""
+    left = row.chi2 / max(row.samples, 1.0) - MORE_OVER**2
+    return min(max(left / max(base.chi2 / max(base.samples, 1.0) - 1.0, 1e-12), 0.0), 1.0)
+
+
 def _confidence(top: Row, others: Sequence[Row], left: float) -> float:
-    """Posterior share of the chosen ids; evidence counts in sizes of what the explanation itself leaves, and what it
-    leaves beside the best of any shape counts against it."""
+    """Posterior share of the chosen ids; evidence counts in sizes of what the explanation itself leaves, and the share
+    ``left`` of the misfit counts against it."""
     temper = _temper(top)
     weights: dict[frozenset[str], float] = {}
     for row in others:

@@ -31,6 +31,10 @@ GRAIN = 1e-4
 """Share of the baseline's misfit, in squares, that a second effect takes at the least: a hundredth in size. What drives
 between two samples, and how instruments see it, is known to some per mille only."""
 
+MORE_OVER = 1.1
+"""RMS of whitened residuals from which more than noise is left: 1,500 samples at rest tell its size to 5 % (300 drawn
+sensors), twice that."""
+
 OVER_NOISE = 1.6
 """Ratio of what is left to white noise from which it is asked whether it follows the motion."""
 

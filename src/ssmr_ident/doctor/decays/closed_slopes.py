@@ -1,4 +1,4 @@
-"""A simulated linear model's slopes in closed form: a twentieth of what differences between simulations cost.
+"""A simulated linear model's slopes in closed form: a seventh of what differences between simulations cost.
 
 The simulator's motions are small ones but for a few per cent, so that slopes by eigenvalues lead a fit to within a
 fraction of a deviation of its optimum. Its states at the release are fewer than those of the closed form: branches hold

@@ -26,7 +26,6 @@ from ssmr_ident.doctor.decays.linear_members import (
     members_beside,
     within_reach,
 )
-from ssmr_ident.doctor.decays.small_motions import MORE_OVER
 from ssmr_ident.doctor.decide import certain
 from ssmr_ident.doctor.robots.answer import table
 from ssmr_ident.doctor.robots.cooled import (
@@ -43,7 +42,8 @@ from ssmr_ident.doctor.robots.cooled import (
 )
 from ssmr_ident.doctor.robots.found import Found, Search, cost_of
 from ssmr_ident.doctor.robots.members import Member, any_shape
-from ssmr_ident.identify.fitting.descent import Differentiated, descend
+from ssmr_ident.doctor.rules import MORE_OVER
+from ssmr_ident.identify.fitting.descent import descend
 from ssmr_ident.identify.fitting.joint import differentiate, evaluate
 from ssmr_ident.identify.trials import Trial
 from ssmr_ident.physics.effects import CATALOGUE
@@ -52,8 +52,8 @@ RELEASED = 3
 """Times that a law's states at the release are looked for anew, at the most."""
 
 ALIKE = 1.2
-"""Factor on the cost of an effect's best fit up to which another formula, or start, of it goes on; and on the least of
-all, up to which laws go on where a model leaves noise alone."""
+"""Factor on the cost of an effect's best fit up to which another formula, or start, of it goes on, and on the least of
+all, up to which a member of any shape begins laws."""
 
 
 def laws_beside(search: Search, first: Found, say: Progress) -> None:
@@ -74,13 +74,12 @@ def laws_beside(search: Search, first: Found, say: Progress) -> None:
     shapes = [(m, f) for m, f in ended if m.generic and cost_of(f) < ALIKE * least]
     ended += [pair for member, fit in shapes for pair in parts_of(member, fit, laws)]
     least = min((cost_of(f) for _, f in ended), default=math.inf)
-    going = field(ended, LAWS, FAR_OFF * least, ALIKE)
-    if search.over(search.best) < MORE_OVER:
-        going = _within_reach(going, trials, min(least, _linear_on(search, which, trials)), near)
-    for index, (member, fit) in enumerate(going):
-        if cost_of(fit) > ALIKE * least and search.over(search.best) < MORE_OVER:
-            break
+    for index, (member, fit) in enumerate(going := field(ended, LAWS, FAR_OFF * least, ALIKE)):
         say("laws on whole recordings", index, len(going))
+        if search.over(search.best) < MORE_OVER:
+            before, fit = cost_of(fit), led(fit, 1.0, 1, near)
+            if not within_reach(cost_of(fit), before, min(least, _linear_on(search, which, trials))):
+                continue
         search.add(Found((*first.members, member), None, on_whole(search.decays, fit, first.fit.nuisances, whole)))
 
 
@@ -88,12 +87,6 @@ def _linear_on(search: Search, which: Sequence[int], trials: Sequence[Trial]) ->
     """Least cost on some recordings, or first parts of them, of what is linear and was simulated."""
     fits = [f.fit for f in search.all if f.fit is not None and f.linear is not None]
     return min(cost_of(evaluate(trials, f.model, f.point, [f.nuisances[i] for i in which])) for f in fits)
-
-
-def _within_reach(tried: Sequence[Tried], trials: Sequence[Trial], least: float, slopes: Differentiated) -> list[Tried]:
-    """Laws that may still come to a cost, by what one step more gains."""
-    stepped = [(member, fit, led(fit, 1.0, 1, slopes)) for member, fit in tried]
-    return [(m, now) for m, before, now in stepped if within_reach(cost_of(now), cost_of(before), least)]
 
 
 def _promising(search: Search, first: Found, laws: list[Member]) -> list[Member]:
@@ -139,8 +132,8 @@ def offered_to_each(search: Search) -> None:
             model, keep = pair.model.without_effect(other.id)
             begun = evaluate(pair.fit.trials, model, pair.point[keep], pair.fit.nuisances)
             alone = min((f.cost for f in search.found if [m.id for m in f.members] == [member.id]), default=math.inf)
-            if np.isfinite(begun.rss) and cost_of(led := cooled_alone(begun)) < ALIKE * alone:
-                search.add(Found((replace(member, model=model),), None, to_the_end(led)))
+            if np.isfinite(begun.rss) and cost_of(onward := cooled_alone(begun)) < ALIKE * alone:
+                search.add(Found((replace(member, model=model),), None, to_the_end(onward)))
 
 
 def in_formulas(search: Search, law: Found, say: Progress) -> None:

@@ -39,8 +39,8 @@ SCREENED_S = 0.7, 1.4
 LAST = 3
 """Steps of states alone."""
 
-RELEASED, CLOSED = 2, 3
-"""Steps by slopes in closed form, of states alone, and of all."""
+FROM_REST, CLOSED = 2, 3
+"""Steps by slopes in closed form, of states alone that begin at rest, and of all."""
 
 NEAR = 1.5
 """RMS of whitened residuals up to which a model follows the recordings: laws' releases are then taken to be the
@@ -168,5 +168,5 @@ def exact(decays: Sequence[Decay], fit: LinearFit) -> JointFit:
     anew = not {BRANCH, SLOW}.isdisjoint(fit.model.held)
     begun = evaluate(trials, fit.model, fit.point, [0.0 * n if anew else n for n in nuisances])
     if anew:
-        begun = descend(begun, RELEASED, shared=False, plain=True, slopes=slopes)
+        begun = descend(begun, FROM_REST, shared=False, plain=True, slopes=slopes)
     return descend(begun, CLOSED, plain=True, slopes=slopes)

@@ -15,13 +15,12 @@ from ssmr_ident.diagnose.setup import Setup, set_up
 from ssmr_ident.doctor.decays.linear_members import simulated
 from ssmr_ident.doctor.decays.recordings import Decay, decay_of
 from ssmr_ident.doctor.decays.search import MATTERS, begun, completed, in_turn, promised_beside
-from ssmr_ident.doctor.decays.small_motions import MORE_OVER
 from ssmr_ident.doctor.decide import MISSING, Decision, certain, decide
 from ssmr_ident.doctor.robots.answer import GROWS, answered, table
 from ssmr_ident.doctor.robots.calibrated import informed
 from ssmr_ident.doctor.robots.found import Found, Search
 from ssmr_ident.doctor.robots.members import GEOMETRY
-from ssmr_ident.doctor.rules import CERTAIN, HALVED, SECOND
+from ssmr_ident.doctor.rules import CERTAIN, HALVED, MORE_OVER, SECOND
 from ssmr_ident.doctor.table import Row
 from ssmr_ident.experiments.campaign import Campaign
 from ssmr_ident.identify.body.builder import RobotBuilder

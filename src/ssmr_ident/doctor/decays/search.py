@@ -27,13 +27,13 @@ from ssmr_ident.doctor.decays.linear_members import (
     simulated,
 )
 from ssmr_ident.doctor.decays.recordings import Decay
-from ssmr_ident.doctor.decays.small_motions import MORE_OVER, annealed
+from ssmr_ident.doctor.decays.small_motions import annealed
 from ssmr_ident.doctor.robots.cooled import (
     Progress,
 )
 from ssmr_ident.doctor.robots.found import Found, Search
 from ssmr_ident.doctor.robots.members import GEOMETRY, KINDS
-from ssmr_ident.doctor.rules import FORMULA, STATED
+from ssmr_ident.doctor.rules import FORMULA, MORE_OVER, STATED
 from ssmr_ident.identify.fitting.coordinates import Model
 from ssmr_ident.identify.fitting.descent import descend
 from ssmr_ident.identify.fitting.joint import differentiate

@@ -9,6 +9,7 @@ import numpy as np
 from ssmr_ident.doctor.decays.linear import LinearFit, fit_linear
 from ssmr_ident.doctor.decays.recordings import Decay
 from ssmr_ident.doctor.robots.cooled import TRUSTED
+from ssmr_ident.doctor.rules import MORE_OVER
 from ssmr_ident.identify.fitting.coordinates import Model
 from ssmr_ident.physics.extended import LINEAR
 
@@ -20,10 +21,6 @@ ENDS = 0.1, 0.2, 0.4, 0.6
 FAR = 3.0
 """Standard deviations of what is known beyond which a fit is not the robot: what friction leaves of a motion as it
 ends, a linear model follows by leaving all that is known."""
-
-MORE_OVER = 1.1
-"""RMS of whitened residuals from which more than noise is left: 1,500 samples at rest tell its size to 5 % (300 drawn
-sensors), twice that."""
 
 
 def annealed(decays: Sequence[Decay], model: Model) -> LinearFit | None:

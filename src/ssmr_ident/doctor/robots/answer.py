@@ -168,8 +168,9 @@ def outcome(setup: Setup, search: Search, rows: Sequence[tuple[Row, Found]], dec
         if _harms(chosen, base, 1.0 if of_decays else GROWS):
             rivals, chosen, withdrawn = [], base, chosen.id
     return Outcome(
-        setup, base, tuple(tried), chosen, tuple(rivals), _evidence(rows, tried), search.looked_at, withdrawn
-    )
+        setup, base, tuple(tried), chosen, tuple(rivals), _evidence(rows, tried), search.looked_at, decision.confidence,
+        withdrawn,
+    )  # fmt: skip
 
 
 def _harms(chosen: Explanation, base: Explanation, grows: float) -> bool:
