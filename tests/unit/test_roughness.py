@@ -65,16 +65,21 @@ def test_a_rough_cost_widens_the_scatter_by_the_depth_of_its_hollows(wave: float
 
 @pytest.mark.slow
 def test_estimates_from_pulls_lie_within_what_is_said_of_them() -> None:
-    drawn = draw("pulls", "none", 5512)
-    laws = under_laws_of_sliding(arranged(drawn.campaign), drawn.campaign.parameters)
-    fits = [baseline_of(setup.fitted, setup.model) for setup, _ in laws]
-    fit = differentiate(min(fits, key=cost_of))
-    truth = drawn.truth.parameters
-    places = np.array([(k, u.scaled(truth[u.name])) for k, u in enumerate(fit.model.physics) if u.name in truth])
-    own, off = places[:, 0].astype(int), fit.point[places[:, 0].astype(int)] - places[:, 1]
-    rough, local = (np.abs(off) / np.sqrt(np.diag(scatter)[own]) for scatter in (scatter_of(fit), covariance(fit)))
-    assert np.sqrt(np.mean(rough**2)) < 1.5
-    assert np.sqrt(np.mean(local**2)) > 1.5 * np.sqrt(np.mean(rough**2))
+    """The curvature alone says far too little of a cost that is rough."""
+    rough, local = [], []
+    for seed in (5512, 5513):
+        drawn = draw("pulls", "none", seed)
+        laws = under_laws_of_sliding(arranged(drawn.campaign), drawn.campaign.parameters)
+        fits = [baseline_of(setup.fitted, setup.model) for setup, _ in laws]
+        fit = differentiate(min(fits, key=cost_of))
+        truth = drawn.truth.parameters
+        places = np.array([(k, u.scaled(truth[u.name])) for k, u in enumerate(fit.model.physics) if u.name in truth])
+        own = places[:, 0].astype(int)
+        off = np.abs(fit.point[own] - places[:, 1])
+        for found, scatter in ((rough, scatter_of(fit)), (local, covariance(fit))):
+            found += list(off / np.sqrt(np.diag(scatter)[own]))
+    assert np.sqrt(np.mean(np.square(rough))) < 2.0
+    assert np.sqrt(np.mean(np.square(local))) > 3.0
 
 
 @pytest.mark.parametrize(

@@ -43,7 +43,7 @@ LAWS = 3
 """Effects with laws that go on after the second variance of what counts as noise, and to all recordings; two fits
 each."""
 
-SAME, NEAR = 0.5, 0.1
+SAME_COST, SAME_PLACE = 0.5, 0.1
 """Difference of the cost, and of coordinates, below which two fits are one."""
 
 FAR_OFF = 3.0
@@ -153,7 +153,9 @@ def distinct(tried: Sequence[Tried]) -> list[Tried]:
     found: list[Tried] = []
     for member, fit in tried:
         same = (f for m, f in found if (m.id, m.kind, m.form) == (member.id, member.kind, member.form))
-        if not any(abs(cost_of(f) - cost_of(fit)) < SAME and np.abs(f.point - fit.point).max() < NEAR for f in same):
+        if not any(
+            abs(cost_of(f) - cost_of(fit)) < SAME_COST and np.abs(f.point - fit.point).max() < SAME_PLACE for f in same
+        ):
             found.append((member, fit))
     return found
 
