@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import json
 import os
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pandas as pd
@@ -30,11 +28,7 @@ def test_a_worker_that_dies_loses_nothing(tmp_path: Path) -> None:
     worker = [sys.executable, "-m", "distributed.cli.dask_worker", "--scheduler-file", str(say), "--nthreads", "1"]
     workers = [subprocess.Popen([*worker, "--no-dashboard", "--no-nanny"]) for _ in range(2)]
     try:
-        until = time.monotonic() + 120
-        while not say.is_file():
-            assert time.monotonic() < until
-            time.sleep(0.1)
-        address = json.loads(say.read_text())["address"]
+        address = distributed.utils.json_load_robust(say, timeout=120)["address"]
         with distributed.Client(address, set_as_default=False) as client:
             client.wait_for_workers(2, timeout=120)
 
