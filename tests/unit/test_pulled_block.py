@@ -13,7 +13,9 @@ from ssmr_ident.core.parameter import Estimate, ParameterSet
 from ssmr_ident.core.recording import Channel, Provenance, Recording
 from ssmr_ident.diagnose.diagnosis import Diagnosis
 from ssmr_ident.experiments.campaign import Campaign, Measurement
+from ssmr_ident.identify.blocks.log import pulled_log
 from ssmr_ident.identify.blocks.search import pulls_of
+from ssmr_ident.identify.blocks.teeth import moments
 from ssmr_ident.session import Entry, Session
 from ssmr_ident.simulate.pulled_block import pull
 from ssmr_ident.workflows.diagnose import diagnose
@@ -143,6 +145,72 @@ def test_a_fit_tells_starts_teeth_and_frictions() -> None:
         assert 1.0 < numbers["drive_starts_s"] < 1.31
         assert numbers["tooth_height_N"] == pytest.approx(2 * 0.15 * WEIGHT, rel=0.1)
     assert fit.parameters["mu_static"].value == pytest.approx(0.5, rel=0.02)
+
+
+def logged(force: np.ndarray, speed: float = 1.0) -> Measurement:
+    """A pull of this force at 100 Hz and ``speed`` [mm/s]."""
+    entry = Entry("pull.csv", "wheel_drag", speed_mm_s=speed)
+    channel = Channel("force", force, "N")
+    return Measurement(entry, Recording(np.arange(len(force)) / 100.0, (channel,), Provenance(entry.file, "", "test")))
+
+
+@pytest.mark.parametrize(("rest", "drift"), [(1, -0.3), (1, 2.0), (30, 2.0), (30, -0.3)])
+def test_a_force_that_is_up_at_once_is_told_from_a_drift(rest: int, drift: float) -> None:
+    """However short the rest before it, and however far the drift goes in the end."""
+    noise = 0.1 * np.random.default_rng(3).standard_normal(3000)
+    force = np.where(np.arange(3000) < rest, 0.5, 6.5) + drift * np.arange(3000) / 100.0 + noise
+    log = pulled_log(logged(force))
+    assert log.rests == pytest.approx(0.5, abs=0.5)
+    assert log.load == pytest.approx(6.0, abs=0.4)
+    assert log.rise > 0.0
+    assert log.jumps == pytest.approx((rest - 0.5) / 100.0, abs=0.011)
+
+
+def test_the_first_tooth_is_one_though_the_next_is_higher() -> None:
+    head = 2e-3 * np.maximum(np.arange(150) / 100.0 - 0.05, 0.0)
+    force = pull(2.0, 15e3, 3.0, np.full(150, 4.5), 1.5, head, 0.01)[0]
+    force = np.where(np.arange(150) > 35, force + 0.2, force)
+    own = moments(pulled_log(logged(force + 0.03 * np.random.default_rng(4).standard_normal(150), 2.0)))
+    assert own[0] == pytest.approx(0.05 + 6.0 / 15e3 / 2e-3, abs=0.03)
+
+
+@pytest.mark.slow
+def test_a_drift_is_no_friction_that_falls() -> None:
+    """Moments of letting go, of which there are none, have no evidence to give, whatever their number."""
+    random, made = np.random.default_rng(5), []
+    for speed, samples in ((1.0, 900), (0.3, 3000), (2.0, 500), (0.6, 1500)):
+        time = np.arange(samples) / 100.0
+        head = 1e-3 * speed * np.maximum(time - 0.2, 0.0)
+        clean = pull(3.5, 1e4, 4.0, np.full(samples, 10.5), 0.0, head, 0.01)[0]
+        log = logged(clean - 2.3 * time + 0.12 * random.standard_normal(samples), speed)
+        made.append(replace(log, entry=replace(log.entry, file=f"pull-{speed:g}.csv")))
+    mu = Estimate(0.3, 0.03, "1")
+    known = ParameterSet("block", {"mass_kg": Estimate(3.5, 0.01, "kg"), "mu_static": mu, "mu_kinetic": mu,
+                                   "cable.stiffness_N_m": Estimate(1e4, 1e3, "N/m")})  # fmt: skip
+    campaign = Campaign(Session("block", Path(), "block", "drag", tuple(m.entry for m in made)), known, tuple(made))
+    found = diagnose(campaign)
+    assert (found.verdict, named(found)) == ("missing_physics", {"load_cell_drift"})
+    assert found.effects[0].parameters["zero_drift_N_s"].value == pytest.approx(-2.3, rel=0.02)
+
+
+@pytest.mark.slow
+def test_friction_that_falls_over_a_speed_is_told_with_that_speed() -> None:
+    random, made = np.random.default_rng(5), []
+    for speed in (1.0, 0.5, 2.0, 1.5):
+        head = 1e-3 * speed * np.maximum(np.arange(round(900 / speed)) / 100.0 - 0.5, 0.0)
+        clean = pull(3.0, 10.5e3, 4.0, np.full(len(head), 10.6), 1.9, head, 0.01, None, 3.6e-3)[0]
+        made.append(logged(clean + 0.2 * random.standard_normal(len(head)), speed))
+        made[-1] = replace(made[-1], entry=replace(made[-1].entry, file=f"pull-{speed:g}.csv"))
+    mu = Estimate(0.4, 0.04, "1")
+    known = ParameterSet("block", {"mass_kg": Estimate(3.0, 0.01, "kg"), "mu_static": mu, "mu_kinetic": mu,
+                                   "cable.stiffness_N_m": Estimate(10e3, 1e3, "N/m")})  # fmt: skip
+    found = diagnose(
+        Campaign(Session("block", Path(), "block", "drag", tuple(m.entry for m in made)), known, tuple(made))
+    )
+    assert (found.verdict, named(found)) == ("missing_physics", {"stribeck"})
+    speed = found.effects[0].parameters["stribeck_velocity_m_s"]
+    assert abs(speed.value - 3.6e-3) < max(3.0 * speed.std, 0.15 * 3.6e-3)
+    assert found.heldout.after < 1.3 * found.heldout.noise_floor
 
 
 def test_a_wandering_level_has_no_teeth() -> None:

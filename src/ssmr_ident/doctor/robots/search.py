@@ -3,6 +3,7 @@ noise alone."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -15,6 +16,7 @@ from ssmr_ident.doctor.robots.cooled import FURTHER, TRUSTED, Progress, cooled, 
 from ssmr_ident.doctor.robots.found import Found, Search, cost_of
 from ssmr_ident.doctor.robots.members import BY_KIND, Member, members
 from ssmr_ident.doctor.robots.spans import spanned
+from ssmr_ident.doctor.rules import MORE_OVER, SECOND
 from ssmr_ident.identify.fitting.descent import descend
 from ssmr_ident.identify.fitting.joint import JointFit, differentiate, evaluate
 from ssmr_ident.identify.trials import Trial
@@ -23,9 +25,6 @@ from ssmr_ident.physics.extended import OFFSET
 
 NEAR = 1.5
 """RMS of a model's whitened residuals up to which a score test beside it says what may be missing."""
-
-SECOND_OVER = 1.25
-"""RMS of whitened residuals of the best from which a second effect is looked for."""
 
 OFFERED = 2
 """Models, the best ones, that are offered to the baseline."""
@@ -65,7 +64,7 @@ def searched(setups: Sequence[Setup], progress: Progress | None = None) -> Slidi
     _offered_back(first.search)
     _offered_on(first.search)
     _settled(first.search, say)
-    if first.search.over(first.search.best) > SECOND_OVER:
+    if _leaves_a_second(first.search):
         _beside(first.search, first.search.best, say)
         _settled(first.search, say)
     return first
@@ -102,6 +101,22 @@ def _promised(fit: JointFit, names: Sequence[str]) -> list[str]:
     groups = scan(differentiate(fit), [effect for effect in effects if not effect.sudden])
     likely = {suspect.effect for group in groups for suspect in group if promising(suspect)}
     return [effect.id for effect in effects if effect.sudden or effect.id in likely]
+
+
+def _leaves_a_second(search: Search) -> bool:
+    """Whether a second effect may stand beside the best: where that leaves more than noise, or a straight line promises
+    that one would be certain."""
+    best = search.best
+    if not best.members or search.over(best) > MORE_OVER:
+        return bool(best.members)
+    assert best.fit is not None
+    effects = [e for e in candidates(best.fit, "rigid6") if e.id in BY_KIND]
+    price = math.log(search.samples)
+    return any(
+        suspect.gain > 2.0 * SECOND + len(suspect.at) * price
+        for group in scan(differentiate(best.fit), effects)
+        for suspect in group
+    )
 
 
 def _at(start: JointFit, way: Member) -> JointFit:

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from ssmr_ident.core.parameter import FITTED, Estimate, ParameterSet
 from ssmr_ident.identify.blocks.fit import Fitted
-from ssmr_ident.identify.blocks.model import DAMPING, DRIFT, KINETIC, STATIC, STIFFNESS
+from ssmr_ident.identify.blocks.model import DAMPING, DRIFT, FALLING, KINETIC, SERIES, STATIC, STIFFNESS
 
 KEYS = {KINETIC: "1", STATIC: "1", STIFFNESS: "N/m", DAMPING: "N s/m"}
 """Units."""
@@ -30,10 +30,7 @@ def exported(found: Fitted, known: ParameterSet) -> ParameterSet:
     if found.blocks.shape.stretches and rigid:
         effects["cable_compliance"] = {"K_cable_N_m": Estimate(values[STIFFNESS], stds[STIFFNESS], "N/m", FITTED)}
     if found.blocks.shape.softer:
-        own = float(known[STIFFNESS].value)
-        series = 1.0 / max(1.0 / values[STIFFNESS] - 1.0 / own, 1e-300)
-        spread = stds[STIFFNESS] * (series / values[STIFFNESS]) ** 2
-        effects["cable_compliance"] = {"K_cable_N_m": Estimate(series, spread, "N/m", FITTED)}
+        effects["cable_compliance"] = {"K_cable_N_m": Estimate(values[SERIES], stds[SERIES], "N/m", FITTED)}
         changes.pop(STIFFNESS, None)
     one = float(known[STATIC].value) == float(known[KINETIC].value) if STATIC in known and KINETIC in known else True
     if found.blocks.shape.falls and one:
@@ -41,7 +38,9 @@ def exported(found: Fitted, known: ParameterSet) -> ParameterSet:
         spread = share * math.hypot(stds[KINETIC] / values[KINETIC], stds[STATIC] / values[STATIC])
         effects["stribeck"] = {
             "kinetic_share": Estimate(share, spread, "1", FITTED),
-            "stribeck_velocity_m_s": Estimate(AT_ONCE, None, "m/s", "at once", fixed=True),
+            FALLING: Estimate(values[FALLING], stds[FALLING], "m/s", FITTED)
+            if found.blocks.shape.smoothly
+            else Estimate(AT_ONCE, None, "m/s", "at once", fixed=True),
             "exponent": Estimate(2.0, None, "1", "not fitted", fixed=True),
         }
     if found.blocks.shape.drifts:

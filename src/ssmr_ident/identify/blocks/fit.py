@@ -6,6 +6,7 @@ The recordings touch each other through the shared unknowns alone, so own ones a
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -13,13 +14,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ssmr_ident.identify.blocks.log import PulledLog
-from ssmr_ident.identify.blocks.model import KINETIC, KNOTS, STATIC, STIFFNESS, Blocks
+from ssmr_ident.identify.blocks.model import FALLING, KINETIC, KNOTS, STATIC, STIFFNESS, Blocks
 
 Array = np.ndarray
 
 ROUNDS, SETTLED = 30, (1e-2, 1e-5)
 """Steps at the most; a step is the last that gains less than this, and than this share of the cost."""
 HALVINGS = 8
+LONGEST = 2.0
+"""Step of a logarithm, at the most: a straight line says nothing of a stiffness a hundred times as large."""
 SUDDEN = 0.2
 """Share of the load that comes up within a sample."""
 
@@ -98,7 +101,8 @@ def fitted(
     for _ in range(ROUNDS):
         system = [_linear(blocks, noise, k, shared, own[k], held) for k in range(len(own))]
         step, own_steps, _ = _solved(blocks, system, shared, held)
-        size = 1.0
+        furthest = max((abs(s) for s, u in zip(step, blocks.shared, strict=True) if u.logarithmic), default=0.0)
+        size = min(1.0, LONGEST / max(furthest, LONGEST))
         for _ in range(HALVINGS):
             trial = shared + size * step, [o + size * s for o, s in zip(own, own_steps, strict=True)]
             cost = _cost(blocks, noise, *trial)
@@ -115,13 +119,6 @@ def fitted(
     _, _, (covariance, log_det) = _solved(blocks, system, shared, held)
     runs = [blocks.simulated(k, blocks.values(shared), o) for k, o in enumerate(own)]
     widths = 0.0 if held else sum(math.log(u.std) for u in blocks.shared)
-    values = blocks.values(shared)
-    for k, (_, tops) in enumerate(runs):
-        std = blocks.own_prior(k)[1]
-        if blocks.shape.stretches:  # what scatters is the force, which rises with the head
-            rate = values[STIFFNESS] * blocks.logs[k].speed
-            std[blocks.let_go(k)][: len(tops)] = blocks.spread / rate
-        widths += float(np.sum(np.log(std)))
     evidence = -0.5 * now - widths - 0.5 * log_det
     return Fitted(
         blocks, shared, tuple(own), covariance, now, evidence, tuple(r[0] for r in runs), tuple(r[1] for r in runs)
@@ -202,19 +199,22 @@ def _sizes(blocks: Blocks, index: int, own: Array) -> Array:
 def _solved(
     blocks: Blocks, system: Sequence[tuple[Array, Array, Array]], shared: Array, held: bool
 ) -> tuple[Array, list[Array], tuple[Array, float]]:
-    """Step of the shared and of the own unknowns; covariance of the shared ones and the log determinant of all."""
+    """Step of the shared and of the own unknowns; covariance of the shared ones, and the log determinant of all over
+    that of what is known of the own ones beforehand, whose slopes are the last rows."""
     precision = np.diag([1.0 / u.std**2 for u in blocks.shared])
     pulled = -np.array([(s - u.mean) / u.std**2 for s, u in zip(shared, blocks.shared, strict=True)])
     log_det, parts = 0.0, []
     for base, over_shared, over_own in system:
         scale = np.maximum(np.linalg.norm(over_own, axis=0), 1e-300)
         own = over_own / scale
-        inner = own.T @ own + 1e-12 * np.eye(own.shape[1])
+        least = 1e-12 * np.eye(own.shape[1])  # of an own unknown that nothing moves, before as after
+        inner = own.T @ own + least
+        known = own[len(own) - own.shape[1] :]
         cross, down = own.T @ over_shared, own.T @ base
         back = np.linalg.solve(inner, np.column_stack([cross, down]))
         precision = precision + over_shared.T @ over_shared - cross.T @ back[:, :-1]
         pulled = pulled - over_shared.T @ base + cross.T @ back[:, -1]
-        log_det += float(np.linalg.slogdet(inner)[1]) + 2.0 * float(np.sum(np.log(scale)))
+        log_det += float(np.linalg.slogdet(inner)[1] - np.linalg.slogdet(known.T @ known + least)[1])
         parts.append((back, scale))
     covariance = np.linalg.inv(precision)
     step = np.zeros(len(shared)) if held else covariance @ pulled
@@ -224,21 +224,36 @@ def _solved(
     return step, own_steps, (covariance, log_det)
 
 
-RATIOS = (0.02, 0.2)
-"""Damping ratios of the drive from which a search begins."""
+RATIOS, FALLS = (0.02, 0.2), (0.02, 1.0)
+"""Damping ratios of the drive, and speeds over the pulls' in which friction falls, from which a search begins."""
+
+
+LOST = 4.0
+"""Mean square of what a model leaves, in sizes of noise, from which it has lost its way and tells nothing."""
 
 
 def begun(blocks: Blocks, noise: Sequence[float], like: Fitted | None = None) -> Fitted:
-    """The best of fits from several starts: what a poorer model has found, drives that ring and that do not, and blocks
-    let go where the force falls most or half a swing before, as they are where inertia carries the force on."""
+    """The best of fits from several starts: what a poorer model has found, and what is known beforehand where that does
+    not follow the logs."""
+    if like is None or like.cost < LOST * sum(len(log.force) for log in like.blocks.logs):
+        return _begun(blocks, noise, like)
+    return min(_begun(blocks, noise, like), _begun(blocks, noise, None), key=lambda f: f.cost)
+
+
+def _begun(blocks: Blocks, noise: Sequence[float], like: Fitted | None) -> Fitted:
+    """The best from drives that ring and that do not, and blocks let go where the force falls most or half a swing
+    before, as they are where inertia carries the force on."""
     starts = []
     known = dict(zip((u.name for u in like.blocks.shared), like.shared, strict=True)) if like is not None else {}
     fall = height(blocks.logs, blocks.moments, blocks.mass) / (2.0 * blocks.weight)
-    for ratio in RATIOS if blocks.shape.stretches else (0.0,):
+    ratios, falling = (RATIOS if blocks.shape.stretches else (0.0,)), (FALLS if blocks.shape.smoothly else (0.0,))
+    for ratio, over in itertools.product(ratios, falling):
         shared = np.array([known.get(u.name, u.mean) for u in blocks.shared])
         for k, u in enumerate(blocks.shared):
             if u.name == "ratio":
                 shared[k] = math.log(ratio)
+            elif u.name == FALLING:
+                shared[k] = u.mean + math.log(over)
             elif u.name == "fall" and u.mean == 0.0:
                 shared[k] = fall
             elif u.name == KINETIC and blocks.shape.changes:

@@ -20,6 +20,10 @@ LOW, HIGH = 0.2, 0.7
 TAKES_UP = 2.0
 """Samples about the jump of a force that is up at once."""
 
+BESIDE, CLEAR, GOES_ON = 5, 6.0, 0.2
+"""Samples on either side of a step of the force, sizes of noise from which it is one, and the share of it by which the
+force may go on changing over as many samples more."""
+
 STANDS = 0.05
 """Share of a pull for which a position has to stand, after the rise, for it to say more than the speed does. It may be
 the block's own, which stands while the force comes up."""
@@ -95,10 +99,12 @@ def pulled_log(measurement: Measurement) -> PulledLog:
     step = 1.0 / even.sample_rate
     if len(force) < 30:
         raise InputError(where, f"has {len(force)} samples", "A pull needs 30 at least")
-    low, high, rests, load = _rise(force)
+    noise = force_noise(force)
+    low, high, rests, load = _at_once(force, noise) or _rise(force)
     if not high > low + 1:
         low, high = max(high - 1, 0), min(high + 1, len(force) - 1)
     rise = float((force[high] - force[low]) / ((high - low) * step))
+    rise = max(rise, load / (len(force) * step))  # a drift may fall faster than the drive loads
     starts = max((low - (force[low] - rests) / max(rise * step, 1e-300)) * step, 0.0)
     elapsed = time - time[0]
     logged = even.samples[:, 1] - even.samples[0, 1] if "position" in recording else None
@@ -119,13 +125,28 @@ def pulled_log(measurement: Measurement) -> PulledLog:
         force,
         head,
         speed,
-        max(force_noise(force), 1e-9 * load),
+        max(noise, 1e-9 * load),
         rests,
         starts,
         _jump(force, low, high) * step,
         rise,
         load,
     )
+
+
+def _at_once(force: Array, noise: float) -> tuple[int, int, float, float] | None:
+    """The same of a force that is up within some samples and goes on as it then is; None where no such step stands out.
+    Its rest may be a single sample, and a zero that drifts may have gone further than the step."""
+    total = np.concatenate([[0.0], np.cumsum(force)])
+    at = np.arange(1, len(force) - 2 * BESIDE)
+    before = (total[at] - total[np.maximum(at - BESIDE, 0)]) / np.minimum(at, BESIDE)
+    after = (total[at + BESIDE] - total[at]) / BESIDE
+    further = (total[at + 2 * BESIDE] - total[at + BESIDE]) / BESIDE
+    step = after - before
+    best = int(np.argmax(step))
+    if step[best] < CLEAR * noise or abs(further[best] - after[best]) > GOES_ON * step[best]:
+        return None
+    return best, best + 1, float(np.median(force[: best + 1])), float(step[best])
 
 
 def _rise(force: Array) -> tuple[int, int, float, float]:

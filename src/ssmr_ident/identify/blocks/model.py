@@ -25,7 +25,13 @@ KNOTS = 8
 
 KINETIC, STATIC = "mu_kinetic", "mu_static"
 STIFFNESS, DAMPING = "cable.stiffness_N_m", "cable.damping_N_s_m"
+FALLING = "stribeck_velocity_m_s"
+SERIES = "cable.series_N_m"
+"""Stiffness of what is in series with the drive that the file knows."""
 DRIFT = "zero_drift_N_s"
+
+HELD = 1e-3
+"""Of the logarithm of what is not fitted."""
 
 SCATTER = 0.1
 """Of the forces at which a block is let go, over what they fall by, before that is known."""
@@ -41,6 +47,8 @@ class Shape:
         The drive has a stiffness.
     falls : bool
         Friction falls once it slides.
+    smoothly : bool
+        It falls over a speed, and not at once.
     softer : bool
         Something that stretches is in series with the drive that the file knows.
     drifts : bool
@@ -51,6 +59,7 @@ class Shape:
 
     stretches: bool = False
     falls: bool = False
+    smoothly: bool = False
     softer: bool = False
     drifts: bool = False
     changes: bool = False
@@ -88,6 +97,8 @@ class Blocks:
     shared : tuple of Unknown
     spread : float [N]
         Of the forces of letting go.
+    drive : float [N/m]
+        Stiffness that the file knows.
     """
 
     logs: tuple[PulledLog, ...]
@@ -96,6 +107,7 @@ class Blocks:
     shape: Shape
     shared: tuple[Unknown, ...]
     spread: float
+    drive: float = math.inf
 
     @property
     def weight(self) -> float:
@@ -106,6 +118,8 @@ class Blocks:
         """Numbers by their keys."""
         found = {u.name: u.value(float(at)) for u, at in zip(self.shared, shared, strict=True)}
         found[STATIC] = found[KINETIC] + found.pop("fall", 0.0)
+        if SERIES in found:
+            found[STIFFNESS] = 1.0 / (1.0 / self.drive + 1.0 / found[SERIES])
         if STIFFNESS in found:
             found[DAMPING] = 2.0 * found.pop("ratio") * math.sqrt(found[STIFFNESS] * self.mass)
         return found
@@ -171,8 +185,9 @@ class Blocks:
         moments = own[self.let_go(index)]
         excess = (values[STATIC] - values[KINETIC]) * self.weight
         force, tops = pull(
-            self.mass, values[STIFFNESS], values[DAMPING], level, max(excess, 0.0), moved, log.step, moments
-        )
+            self.mass, values[STIFFNESS], values[DAMPING], level, max(excess, 0.0), moved, log.step, moments,
+            values.get(FALLING, 0.0),
+        )  # fmt: skip
         return force + zero, tops[: len(moments)]
 
 
@@ -193,6 +208,8 @@ def shared_unknowns(parameters: ParameterSet, logs: Sequence[PulledLog], shape: 
         both = None if one else [e.std for e in (static, kinetic) if e is not None]
         std = math.hypot(*both) if both and all(both) else 0.5  # type: ignore[arg-type]
         found.append(Unknown("fall", fall, std))
+        if shape.smoothly:
+            found.append(_falling(parameters, float(np.median([log.speed for log in logs]))))
     if shape.drifts:
         longest = max(float(log.time[-1] - log.time[0]) for log in logs)
         found.append(Unknown(DRIFT, 0.0, load * weight / longest))
@@ -202,8 +219,7 @@ def shared_unknowns(parameters: ParameterSet, logs: Sequence[PulledLog], shape: 
         mean, std = math.log(guess), 3.0
         if given is not None and math.isfinite(float(given.value)):
             mean, std = math.log(float(given.value)), float(given.std or 3.0 * float(given.value)) / float(given.value)
-            std = 3.0 if shape.softer else std
-        found.append(Unknown(STIFFNESS, mean, std, logarithmic=True))
+        found.append(Unknown(SERIES, mean, 3.0, True) if shape.softer else Unknown(STIFFNESS, mean, std, True))
         damping = parameters.get(DAMPING)
         ratio, width = math.log(0.03), 2.0
         if damping is not None and float(damping.value) > 0.0:
@@ -212,3 +228,13 @@ def shared_unknowns(parameters: ParameterSet, logs: Sequence[PulledLog], shape: 
             width = float(damping.std or 3.0 * float(damping.value)) / float(damping.value)
         found.append(Unknown("ratio", ratio, width, logarithmic=True))
     return found
+
+
+def _falling(parameters: ParameterSet, pulled: float) -> Unknown:
+    """Over which speed friction falls: as the file has it, else about the speed of the pulls [m/s]."""
+    given = parameters.effects.get("stribeck", {}).get(FALLING)
+    if given is None:
+        return Unknown(FALLING, math.log(pulled), 2.0, logarithmic=True)
+    value = float(given.value)
+    std = HELD if given.fixed else float(given.std or 2.0 * value) / value
+    return Unknown(FALLING, math.log(value), std, logarithmic=True)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,7 +12,16 @@ from ssmr_ident.core.parameter import ParameterSet
 from ssmr_ident.experiments.campaign import Measurement
 from ssmr_ident.identify.blocks.fit import Fitted, begun, fitted, height, with_scatter
 from ssmr_ident.identify.blocks.log import PulledLog, pulled_log
-from ssmr_ident.identify.blocks.model import KINETIC, SCATTER, STATIC, STIFFNESS, Blocks, Shape, shared_unknowns
+from ssmr_ident.identify.blocks.model import (
+    FALLING,
+    KINETIC,
+    SCATTER,
+    STATIC,
+    STIFFNESS,
+    Blocks,
+    Shape,
+    shared_unknowns,
+)
 from ssmr_ident.identify.blocks.teeth import moments
 from ssmr_ident.physics.robot import GRAVITY
 from ssmr_ident.signals.metrics import nrmse_percent
@@ -30,6 +39,9 @@ GROWING = (2, 4, 7)
 
 MOST_TEETH = 12
 """That a recording is read up to: what follows tells the same again, and where it is let go, chance decides."""
+
+MORE = "drifts", "changes"
+"""What else may be there."""
 
 WORTH = 1.1
 """Times the white noise that has to be left before friction is taken to change along the way."""
@@ -95,7 +107,9 @@ def known_shape(parameters: ParameterSet) -> Shape:
         stiffness = 0.0
     static, kinetic = parameters.get(STATIC), parameters.get(KINETIC)
     two = static is not None and kinetic is not None and float(static.value) != float(kinetic.value)
-    return Shape(math.isfinite(stiffness), (two or "stribeck" in parameters.effects) and math.isfinite(stiffness))
+    falls = (two or "stribeck" in parameters.effects) and math.isfinite(stiffness)
+    over = parameters.effects.get("stribeck", {}).get(FALLING)
+    return Shape(math.isfinite(stiffness), falls, falls and over is not None and not over.fixed)
 
 
 def searched(pulls: Pulls, parameters: ParameterSet, base: Shape) -> tuple[list[Fitted], tuple[float, ...]]:
@@ -105,21 +119,38 @@ def searched(pulls: Pulls, parameters: ParameterSet, base: Shape) -> tuple[list[
     """
     white = [log.noise for log in pulls.logs]
     rough = [max(n, ROUGH * log.load) for n, log in zip(white, pulls.logs, strict=True)]
-    plain = [s for s in _all_shapes() if base.parts <= s.parts]
     found: dict[Shape, Fitted] = {}
-    for shape in plain:
-        found[shape] = _fit(pulls, parameters, shape, rough, found)
-    given = parameters.get(STIFFNESS)
-    if base.stretches and given is not None and given.std and not given.fixed:
-        for shape in list(found):
-            found[replace(shape, softer=True)] = _fit(pulls, parameters, replace(shape, softer=True), rough, found)
-    if min(_over(f, white) for f in found.values()) > WORTH:
-        for shape in (replace(s, **{more: True}) for more in ("drifts", "changes") for s in plain):
+
+    def fit(*shapes: Shape) -> None:
+        for shape in (s for s in shapes if s not in found):
             found[shape] = _fit(pulls, parameters, shape, rough, found)
+
+    stretched = replace(base, stretches=True)
+    fit(base, stretched)
+    if min(_over(f, white) for f in found.values()) > WORTH:
+        fit(*(replace(s, **{more: True}) for more in MORE for s in (base, stretched)))
+    if base.stretches or _stretches(found):
+        falls = replace(stretched, falls=True)
+        smoothly = replace(falls, smoothly=True)
+        fit(*((smoothly,) if base.smoothly else (falls, smoothly)))
+        given = parameters.get(STIFFNESS)
+        if base.stretches and given is not None and given.std and not given.fixed:
+            fit(*(replace(s, softer=True) for s in (base, smoothly)))
+        if min(_over(f, white) for f in found.values()) > WORTH:
+            at_once = falls in found and not found[smoothly].cost < found[falls].cost - 2.0 * CERTAIN
+            fit(*(replace(falls if at_once else smoothly, **{more: True}) for more in MORE))
     best = min(found.values(), key=lambda f: _over(f, white))
     noise = tuple(max(n, float(np.std(best.left(k)))) for k, n in enumerate(white))
     final = [_again(f, noise) for f in found.values()]
-    return final, noise
+    return [_offered(f, final, noise) for f in final], noise
+
+
+def _stretches(found: Mapping[Shape, Fitted]) -> bool:
+    """Whether a drive stretches: beside what else the best model has, it is certainly better for it. Friction that
+    falls shows behind such a drive alone."""
+    best = min(found, key=lambda shape: found[shape].cost)
+    rigid, stretched = (found[replace(best, stretches=stretches)] for stretches in (False, True))
+    return stretched.cost < rigid.cost - 2.0 * CERTAIN
 
 
 def chosen(found: Sequence[Fitted]) -> Fitted:
@@ -137,21 +168,66 @@ def chosen(found: Sequence[Fitted]) -> Fitted:
 
 def held(found: Fitted, pulls: Pulls) -> list[Fitted]:
     """The same model on other recordings, one by one: its shared unknowns stay, their own are found."""
-    results = []
-    for index, log in enumerate(pulls.logs):
-        one = pulls.only(index)
-        blocks = replace(found.blocks, logs=one.logs, moments=one.moments)
-        results.append(
-            fitted(blocks, [max(log.noise, ROUGH * log.load)], (found.shared, [blocks.own_start(0)]), held=True)
-        )
-    return results
+    away = _let_go_before(found)
+    return [alone(found.blocks, found.shared, pulls.only(index), away) for index in range(len(pulls.logs))]
+
+
+def alone(blocks: Blocks, shared: Array, pulls: Pulls, away: float) -> Fitted:
+    """A recording's own unknowns under shared ones that stay, over more and more teeth, which are let go where they
+    were found or ``away`` [s] from there."""
+    noise = [max(log.noise, ROUGH * log.load) for log in pulls.logs]
+    tried = [_growing(blocks, shared, pulls, noise, shift) for shift in sorted({0.0, away})]
+    return min(tried, key=lambda f: f.cost)
+
+
+def _growing(blocks: Blocks, shared: Array, pulls: Pulls, noise: Sequence[float], shift: float) -> Fitted:
+    parts = [pulls.first(count) for count in _counts(pulls, blocks.shape)]
+    blocks = replace(blocks, logs=parts[0].logs, moments=parts[0].moments)
+    own = blocks.own_start(0)
+    own[blocks.let_go(0)] += shift
+    fit = fitted(blocks, noise, (shared, [own]), held=True)
+    for part in parts[1:]:
+        fit = fitted(replace(blocks, logs=part.logs, moments=part.moments), noise, _longer(fit, part), held=True)
+    return fit
+
+
+def _counts(pulls: Pulls, shape: Shape) -> list[int]:
+    """Teeth that are fitted at first, and then, up to all."""
+    most = max(len(own) for own in pulls.moments)
+    return [*(count for count in GROWING if count < most and shape.falls), most]
+
+
+def _let_go_before(found: Fitted) -> float:
+    """By how much a fit lets the block go from where the force falls [s]; 0 where it does not."""
+    if not found.blocks.shape.falls:
+        return 0.0
+    away = [own[found.blocks.let_go(k)] - found.blocks.moments[k] for k, own in enumerate(found.own)]
+    return float(np.median(np.concatenate(away)))
+
+
+def _offered(poorer: Fitted, all_of_them: Sequence[Fitted], noise: Sequence[float]) -> Fitted:
+    """A model, or what is left of a better one that has all that it has, led on from there."""
+    shape = poorer.blocks.shape
+    way = shape.stretches, shape.falls
+    alike = [f for f in all_of_them if (f.blocks.shape.stretches, f.blocks.shape.falls) == way]
+    richer = [f for f in alike if shape.parts < f.blocks.shape.parts]
+    best = max(richer, key=lambda f: f.log_evidence, default=poorer)
+    if not best.log_evidence > poorer.log_evidence:
+        return poorer
+    there = dict(zip((u.name for u in best.blocks.shared), best.shared, strict=True))
+    there.setdefault(STIFFNESS, math.log(best.values.get(STIFFNESS, 1.0)))
+    shared = [there[u.name] for u in poorer.blocks.shared]
+    own = [o[: len(p)] for o, p in zip(best.own, poorer.own, strict=True)]
+    blocks = replace(poorer.blocks, spread=best.blocks.spread)
+    return max(poorer, fitted(blocks, noise, (np.array(shared), own)), key=lambda f: f.log_evidence)
 
 
 def blocks_of(pulls: Pulls, parameters: ParameterSet, shape: Shape) -> Blocks:
     """A model of the pulls before any fit."""
     shared = tuple(shared_unknowns(parameters, pulls.logs, shape, pulls.mass * GRAVITY))
     spread = SCATTER * height(pulls.logs, pulls.moments, pulls.mass)
-    return Blocks(pulls.logs, pulls.moments, pulls.mass, shape, shared, spread)
+    drive = parameters.number(STIFFNESS, math.inf)
+    return Blocks(pulls.logs, pulls.moments, pulls.mass, shape, shared, spread, drive)
 
 
 def error(found: Fitted, index: int) -> float:
@@ -160,23 +236,32 @@ def error(found: Fitted, index: int) -> float:
     return nrmse_percent(log.force[:, None], found.simulated[index][:, None], 1.0 / log.step, low_pass_hz=None)
 
 
-def _all_shapes() -> list[Shape]:
-    """Without what changes; friction that falls shows behind a drive that stretches alone."""
-    return [Shape(), Shape(stretches=True), Shape(stretches=True, falls=True)]
-
-
 def _fit(
     pulls: Pulls, parameters: ParameterSet, shape: Shape, noise: Sequence[float], found: dict[Shape, Fitted]
 ) -> Fitted:
-    like = [f for s, f in found.items() if s.stretches and s.parts <= shape.parts]
+    poorer = [f for s, f in found.items() if s.stretches and s.parts <= shape.parts]
+    like = min(poorer, key=lambda f: f.cost, default=None)
     if not shape.falls:
-        return begun(blocks_of(pulls, parameters, shape), noise, like[-1] if like else None)
-    most = max(len(own) for own in pulls.moments)
-    counts = [count for count in GROWING if count < most] + [most]
-    fit = begun(blocks_of(pulls.first(counts[0]), parameters, shape), noise, like[-1] if like else None)
+        return begun(blocks_of(pulls, parameters, shape), noise, like)
+    counts = _counts(pulls, shape)
+    fit = begun(blocks_of(pulls.first(counts[0]), parameters, shape), noise, like)
     for count in counts[1:]:
         fit = fitted(blocks_of(pulls.first(count), parameters, shape), noise, _longer(fit, pulls.first(count)))
-    return with_scatter(fit, noise)
+    return with_scatter(_each_anew(fit, noise), noise)
+
+
+def _each_anew(found: Fitted, noise: Sequence[float]) -> Fitted:
+    """All recordings once more, those that are followed better alone, from their own begin, begun as they are there."""
+    own, blocks = list(found.own), found.blocks
+    for index in range(len(own)):
+        one = replace(blocks, logs=blocks.logs[index : index + 1], moments=blocks.moments[index : index + 1])
+        now, anew = (
+            fitted(one, noise[index : index + 1], (found.shared, [begin]), held=True)
+            for begin in (own[index], one.own_start(0))
+        )
+        if anew.cost < now.cost:
+            own[index] = anew.own[0]
+    return min(found, fitted(blocks, noise, (found.shared, own)), key=lambda f: f.cost)
 
 
 def _longer(found: Fitted, pulls: Pulls) -> tuple[Array, list[Array]]:

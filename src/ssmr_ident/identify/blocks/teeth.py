@@ -10,6 +10,7 @@ from __future__ import annotations
 import itertools
 
 import numpy as np
+from scipy.signal import find_peaks
 
 from ssmr_ident.identify.blocks.log import PulledLog
 
@@ -27,12 +28,16 @@ FEWEST, LEAST = 3, 5
 LOADS = 0.2
 """Share of what the drive loads in the time of a tooth that the force falls by at least, on average."""
 
+PROMINENT = 0.5
+"""Share of the prominence of the most prominent peak from which the first one is a peak as well."""
+
 UNEVEN = 0.15
 """Of distances between teeth."""
 
 
 def first_let_go(log: PulledLog) -> int:
-    """Sample of the first peak, or of the knee where there is none."""
+    """Sample of the first peak of those that stand out at least half as far as the highest, or of the knee where none
+    stands out of noise."""
     begin = round(log.starts / log.step)
     level = log.rests + 0.6 * log.load
     up = begin + int(np.argmax(log.force[begin:] > level))
@@ -40,7 +45,11 @@ def first_let_go(log: PulledLog) -> int:
     part = log.force[up : up + 2 * expected + LEAST]
     width = max(1, min(len(part) // 8, 5))
     smooth = np.convolve(part, np.full(width, 1.0 / width), "same")
-    return up + int(np.argmax(smooth[: max(len(smooth) - width // 2, 1)]))
+    inner = smooth[: max(len(smooth) - width // 2, 1)]
+    peaks, found = find_peaks(inner, prominence=CLEAR * log.noise / np.sqrt(width))
+    if not len(peaks):
+        return up + int(np.argmax(inner))
+    return up + int(peaks[np.argmax(found["prominences"] > PROMINENT * found["prominences"].max())])
 
 
 def moments(log: PulledLog) -> Array:

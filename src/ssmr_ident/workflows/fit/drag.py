@@ -12,7 +12,7 @@ from ssmr_ident.doctor.blocks import conflicts
 from ssmr_ident.experiments.campaign import Campaign, Measurement
 from ssmr_ident.identify.blocks.exported import exported
 from ssmr_ident.identify.blocks.fit import Fitted
-from ssmr_ident.identify.blocks.model import DAMPING, KINETIC, STATIC, STIFFNESS
+from ssmr_ident.identify.blocks.model import DAMPING, FALLING, KINETIC, STATIC, STIFFNESS
 from ssmr_ident.identify.blocks.search import Pulls, chosen, error, known_shape, pulls_of, searched
 from ssmr_ident.physics.rig import block_from_parameters
 from ssmr_ident.workflows.fit.result import SessionFit
@@ -122,7 +122,8 @@ def _findings(best: Fitted, values: dict[str, float], stds: dict[str, float], ba
         said.append(f"the drive damps with {values[DAMPING]:.3g} ± {stds[DAMPING]:.1g} N s/m, a ratio of {ratio:.2g}")
     if shape.falls and not known.falls:
         fall = f"from {values[STATIC]:.3f} ± {stds[STATIC]:.1g} to {values[KINETIC]:.3f} ± {stds[KINETIC]:.1g}"
-        said.append(f"friction falls {fall} once the block slides, though the file has one")
+        over = f", over {values[FALLING] * 1e3:.2g} ± {stds[FALLING] * 1e3:.1g} mm/s" if shape.smoothly else ""
+        said.append(f"friction falls {fall} once the block slides{over}, though the file has one")
     if shape.drifts:
         said.append(f"the load cell's zero drifts by {values['zero_drift_N_s']:.3g} N/s")
     if shape.changes:
