@@ -213,6 +213,24 @@ def test_friction_that_falls_over_a_speed_is_told_with_that_speed() -> None:
     assert found.heldout.after < 1.3 * found.heldout.noise_floor
 
 
+@pytest.mark.slow
+def test_nothing_is_missing_without_a_name_where_the_file_has_two_frictions() -> None:
+    """A file of two frictions holds no speed over which one becomes the other, so that none can be its answer."""
+    random, made = np.random.default_rng(6), []
+    for speed in (1.0, 2.0, 1.5):
+        head = 1e-3 * speed * np.maximum(np.arange(round(900 / speed)) / 100.0 - 0.5, 0.0)
+        clean = pull(3.0, 10.5e3, 4.0, np.full(len(head), 10.6), 1.9, head, 0.01, None, 3.6e-3)[0]
+        log = logged(clean + 0.2 * random.standard_normal(len(head)), speed)
+        made.append(replace(log, entry=replace(log.entry, file=f"pull-{speed:g}.csv")))
+    values = {"mu_static": Estimate(0.425, 0.02, "1"), "mu_kinetic": Estimate(0.36, 0.02, "1")}
+    known = ParameterSet("block", {"mass_kg": Estimate(3.0, 0.01, "kg"), **values,
+                                   "cable.stiffness_N_m": Estimate(10.5e3, 200.0, "N/m")})  # fmt: skip
+    found = diagnose(
+        Campaign(Session("block", Path(), "block", "drag", tuple(m.entry for m in made)), known, tuple(made))
+    )
+    assert (found.verdict == "missing_physics") == bool(found.effects)
+
+
 def test_a_wandering_level_has_no_teeth() -> None:
     campaign = pulled(3e4, 0.2, 0.36, 0.36, (2.0, 5.0), wander=0.15)
     assert pulls_of(replace(campaign).measurements, MASS).teeth == (0, 0)

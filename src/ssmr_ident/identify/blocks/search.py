@@ -130,15 +130,18 @@ def searched(pulls: Pulls, parameters: ParameterSet, base: Shape) -> tuple[list[
     if min(_over(f, white) for f in found.values()) > WORTH:
         fit(*(replace(s, **{more: True}) for more in MORE for s in (base, stretched)))
     if base.stretches or _stretches(found):
-        falls = replace(stretched, falls=True)
-        smoothly = replace(falls, smoothly=True)
-        fit(*((smoothly,) if base.smoothly else (falls, smoothly)))
+        last = stretched
+        if not base.falls:
+            falls = replace(stretched, falls=True)
+            last = smoothly = replace(falls, smoothly=True)
+            fit(falls, smoothly)
         given = parameters.get(STIFFNESS)
         if base.stretches and given is not None and given.std and not given.fixed:
-            fit(*(replace(s, softer=True) for s in (base, smoothly)))
+            fit(*(replace(s, softer=True) for s in (base, last)))
+        if not base.falls and not found[smoothly].cost < found[falls].cost - 2.0 * CERTAIN:
+            last = falls
         if min(_over(f, white) for f in found.values()) > WORTH:
-            at_once = falls in found and not found[smoothly].cost < found[falls].cost - 2.0 * CERTAIN
-            fit(*(replace(falls if at_once else smoothly, **{more: True}) for more in MORE))
+            fit(*(replace(last, **{more: True}) for more in MORE))
     best = min(found.values(), key=lambda f: _over(f, white))
     noise = tuple(max(n, float(np.std(best.left(k)))) for k, n in enumerate(white))
     final = [_again(f, noise) for f in found.values()]
